@@ -104,7 +104,8 @@ TEST(AutocollimatorOptics, ReadsHalfTheTangentOfTheDeflectionByAFlatMirrorWherev
     }
   }
   const double a = 100.0 * kArcsec, b = -200.0 * kArcsec;
-  for (const Vector3d& shift_mm : {Vector3d(-200, 0, 0), Vector3d(1, 2, 3), Vector3d(0, 35, 0), Vector3d(0, 0, -35)})
+  for (const Vector3d& shift_mm : {Vector3d(-200, 0, 0), Vector3d(1, 2, 3), Vector3d(0, 35, 0),
+                                   Vector3d(0, 0, -35)})
     EXPECT_LT((Angles(instrument.Look(Pose(a, b, 1e-3 * shift_mm))) - HalfTangents(a, b)).norm(), kRounding_rad);
 }
 
@@ -274,7 +275,8 @@ TEST(AutocollimatorOptics, ReadsNothingBeyondItsFieldWithoutLightOrBehindAFixtur
     EXPECT_GT(ReturnedFromNothing(instrument, X_LM, AutocollimatorStatus::kOutOfRange), 0.9);
   const Isometry3d away = Pose(5.0 * kDegree, 0.0), back = Pose(std::numbers::pi, 0.0);
   const Isometry3d beside = Pose(0.0, 0.0, {0.0, 0.1, 0.0}), nearly_beside = Pose(0.0, 0.0, {0.0, 0.043, 0.0});
-  for (const Isometry3d& X_LM : {away, beside}) ReturnedFromNothing(instrument, X_LM, AutocollimatorStatus::kNoLight);
+  for (const Isometry3d& X_LM : {away, beside})
+    ReturnedFromNothing(instrument, X_LM, AutocollimatorStatus::kNoLight);
   EXPECT_EQ(ReturnedFromNothing(instrument, back, AutocollimatorStatus::kNoLight), 0.0);
   // A segment of 2 mm of 30 mm holds 2.9 % of the disc, which is less than 5 %.
   EXPECT_GT(ReturnedFromNothing(instrument, nearly_beside, AutocollimatorStatus::kNoLight), 0.0);

@@ -92,7 +92,8 @@ TEST(CodeWidths, AsMeasuredGiveEachVoltageItsCode) {
   const CodeWidths widths(kFew_lsb, 6);
   std::vector<double> edge_lsb;  // below codes -31 .. 31
   for (int code = -31; code <= 31; ++code)
-    edge_lsb.push_back(code - 0.5 + (code <= -3 ? -0.5 : code <= 0 ? 0.0 : code <= 4 ? 0.25 : code == 5 ? -0.75 : -1.5));
+    edge_lsb.push_back(code - 0.5 +
+                       (code <= -3 ? -0.5 : code <= 0 ? 0.0 : code <= 4 ? 0.25 : code == 5 ? -0.75 : -1.5));
   for (double x_lsb = -33.031; x_lsb < 33.0; x_lsb += 0.11) {
     const auto below = std::count_if(edge_lsb.begin(), edge_lsb.end(), [&](double edge) { return edge <= x_lsb; });
     const std::int32_t code = widths.CodeOf(7, static_cast<float>(x_lsb - 7.0));

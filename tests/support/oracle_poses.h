@@ -10,7 +10,7 @@ namespace twinbench::test {
 /// ex, ey, ez [rad] and dx, dy, dz [m] of a table, in the frame of its base.
 using OracleError = std::array<double, 6>;
 
-/// A pose of the reference rotary bench, and where an implementation that shares nothing with this one sees its spots.
+/// A pose of the rotary bench, and where an implementation that shares nothing with this one sees its spots.
 struct OraclePose {
   bool is_reclamped;  // else reseated
   double target_rad, reference_rad, shift_rad;
