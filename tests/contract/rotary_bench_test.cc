@@ -15,8 +15,7 @@
 namespace twinbench::test {
 namespace {
 
-using std::chrono::milliseconds;
-using std::chrono::seconds;
+using std::chrono::milliseconds, std::chrono::seconds;
 
 constexpr double kInPosition_rad = 0.02 * units::arcsec;
 constexpr int kSamples = 200;

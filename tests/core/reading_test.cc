@@ -17,8 +17,7 @@
 namespace twinbench {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using testing::HasSubstr, testing::Not;
 
 constexpr const char* kHeader =
     "reading,time_s,setup,pass,direction,position,phase,target_deg,reference_deg,psd_a_x_V,psd_a_y_V,psd_b_x_V,"

@@ -12,9 +12,7 @@
 namespace twinbench {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::StartsWith;
+using testing::ElementsAre, testing::HasSubstr, testing::StartsWith;
 
 constexpr const char* kBench = "bench = \"rotary_4dof\"\n";
 

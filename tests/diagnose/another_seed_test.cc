@@ -11,8 +11,7 @@
 namespace twinbench::diagnose {
 namespace {
 
-using units::arcsec;
-using units::um;
+using units::arcsec, units::um;
 
 struct Case {
   std::string scenario;  // file

@@ -14,8 +14,7 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-using test::EncoderEffect;
-using test::EncoderScenario;
+using test::EncoderEffect, test::EncoderScenario;
 using units::deg;
 
 EncoderRun With(const EffectSettings& effect, const Scenario& scenario) {

@@ -11,9 +11,7 @@
 /// Fits single families to noise-free runs of the twin: what each leaves of the effect that it is made for.
 namespace twinbench::diagnose::test {
 
-using twinbench::test::EncoderEffect;
-using twinbench::test::EncoderScenario;
-using twinbench::test::ReadingsWith;
+using twinbench::test::EncoderEffect, twinbench::test::EncoderScenario, twinbench::test::ReadingsWith;
 
 struct Fit {
   int grid_point = 0;

@@ -16,9 +16,7 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-using twinbench::test::EncoderEffect;
-using twinbench::test::EncoderScenario;
-using twinbench::test::ReadingsWith;
+using twinbench::test::EncoderEffect, twinbench::test::EncoderScenario, twinbench::test::ReadingsWith;
 using twinbench::test::RunEncoderTwin;
 using units::deg;
 

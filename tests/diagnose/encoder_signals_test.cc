@@ -11,8 +11,7 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-using units::deg;
-using units::kPi;
+using units::deg, units::kPi;
 
 /// Amplitude of sin(order p) in the error of clipped signals, by the midpoint rule over one period.
 double ClippingOrder(double level, int order) {

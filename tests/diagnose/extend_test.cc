@@ -12,8 +12,7 @@ namespace twinbench::diagnose {
 namespace {
 
 using testing::HasSubstr;
-using twinbench::test::RunTwin;
-using twinbench::test::SmallNoiseFree;
+using twinbench::test::RunTwin, twinbench::test::SmallNoiseFree;
 
 /// A diagnosis that found a gain on PSD A x.
 DiagnosisRun FoundGain(double gain_error) {

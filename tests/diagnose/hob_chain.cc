@@ -12,9 +12,7 @@
 namespace twinbench::diagnose::test {
 namespace {
 
-using units::arcsec;
-using units::deg;
-using units::kPi;
+using units::arcsec, units::deg, units::kPi;
 
 constexpr double kRatio = 2.0 / 44.0;
 constexpr double kTurn_rad = 2.0 * kPi;

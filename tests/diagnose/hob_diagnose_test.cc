@@ -17,10 +17,8 @@
 namespace twinbench::diagnose::hob {
 namespace {
 
-using test::HiddenCause;
-using test::HobChain;
-using units::arcsec;
-using units::deg;
+using test::HiddenCause, test::HobChain;
+using units::arcsec, units::deg;
 
 /// "hob_runout", "eccentricity hob".
 std::string NameOf(const std::string& effect, const std::string& where) {

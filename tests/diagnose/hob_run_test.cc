@@ -19,8 +19,7 @@ namespace twinbench::diagnose::hob {
 namespace {
 
 using test::HobChain;
-using units::arcsec;
-using units::deg;
+using units::arcsec, units::deg;
 
 HobChain Quiet() {
   HobChain chain;

@@ -12,8 +12,7 @@
 namespace twinbench::diagnose {
 namespace {
 
-using test::NoisyRing;
-using test::WhiteNoise;
+using test::NoisyRing, test::WhiteNoise;
 
 /// A run of white noise of the stated size, altered row by row.
 template <class Alter>

@@ -9,8 +9,7 @@
 namespace twinbench::diagnose {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using testing::HasSubstr, testing::Not;
 
 constexpr int kNulls = 60;
 

@@ -14,8 +14,7 @@
 namespace twinbench::diagnose {
 namespace {
 
-using test::NoisyRing;
-using test::WhiteNoise;
+using test::NoisyRing, test::WhiteNoise;
 
 Family Fixed(const std::string& name, const Eigen::MatrixXd& columns, double prior_sd) {
   Family family;

@@ -21,9 +21,7 @@
 /// for.
 namespace twinbench::diagnose::test {
 
-using units::arcsec;
-using units::deg;
-using units::kPi;
+using units::arcsec, units::deg, units::kPi;
 
 /// What is wrong, or nothing. Sizes in SI.
 struct Wrong {

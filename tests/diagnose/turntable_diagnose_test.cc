@@ -22,12 +22,8 @@
 namespace twinbench::diagnose::turntable {
 namespace {
 
-using test::BenchReadings;
-using test::CarefulScenario;
-using test::PublishedScenario;
-using test::Wrong;
-using testing::AnyOf;
-using testing::HasSubstr;
+using test::BenchReadings, test::CarefulScenario, test::PublishedScenario, test::Wrong;
+using testing::AnyOf, testing::HasSubstr;
 using units::arcsec;
 
 DiagnosisRun DiagnosisOf(const Scenario& scenario, const Wrong& wrong, std::uint64_t seed = 21) {

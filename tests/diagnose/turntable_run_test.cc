@@ -19,12 +19,8 @@
 namespace twinbench::diagnose::turntable {
 namespace {
 
-using test::BenchReadings;
-using test::CarefulScenario;
-using test::PublishedScenario;
-using test::Wrong;
-using units::arcsec;
-using units::deg;
+using test::BenchReadings, test::CarefulScenario, test::PublishedScenario, test::Wrong;
+using units::arcsec, units::deg;
 
 /// What the unknowns cannot absorb, in units of the stated noise.
 double LeftOver(const TurntableRun& turntable) {

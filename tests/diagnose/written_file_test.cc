@@ -13,9 +13,7 @@
 namespace twinbench::diagnose {
 namespace {
 
-using testing::Contains;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using testing::Contains, testing::HasSubstr, testing::IsEmpty;
 
 /// Noise, and a direction found and named as a gain of a PSD.
 DiagnosisRun FoundDirection(std::uint64_t seed, double size_m) {

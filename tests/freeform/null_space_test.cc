@@ -14,9 +14,7 @@ namespace twinbench::freeform_test {
 namespace {
 
 using namespace benches::freeform::estimators;
-using Eigen::Matrix4d;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using Eigen::Matrix4d, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double kUm = 1e-6, kArcsec = std::numbers::pi / 648000.0, kDegree = std::numbers::pi / 180.0;
 constexpr double kNoise_V = 0.010, kNoise_px = 0.05;

@@ -21,8 +21,7 @@
 namespace twinbench::hidden {
 namespace {
 
-using units::arcsec;
-using units::um;
+using units::arcsec, units::um;
 
 void StateAllOfTheDevice(Scenario& scenario) {
   EncoderOf(scenario).device.lines = 30;

@@ -15,8 +15,7 @@
 namespace twinbench::hidden {
 namespace {
 
-using diagnose::Cause;
-using diagnose::Diagnosis;
+using diagnose::Cause, diagnose::Diagnosis;
 using units::arcsec;
 
 constexpr std::uint64_t kSeed = 71;

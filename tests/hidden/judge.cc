@@ -13,9 +13,7 @@
 namespace twinbench::hidden {
 namespace {
 
-using diagnose::Cause;
-using diagnose::Diagnosis;
-using diagnose::Verdict;
+using diagnose::Cause, diagnose::Diagnosis, diagnose::Verdict;
 
 constexpr int kLargestTie = 3;
 

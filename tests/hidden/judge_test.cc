@@ -10,8 +10,7 @@
 namespace twinbench::hidden {
 namespace {
 
-using diagnose::Diagnosis;
-using diagnose::Verdict;
+using diagnose::Diagnosis, diagnose::Verdict;
 using testing::HasSubstr;
 
 // The marks themselves: a score is worth what its marks are.

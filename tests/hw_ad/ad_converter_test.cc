@@ -16,11 +16,8 @@
 namespace twinbench::hw {
 namespace {
 
-using test::ExpectSameBlock;
-using test::kNoise_V;
-using test::ScriptedSource;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+using test::ExpectSameBlock, test::kNoise_V, test::ScriptedSource;
+using ::testing::AllOf, ::testing::HasSubstr;
 
 AdSettings Settings(const std::string& kind) {
   AdSettings settings;

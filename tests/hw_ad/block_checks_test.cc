@@ -12,10 +12,7 @@
 namespace twinbench::hw {
 namespace {
 
-using test::FourLevels;
-using test::kLsb_V;
-using test::kNoise_V;
-using test::RawBlock;
+using test::FourLevels, test::kLsb_V, test::kNoise_V, test::RawBlock;
 
 CheckSettings Known(double noise_V) {
   return {.noise_lsb = noise_V / kLsb_V};

@@ -10,11 +10,7 @@
 namespace twinbench::hw {
 namespace {
 
-using test::FourLevels;
-using test::kLsb_V;
-using test::kNoise_V;
-using test::LoseAWord;
-using test::RawBlock;
+using test::FourLevels, test::kLsb_V, test::kNoise_V, test::LoseAWord, test::RawBlock;
 
 constexpr double kFalseAlarms = 1e-9;
 constexpr std::array<std::size_t, kChannels> kInOrder = {0, 1, 2, 3};

@@ -9,8 +9,7 @@
 namespace twinbench::hw {
 namespace {
 
-using std::chrono::milliseconds;
-using std::chrono::seconds;
+using std::chrono::milliseconds, std::chrono::seconds;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 

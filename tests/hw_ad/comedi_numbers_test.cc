@@ -12,9 +12,7 @@
 namespace twinbench::hw {
 namespace {
 
-using testing::DoubleNear;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::DoubleNear, testing::ElementsAre, testing::HasSubstr;
 
 class ComediNumbersTest : public testing::Test {
  protected:

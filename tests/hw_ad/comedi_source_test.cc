@@ -12,9 +12,7 @@
 namespace twinbench::hw {
 namespace {
 
-using test::ComediSettings;
-using test::ServedCard;
-using test::Struck;
+using test::ComediSettings, test::ServedCard, test::Struck;
 
 class ComediSourceTest : public ::testing::Test {
  protected:

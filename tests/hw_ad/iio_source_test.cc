@@ -10,11 +10,7 @@
 namespace twinbench::hw {
 namespace {
 
-using test::FaultIn;
-using test::HeldTwin;
-using test::IioSettings;
-using test::ServedCard;
-using test::Struck;
+using test::FaultIn, test::HeldTwin, test::IioSettings, test::ServedCard, test::Struck;
 
 TEST(IioSource, GivesTheServedTwinsOwnBlocksAlsoAtAnotherRateRangeAndResolution) {
   ServedCard(IioSettings).ExpectTheTwinsOwnBlocks();

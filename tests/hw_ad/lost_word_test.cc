@@ -10,8 +10,7 @@
 namespace twinbench::hw {
 namespace {
 
-using test::kLsb_V;
-using test::kNoise_V;
+using test::kLsb_V, test::kNoise_V;
 
 constexpr std::array<std::size_t, kChannels> kAsWired = {0, 1, 2, 3};
 constexpr double kOneInABillion = 1e-9;

@@ -12,8 +12,7 @@
 namespace twinbench::hw {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using testing::AllOf, testing::HasSubstr;
 
 const ServedAddresses kAddresses = {"127.0.0.1", 30431, 5025, 5026, "/dev/pts/7"};
 

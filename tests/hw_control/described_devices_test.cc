@@ -19,8 +19,7 @@
 namespace twinbench::hw {
 namespace {
 
-using test::FakeController;
-using test::KindOf;
+using test::FakeController, test::KindOf;
 
 constexpr Duration kAnswersWithin = std::chrono::milliseconds(300);
 

@@ -14,11 +14,8 @@
 namespace twinbench::hw {
 namespace {
 
-using test::FakeController;
-using test::KindOf;
-using test::TextOf;
-using testing::AllOf;
-using testing::HasSubstr;
+using test::FakeController, test::KindOf, test::TextOf;
+using testing::AllOf, testing::HasSubstr;
 using Reply = FakeController::Reply;
 using Wire = FakeController::Wire;
 

@@ -14,8 +14,7 @@
 namespace twinbench::hw {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
+using testing::HasSubstr, testing::StartsWith;
 
 /// What is wrong with a text is kept, and where in `file` it is; line 0: in the text as a whole.
 void ExpectRefused(const std::string& message, const std::string& file, int line) {

@@ -17,8 +17,7 @@ namespace twinbench::hw {
 namespace {
 
 using test::FakeController;
-using testing::Contains;
-using testing::HasSubstr;
+using testing::Contains, testing::HasSubstr;
 
 /// A controller of X and Y in mm that understands so many decimals and, like the ESP301, knows no MS?.
 struct EspGroupModel {

@@ -16,12 +16,8 @@
 namespace twinbench::hw {
 namespace {
 
-using test::FakeController;
-using test::KindOf;
-using test::TextWithoutAddress;
-using testing::AllOf;
-using testing::Contains;
-using testing::HasSubstr;
+using test::FakeController, test::KindOf, test::TextWithoutAddress;
+using testing::AllOf, testing::Contains, testing::HasSubstr;
 
 /// A machine of X (joint 0) and C (joint 2), which stands at once where it is sent. What is asked for is answered
 /// by `told`, and what it does with a block of a program is `obey`.

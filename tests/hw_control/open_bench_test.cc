@@ -11,8 +11,7 @@
 namespace twinbench::hw {
 namespace {
 
-using test::KindOf;
-using test::ServedTwin;
+using test::KindOf, test::ServedTwin;
 using testing::HasSubstr;
 
 BenchFile FileOf(const ServedTwin& served, const std::string& tables) {

@@ -14,8 +14,7 @@
 namespace twinbench::hw {
 namespace {
 
-using test::KindOf;
-using test::ServedTwin;
+using test::KindOf, test::ServedTwin;
 
 constexpr Duration kBeyondFaults = std::chrono::milliseconds(300);
 

@@ -16,13 +16,8 @@
 namespace twinbench::hw {
 namespace {
 
-using test::FakeController;
-using test::KindOf;
-using test::TextOf;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using test::FakeController, test::KindOf, test::TextOf;
+using testing::Contains, testing::HasSubstr, testing::Not, testing::StartsWith;
 using Reply = FakeController::Reply;
 
 constexpr Duration kTimeout = std::chrono::milliseconds(300);

@@ -11,8 +11,7 @@
 namespace twinbench::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
+using testing::HasSubstr, testing::StartsWith;
 
 /// A held bench at no cost, an open buffer, and what an undisturbed block looks like.
 class OnDemand : public testing::Test {

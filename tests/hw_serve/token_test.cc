@@ -12,8 +12,7 @@
 namespace twinbench::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
+using testing::HasSubstr, testing::StartsWith;
 
 constexpr const char* kToken = "4f2a9c";
 

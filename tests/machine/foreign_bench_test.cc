@@ -13,8 +13,7 @@
 namespace twinbench::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using testing::AllOf, testing::HasSubstr;
 
 /// Of standard uncertainties. The noise of benches that are read at stops is the same in every run.
 constexpr double kCoverage = 3.0;

@@ -10,8 +10,7 @@
 namespace twinbench::measure {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using testing::ElementsAre, testing::IsEmpty;
 
 constexpr double kTurn_rad = 2.0 * units::kPi;
 

@@ -15,11 +15,7 @@
 namespace twinbench::optics {
 namespace {
 
-using Eigen::AngleAxisd;
-using Eigen::Isometry3d;
-using Eigen::Translation3d;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::AngleAxisd, Eigen::Isometry3d, Eigen::Translation3d, Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr double kWidth_m = 60e-3;       // of the mirror, and
 constexpr double kSag_m = 0.079e-6;      // its flatness error: the example of Guo et al. (2014)

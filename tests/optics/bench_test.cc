@@ -11,10 +11,7 @@
 namespace twinbench::optics {
 namespace {
 
-using Eigen::AngleAxisd;
-using Eigen::Isometry3d;
-using Eigen::Translation3d;
-using Eigen::Vector3d;
+using Eigen::AngleAxisd, Eigen::Isometry3d, Eigen::Translation3d, Eigen::Vector3d;
 
 Isometry3d Rz(double angle) {
   return Isometry3d(AngleAxisd(angle, Vector3d::UnitZ()));

@@ -8,8 +8,7 @@
 namespace twinbench::optics {
 namespace {
 
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
+using Eigen::Isometry3d, Eigen::Vector3d;
 
 Isometry3d AtHeight(double z_m) {
   return Isometry3d(Eigen::Translation3d(0.0, 0.0, z_m));

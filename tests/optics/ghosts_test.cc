@@ -10,9 +10,7 @@
 namespace twinbench::optics {
 namespace {
 
-using Eigen::AngleAxisd;
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
+using Eigen::AngleAxisd, Eigen::Isometry3d, Eigen::Vector3d;
 
 /// A detector 150 mm from the spot and what is traced on it; only detector A has the faults under test.
 struct Set {

@@ -16,8 +16,7 @@
 namespace twinbench::optics {
 namespace {
 
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
+using Eigen::Isometry3d, Eigen::Vector3d;
 
 constexpr double kSame_m = 1e-12;  // 1e-9 mm, the accuracy demanded of every path through a scene
 

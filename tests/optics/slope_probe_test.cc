@@ -14,8 +14,7 @@
 namespace twinbench::optics {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr double kLens_m = 0.05;
 

@@ -8,8 +8,7 @@
 namespace twinbench::optics {
 namespace {
 
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
+using Eigen::Isometry3d, Eigen::Vector3d;
 
 TEST(Meet, LandsOnThePlaneInItsOwnCoordinatesAndDecidesTheApertureInDouble) {
   const Isometry3d X_WS(Eigen::Translation3d(0.1, 0.2, 0.3));

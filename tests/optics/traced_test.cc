@@ -9,10 +9,7 @@
 namespace twinbench::optics {
 namespace {
 
-using Eigen::AngleAxisd;
-using Eigen::Isometry3d;
-using Eigen::Translation3d;
-using Eigen::Vector3d;
+using Eigen::AngleAxisd, Eigen::Isometry3d, Eigen::Translation3d, Eigen::Vector3d;
 
 constexpr double kNanometre = 1e-9;
 

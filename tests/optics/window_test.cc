@@ -10,9 +10,7 @@
 namespace twinbench::optics {
 namespace {
 
-using Eigen::Matrix2d;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Matrix2d, Eigen::Vector2d, Eigen::Vector3d;
 
 /// Largest centroid shift over all phases of the interference.
 double LargestShift_um(const Vector2d& gradient, double reflectance, double sigma_m) {

@@ -99,35 +99,22 @@ class KeysFile {
   std::map<std::string, Settings> named_;
 };
 
-/// @param effects_an_alarm  An alarm in so many of its effects is not too much.
-OwnBench BenchWithKeys(const std::string& name, const std::string& scenario, int effects_an_alarm) {
-  OwnBench bench{name, scenario, {}, {}, {}, effects_an_alarm};
+OwnBench WithKeys(OwnBench bench) {
   KeysFile{bench};
   return bench;
 }
 
 }  // namespace
+
+const std::vector<OwnBench>& OwnBenches() {
+  static const std::vector<OwnBench> benches = {
+      WithKeys({.name = kRotaryBench, .scenario = "rotary_4dof.toml"}),
+      WithKeys({.name = kEncoderBench, .scenario = "encoder_comparison.toml"}),
+      WithKeys({.name = kTurntableBench, .scenario = "turntable_autocollimator.toml", .effects_an_alarm = 50}),
+      WithKeys({.name = kHobBench, .scenario = "hob_transmission.toml", .effects_an_alarm = 50}),
+      WithKeys({.name = kCircularBench, .scenario = "circular_machining_centre.toml"}),
+      WithKeys({.name = kFreeformBench, .scenario = "freeform_five_axis.toml"})};
+  return benches;
+}
+
 }  // namespace twinbench::test
-
-namespace twinbench {
-
-test::OwnBench own_rotary::Bench() {
-  return test::BenchWithKeys(kRotaryBench, "rotary_4dof.toml", 20);
-}
-test::OwnBench own_encoder::Bench() {
-  return test::BenchWithKeys(kEncoderBench, "encoder_comparison.toml", 20);
-}
-test::OwnBench own_turntable::Bench() {
-  return test::BenchWithKeys(kTurntableBench, "turntable_autocollimator.toml", 50);
-}
-test::OwnBench own_hob::Bench() {
-  return test::BenchWithKeys(kHobBench, "hob_transmission.toml", 50);
-}
-test::OwnBench own_circular::Bench() {
-  return test::BenchWithKeys(kCircularBench, "circular_machining_centre.toml", 20);
-}
-test::OwnBench own_freeform::Bench() {
-  return test::BenchWithKeys(kFreeformBench, "freeform_five_axis.toml", 20);
-}
-
-}  // namespace twinbench

@@ -65,12 +65,6 @@ std::vector<std::string> Forgotten(const std::string& bench, const std::vector<O
   return forgotten;
 }
 
-const std::vector<OwnBench>& OwnBenches() {
-  static const std::vector<OwnBench> benches = {own_rotary::Bench(), own_encoder::Bench(),  own_turntable::Bench(),
-                                                own_hob::Bench(),    own_circular::Bench(), own_freeform::Bench()};
-  return benches;
-}
-
 std::vector<OwnRun> KeyRuns(const OwnBench& bench, std::size_t together) {
   std::vector<OwnRun> runs;
   for (const std::vector<OwnKey>& group : Grouped(bench.keys, together)) runs.push_back(RunTogether(bench, group));

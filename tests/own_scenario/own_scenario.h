@@ -43,22 +43,3 @@ std::vector<OwnRun> EffectRuns(const OwnBench& bench);
 std::string AlarmOf(const OwnRun& run, const std::string& cache_folder);
 
 }  // namespace twinbench::test
-
-namespace twinbench::own_rotary {
-test::OwnBench Bench();
-}
-namespace twinbench::own_encoder {
-test::OwnBench Bench();
-}
-namespace twinbench::own_turntable {
-test::OwnBench Bench();
-}
-namespace twinbench::own_hob {
-test::OwnBench Bench();
-}
-namespace twinbench::own_circular {
-test::OwnBench Bench();
-}
-namespace twinbench::own_freeform {
-test::OwnBench Bench();
-}

@@ -12,8 +12,7 @@
 namespace twinbench::plausible {
 namespace {
 
-using testing::HasSubstr;
-using testing::IsEmpty;
+using testing::HasSubstr, testing::IsEmpty;
 
 /// A device beside its reference, half a turn forth and back.
 std::vector<Reading> Readings(int count = 200) {

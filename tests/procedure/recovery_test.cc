@@ -10,8 +10,7 @@
 namespace twinbench::procedure {
 namespace {
 
-using test::MemoryLog;
-using test::TextOf;
+using test::MemoryLog, test::TextOf;
 
 std::vector<Reading> Undisturbed(const Scenario& scenario = test::RestlessBench()) {
   MemoryLog log;

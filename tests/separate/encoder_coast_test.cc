@@ -8,10 +8,7 @@
 namespace twinbench::separate::encoder {
 namespace {
 
-using test::MeanOrderChi2;
-using test::ValueOf;
-using test::Wave;
-using test::WorstOrder_arcsec;
+using test::MeanOrderChi2, test::ValueOf, test::Wave, test::WorstOrder_arcsec;
 using units::arcsec;
 
 /// A coasting spindle from closed forms: exponential loss of speed, moved beside it by waves of its angle.

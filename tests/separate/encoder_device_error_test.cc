@@ -7,13 +7,9 @@
 namespace twinbench::separate::encoder {
 namespace {
 
-using testing::Contains;
-using testing::HasSubstr;
-using test::Comparison;
-using test::ValueOf;
-using test::Wave;
-using units::arcsec;
-using units::deg;
+using testing::Contains, testing::HasSubstr;
+using test::Comparison, test::ValueOf, test::Wave;
+using units::arcsec, units::deg;
 
 const std::vector<Wave> kDevice = {{1, 900.0, 0.7}, {2, 400.0, -1.2}, {7, 60.0, 2.0}, {12, 20.0, 0.3}};
 const std::vector<Wave> kReference = {{1, 70.0, 1.3}, {3, 25.0, -0.4}, {12, 9.0, 2.2}};

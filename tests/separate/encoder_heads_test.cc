@@ -8,12 +8,8 @@
 namespace twinbench::separate::encoder {
 namespace {
 
-using test::MeanOrderChi2;
-using test::ValueOf;
-using test::Wave;
-using test::WorstOrder_arcsec;
-using units::arcsec;
-using units::deg;
+using test::MeanOrderChi2, test::ValueOf, test::Wave, test::WorstOrder_arcsec;
+using units::arcsec, units::deg;
 
 /// Heads on one ring, from closed forms: the shaft stands somewhere near each stop, and what the reference shows of it
 /// has an error and a noise of its own.

@@ -7,8 +7,7 @@
 namespace twinbench::separate::encoder {
 namespace {
 
-using test::Comparison;
-using test::ValueOf;
+using test::Comparison, test::ValueOf;
 using units::deg;
 
 const int kSeeds = test::ByNight(200, 60);

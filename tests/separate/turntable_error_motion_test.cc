@@ -10,8 +10,7 @@
 namespace twinbench::benches::turntable {
 namespace {
 
-using separate::turntable::IndexingSeparation;
-using separate::turntable::TurntableStop;
+using separate::turntable::IndexingSeparation, separate::turntable::TurntableStop;
 
 constexpr int kPositions = 36, kTilts = 2;
 constexpr double kHalf_arcsec = 3.0;  // of the turntable's tilt, twice a turn: its extremes lie on positions

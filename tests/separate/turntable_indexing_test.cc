@@ -12,8 +12,7 @@
 namespace twinbench::separate::turntable {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::ElementsAre, testing::HasSubstr;
 
 const std::vector<int> kFourOf36 = {0, 1, 7, 11}, kFourOf72 = {0, 3, 5, 19};
 

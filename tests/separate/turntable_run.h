@@ -11,8 +11,7 @@
 /// program.
 namespace twinbench::separate::turntable {
 
-using units::arcsec;
-using units::deg;
+using units::arcsec, units::deg;
 
 /// Sum of a_k sin(k theta + alpha_k), k = 1, 2, ...
 struct TrueCurve {

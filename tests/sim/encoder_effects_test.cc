@@ -12,9 +12,7 @@
 namespace twinbench {
 namespace {
 
-using test::EncoderEffect;
-using test::EncoderScenario;
-using test::ReadingsWith;
+using test::EncoderEffect, test::EncoderScenario, test::ReadingsWith;
 using units::deg;
 
 constexpr double kTiny_rad = 1e-11;  // rounding of angles of some turns

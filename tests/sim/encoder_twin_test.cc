@@ -12,8 +12,7 @@
 namespace twinbench {
 namespace {
 
-using test::EncoderScenario;
-using test::RunEncoderTwin;
+using test::EncoderScenario, test::RunEncoderTwin;
 using units::deg;
 
 TEST(AngleSchedule, GoesThroughTheSameStopsInBothDirections) {

@@ -11,8 +11,7 @@
 namespace twinbench {
 namespace {
 
-using units::arcsec;
-using units::deg;
+using units::arcsec, units::deg;
 
 /// A noise-free run with errors of everything, two heads, both directions, an interferometer.
 Scenario Machine() {

@@ -12,8 +12,7 @@
 namespace twinbench {
 namespace {
 
-using units::arcsec;
-using units::deg;
+using units::arcsec, units::deg;
 
 /// A machine without errors and noise: one head, one turn each way, 180 samples a turn.
 Scenario QuietMachine() {

@@ -14,8 +14,7 @@
 namespace twinbench {
 namespace {
 
-using units::arcsec;
-using units::deg;
+using units::arcsec, units::deg;
 
 /// Twelve faces without errors, three clampings, without noise.
 Scenario QuietPolygon() {

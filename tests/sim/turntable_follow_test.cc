@@ -12,8 +12,7 @@
 namespace twinbench {
 namespace {
 
-using units::arcsec;
-using units::deg;
+using units::arcsec, units::deg;
 
 /// A noise-free run with errors of both tables, two set-ups, all phases.
 Scenario Careful() {

@@ -9,8 +9,7 @@
 namespace twinbench {
 namespace {
 
-using units::arcsec;
-using units::deg;
+using units::arcsec, units::deg;
 
 /// A bench without errors and noise: 12 positions, one set-up, one pass.
 Scenario QuietTurntable() {

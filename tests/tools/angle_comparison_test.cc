@@ -10,8 +10,7 @@
 namespace twinbench::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
+using testing::HasSubstr, testing::StartsWith;
 
 class AngleComparison : public ProgramHere {
  protected:

@@ -8,8 +8,7 @@
 namespace twinbench::test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::ElementsAre, testing::HasSubstr;
 
 const ClockMark kBegun{"a-b-c", 5000.0, 1.7e9};
 

@@ -4,8 +4,7 @@
 namespace twinbench::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using testing::HasSubstr, testing::Not;
 
 /// The small scenario as believed, and a run of it on a bench with a gain error of 1 % on PSD A x.
 class Diagnose : public ProgramHere {

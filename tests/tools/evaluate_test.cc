@@ -3,8 +3,7 @@
 namespace twinbench::test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::ElementsAre, testing::HasSubstr;
 
 std::vector<std::string> KeysOf(const nlohmann::json& json) {
   std::vector<std::string> keys;

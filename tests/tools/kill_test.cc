@@ -7,8 +7,7 @@
 namespace twinbench::test {
 namespace {
 
-using std::chrono::duration;
-using std::chrono::steady_clock;
+using std::chrono::duration, std::chrono::steady_clock;
 
 /// Runs that are killed in the middle.
 class KilledRun : public ProgramHere {

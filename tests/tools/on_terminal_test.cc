@@ -11,8 +11,7 @@
 namespace twinbench::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using testing::HasSubstr, testing::Not;
 
 constexpr const char* kEscape = "\033";
 

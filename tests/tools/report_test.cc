@@ -4,8 +4,7 @@
 namespace twinbench::test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::HasSubstr, ::testing::Not;
 
 class ReportCommand : public ProgramHere {
  protected:

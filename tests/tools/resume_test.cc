@@ -9,8 +9,7 @@
 namespace twinbench::test {
 namespace {
 
-using std::chrono::duration;
-using std::chrono::steady_clock;
+using std::chrono::duration, std::chrono::steady_clock;
 
 class ResumedRun : public ProgramHere {
  protected:

@@ -4,9 +4,7 @@
 namespace twinbench::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using testing::HasSubstr, testing::Not, testing::StartsWith;
 
 class Run : public ProgramHere {
  protected:

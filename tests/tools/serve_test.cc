@@ -5,8 +5,7 @@
 namespace twinbench::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using testing::HasSubstr, testing::Not;
 
 class Served : public ServedProgram {
  protected:
