@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
-#include "tests/support/changed_scenario.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/follow.h"
 
@@ -97,7 +96,7 @@ TEST(HobFollow, KnowsTheKeysOfTheScenario) {
       {"hob_procedure.hob_speeds_rev_min=[48, 29]", "transmission.feed_forward=0.95",
        "effect=[{ name = \"hysteresis\", lag_arcsec = 4, settles_over_deg = 5 }]"}};
   for (const auto& keys : changes) {
-    const Scenario s = test::Changed(WithoutFreeOrders(), keys);
+    const Scenario s = Altered(WithoutFreeOrders(), keys);
     EXPECT_LT(Off_arcsec(s), s.effects.empty() ? kSame_arcsec : kTurned_arcsec) << keys[0];
   }
 }

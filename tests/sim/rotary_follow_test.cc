@@ -2,7 +2,6 @@
 
 #include "optics/irradiance.h"
 #include "tests/support/angle_benches.h"
-#include "tests/support/changed_scenario.h"
 #include "tests/support/small_scenario.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/follow.h"
@@ -54,7 +53,7 @@ double Apart_m(const test::TwinRun& run) {
 
 /// A bench of which nothing is at its ideal value.
 Scenario RichBench() {
-  return test::Changed(
+  return Altered(
       test::SmallNoiseFree(),
       {"target.harmonics=[{ component = \"ez\", order = 1, amplitude_arcsec = 20, phase_deg = 17 }, "
        "{ component = \"dy\", order = 2, amplitude_um = 3, phase_deg = 57 }]",

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
-#include "tests/support/changed_scenario.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/follow.h"
 #include "twin/sim/table_motion.h"
@@ -113,7 +112,7 @@ TEST(TurntableFollow, KnowsTheKeysOfTheScenario) {
       {"turntable.move_time_s=6", settling}, {"mechanics.fidelity=linear"}, {"multitooth.teeth=720"},
       {"turntable_procedure.phases=[\"verification\", \"full_circle\", \"calibration\"]", creep}};
   for (const auto& keys : changes)
-    EXPECT_LT(TurntableOff_arcsec(test::Changed(Careful(), keys)), kSameTurntable_arcsec) << keys[0];
+    EXPECT_LT(TurntableOff_arcsec(Altered(Careful(), keys)), kSameTurntable_arcsec) << keys[0];
 }
 
 // Settled means within a hundredth of an arcsecond.

@@ -1,32 +1,22 @@
 #pragma once
 
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
+
+#include "twin/core/csv.h"
 
 namespace twinbench::test {
 
 using CsvRow = std::map<std::string, std::string>;  // by column
 
-/// Rows of a plain table of the independent oracle: a header, no quotes, line ends of any system.
+/// Rows of a table of the independent oracle.
 inline std::vector<CsvRow> ReadCsvRows(const std::string& path) {
-  const auto split = [](const std::string& line) {
-    std::vector<std::string> cells;
-    std::istringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell.substr(0, cell.find('\r')));
-    return cells;
-  };
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  const std::vector<std::string> names = split(line);
+  const CsvTable table = ReadCsv(path);
   std::vector<CsvRow> rows;
-  while (std::getline(file, line)) {
-    const std::vector<std::string> cells = split(line);
+  for (const CsvTable::Row& row : table.rows) {
     rows.emplace_back();
-    for (std::size_t i = 0; i < cells.size(); ++i) rows.back()[names[i]] = cells[i];
+    for (std::size_t i = 0; i < row.fields.size(); ++i) rows.back()[table.columns[i]] = row.fields[i];
   }
   return rows;
 }
