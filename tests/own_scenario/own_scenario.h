@@ -21,10 +21,10 @@ std::vector<std::string> Forgotten(const std::string& bench, const std::vector<O
 /// A bench with its keys, and what a run of each has besides.
 struct OwnBench {
   std::string name, scenario;     // in scenarios/
-  std::vector<std::string> base;  // settings that every run has
-  std::vector<OwnKey> keys;
-  std::vector<std::string> effects_base;  // ... and those with an effect
-  int effects_an_alarm = 20;              // an alarm in so many of its effects is not too much
+  std::vector<std::string> base = {};  // settings that every run has
+  std::vector<OwnKey> keys = {};
+  std::vector<std::string> effects_base = {};  // ... and those with an effect
+  int effects_an_alarm = 20;                   // an alarm in so many of its effects is not too much
 };
 const std::vector<OwnBench>& OwnBenches();
 

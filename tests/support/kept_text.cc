@@ -85,9 +85,12 @@ class OfTest : public testing::EmptyTestEventListener {
 
   void OnTestEnd(const testing::TestInfo& test) override {
     if (test.result()->Skipped()) return said_.clear();
-    if (accepts_) Accept();
-    else if (const auto kept = all_.find(Name()); kept != all_.end() && !testing::Test::HasFailure())
+    const auto kept = all_.find(Name());
+    if (accepts_) {
+      Accept();
+    } else if (kept != all_.end() && !testing::Test::HasFailure()) {
       EXPECT_EQ(kept->second.size(), said_.size()) << "texts that are kept and not said: tests/data/texts.txt";
+    }
     said_.clear();
   }
 
