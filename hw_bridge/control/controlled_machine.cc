@@ -65,6 +65,11 @@ bool ControlledMachine::Settles(Duration within) {
   return true;
 }
 
+void ControlledMachine::Stop() {
+  line_.SayFirst(StopWord());
+  SendStop();
+}
+
 void ControlledMachine::Home() {
   SendHome();
   double longest_s = 0.0, passed_s = 0.0;

@@ -37,6 +37,8 @@ class ControlledMachine : public MachineController {
   const std::vector<MachineAxis>& Axes() const override { return axes_; }
   /// In real time: looks every 20 ms whether it is done.
   bool Settles(Duration within) override;
+  /// Said before the controller is identified or prepared, where the connection has to be opened again.
+  void Stop() override;
   void Home() override;
 
  protected:
@@ -56,6 +58,9 @@ class ControlledMachine : public MachineController {
   }
 
  private:
+  /// What is said first of all to a controller that takes it from anybody; empty: there is no such word.
+  virtual std::string StopWord() const = 0;
+  virtual void SendStop() = 0;
   virtual bool AskDone() = 0;
   virtual void SendHome() = 0;
   /// Lets at most `within` pass. @return true as soon as every axis has its origin again.

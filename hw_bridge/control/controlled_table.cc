@@ -72,6 +72,11 @@ TableState ControlledTable::State() {
   return state;
 }
 
+void ControlledTable::Stop() {
+  line_.SayFirst(StopWord());
+  SendStop();
+}
+
 void ControlledTable::Home() {
   SendHome();
   const auto end = FromSeconds(limits_.move_timeout_s);

@@ -23,7 +23,8 @@ class ControlledTable : public RotaryTable {
   void StartMove(double angle_rad) override;
   bool Settles(Duration within) override;
   TableState State() override;
-  void Stop() override { SendStop(); }
+  /// Said before the controller is identified or prepared, where the connection has to be opened again.
+  void Stop() override;
   void Home() override;
 
   /// Takes over the controller's own limits where the bench file gives none.
@@ -42,6 +43,8 @@ class ControlledTable : public RotaryTable {
   /// Lets at most `within` of bench time pass. @return true as soon as the controller says that it has settled.
   virtual bool AwaitSettled(Duration within) = 0;
   virtual TableState ReadState() = 0;
+  /// What SendStop says, without its questions.
+  virtual std::string StopWord() const = 0;
   virtual void SendStop() = 0;
   virtual void SendHome() = 0;
   virtual double ReadLowerLimit_rad() = 0;
@@ -52,7 +55,7 @@ class ControlledTable : public RotaryTable {
   void RequireOrigin(const TableState& now) const;
   void RequireUnderstood(double angle_rad, const TableState& now);
   [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why) {
-    line_.StopAndFail([this] { SendStop(); }, kind, why);
+    line_.StopAndFail([this] { Stop(); }, kind, why);
   }
 
   DeviceLine line_;

@@ -2,12 +2,32 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "hw_bridge/control/waiting.h"
 #include "twin/core/number_text.h"
 
 namespace twinbench::hw {
+namespace {
+
+constexpr Duration kHurriedPatience = std::chrono::seconds(1);
+constexpr auto kHurries = std::chrono::seconds(10);
+
+}  // namespace
+
+Duration DeviceLine::Patience() const {
+  return std::chrono::steady_clock::now() < hurries_until_ ? std::min(timeout_, kHurriedPatience) : timeout_;
+}
+
+void DeviceLine::SayFirst(const std::string& command) {
+  hurries_until_ = std::chrono::steady_clock::now() + kHurries;
+  const Waiting waiting(device_, {});
+  if (!command.empty()) dialogue_->SayFirst(command + "\n", device_, Patience());
+}
 
 std::string DeviceLine::Ask(const std::string& query, Duration beyond) {
-  return dialogue_->Ask(device_, query + "\n", timeout_ + beyond);
+  const Waiting waiting(device_, beyond);
+  return dialogue_->Ask(device_, query + "\n", Patience() + beyond);
 }
 
 double DeviceLine::AskNumber(const std::string& query, double to_SI) {
@@ -25,7 +45,8 @@ long long DeviceLine::AskWholeNumber(const std::string& query, Duration beyond) 
 }
 
 int DeviceLine::Openings() {
-  dialogue_->Open(device_, timeout_);
+  const Waiting waiting(device_, {});
+  dialogue_->Open(device_, Patience());
   return dialogue_->openings();
 }
 

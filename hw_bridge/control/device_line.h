@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <string>
 #include <vector>
@@ -19,11 +20,15 @@ class DeviceLine {
   /// @throws DeviceFault as Dialogue::Ask.
   std::string Ask(const std::string& query, Duration beyond = {});
   /// Says something that is not answered.
-  void Tell(const std::string& command) { dialogue_->Tell(device_, command + "\n", timeout_); }
+  void Tell(const std::string& command) { dialogue_->Tell(device_, command + "\n", Patience()); }
+  /// Says, before anything else, what cannot wait (Dialogue::SayFirst); for some seconds from here on no answer is waited for longer
+  /// than one.
+  /// @param command  Empty: nothing is said first.
+  void SayFirst(const std::string& command);
   /// @throws DeviceFault kProtocol too, unless the whole answer is the number.
   double AskNumber(const std::string& query, double to_SI);
   long long AskWholeNumber(const std::string& query, Duration beyond = {});
-  std::string NextLine() { return dialogue_->NextLine(device_, timeout_); }
+  std::string NextLine() { return dialogue_->NextLine(device_, Patience()); }
 
   /// Makes sure of the connection. @return how many times it has been opened.
   int Openings();
@@ -37,9 +42,12 @@ class DeviceLine {
   [[noreturn]] void FailProtocol(const std::string& query, const std::string& answer, const std::string& expected);
 
  private:
+  Duration Patience() const;
+
   Dialogue* dialogue_;
   std::string device_;
   Duration timeout_;
+  std::chrono::steady_clock::time_point hurries_until_{};
 };
 
 }  // namespace twinbench::hw

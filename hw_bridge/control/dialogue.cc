@@ -39,9 +39,24 @@ void Dialogue::Connect(const std::string& device, Duration patience) {
 void Dialogue::Open(const std::string& device, Duration patience) {
   if (link_) return;
   Connect(device, patience);
+  Meet(device, patience);
+}
+
+/// Behind the opening of the connection.
+void Dialogue::Meet(const std::string& device, Duration patience) {
   Identify(device, patience);
   for (const std::string& introduction : introductions_) Introduce(device, introduction, patience);
   ++openings_;
+}
+
+void Dialogue::SayFirst(const std::string& word, const std::string& device, Duration patience) {
+  if (link_) {
+    if (link_->HasUnread()) Send(device, word, patience);
+    return;
+  }
+  Connect(device, patience);
+  Send(device, word, patience);
+  Meet(device, patience);
 }
 
 bool Dialogue::IsExpected(const std::string& answer) const {

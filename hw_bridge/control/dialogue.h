@@ -29,6 +29,13 @@ class Dialogue {
   /// @throws DeviceFault kTimeout, kDropped, kIdentity.
   void Open(const std::string& device, Duration patience);
 
+  /// Makes sure that a word which cannot wait goes out before anything else that is said from here on: at once behind a new
+  /// opening, before anybody is identified, and where an answer lies about that nobody asked for. Where the conversation is in order nothing is
+  /// sent.
+  /// @param word  With its end; it is not answered.
+  /// @throws DeviceFault as Open.
+  void SayFirst(const std::string& word, const std::string& device, Duration patience);
+
   /// Sends `text`, lines with their ends, and returns the line that comes back.
   /// @throws DeviceFault kTimeout, kDropped, kProtocol, and what Open throws.
   std::string Ask(const std::string& device, const std::string& text, Duration patience);
@@ -46,6 +53,7 @@ class Dialogue {
 
  private:
   void Connect(const std::string& device, Duration patience);
+  void Meet(const std::string& device, Duration patience);
   void ReadOldAnswersAway(Duration patience);
   void Identify(const std::string& device, Duration patience);
   void Introduce(const std::string& device, const std::string& introduction, Duration patience);

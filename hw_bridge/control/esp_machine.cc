@@ -28,12 +28,8 @@ EspMachine::EspMachine(DeviceLine line, std::vector<MachineAxis> axes, std::vect
 void EspMachine::Prepare() {
   const int opening = line().Openings();
   if (opening == prepared_opening_) return;
-  if (IsGroup()) {
-    std::string group = "1HN1";
-    for (std::size_t k = 1; k < Axes().size(); ++k) group += "," + std::to_string(k + 1);
-    TellEsp(line(), group);  // first: a controller of other axes says no
-  }
-  knows_status_ = EspKnows(line(), "1MS?");
+  if (IsGroup()) FormEspGroup(line(), Axes().size());  // first: a controller of other axes says no
+  knows_status_ = EspAnswerTo(line(), "1MS?").has_value();
   for (std::size_t k = 0; k < Axes().size(); ++k) PrepareAxis(k);
   prepared_opening_ = opening;
 }
@@ -169,9 +165,8 @@ AxisState EspMachine::ReadAxis(std::size_t k, const std::function<std::string()>
   return state;
 }
 
-void EspMachine::Stop() {
-  Prepare();
-  TellEsp(line(), "ST");
+void EspMachine::SendStop() {
+  TellEsp(line(), StopWord());
 }
 
 void EspMachine::SendHome() {

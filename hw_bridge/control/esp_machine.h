@@ -19,9 +19,10 @@ class EspMachine : public ControlledMachine {
   void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override;
   bool Settles(Duration within) override;
   std::vector<AxisState> State() override;
-  void Stop() override;
 
  private:
+  std::string StopWord() const override { return "ST"; }
+  void SendStop() override;
   bool AskDone() override;
   void SendHome() override;
   bool FindsOrigin(Duration within) override { return Settles(within); }

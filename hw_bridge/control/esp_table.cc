@@ -33,7 +33,7 @@ void EspTable::Tell(const std::string& command) {
 void EspTable::Prepare() {
   const int opening = line().Openings();
   if (opening == prepared_opening_) return;
-  knows_status_ = EspKnows(line(), Axis("MS?"));
+  knows_status_ = EspAnswerTo(line(), Axis("MS?")).has_value();
   if (line().AskWholeNumber(Axis("SN?")) != kDegrees) Tell("SN" + std::to_string(kDegrees));
   const bool motor_is_off = line().AskWholeNumber(Axis("MO?")) == 0;
   if (motor_is_off && !knows_status_) lost_origin_ = true;
@@ -111,8 +111,7 @@ void EspTable::ReadStatus(TableState& state) {
 }
 
 void EspTable::SendStop() {
-  Prepare();
-  Tell("ST");
+  TellEsp(line(), StopWord());
   done_ = false;
 }
 

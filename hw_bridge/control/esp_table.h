@@ -22,6 +22,7 @@ class EspTable : public ControlledTable {
   void SendMove(const std::string& angle_deg) override;
   bool AwaitSettled(Duration within) override;
   TableState ReadState() override;
+  std::string StopWord() const override { return Axis("ST"); }
   void SendStop() override;
   void SendHome() override;
   double ReadLowerLimit_rad() override;

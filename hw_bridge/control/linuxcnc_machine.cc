@@ -102,16 +102,22 @@ std::string LinuxCncMachine::Errors() {
 }
 
 /// After every opening. Commands are echoed and not acknowledged until it is told otherwise.
-void LinuxCncMachine::Prepare() {
+void LinuxCncMachine::Greet() {
   const int opening = line().Openings();
-  if (opening == prepared_opening_) return;
+  if (opening == greeted_opening_) return;
   line().Ask("set echo off");  // answered by its echo
   Set("verbose on");
   if (!TakesOver()) line().Fail(FaultKind::kRefused, "it refuses the enable_password of the bench file");
   Set("set_wait received");  // else nothing can be said to it while it moves
-  RequireAxes();
   sent_.clear();
-  prepared_opening_ = opening;
+  greeted_opening_ = opening;
+}
+
+void LinuxCncMachine::Prepare() {
+  Greet();
+  if (greeted_opening_ == prepared_opening_) return;
+  RequireAxes();
+  prepared_opening_ = greeted_opening_;
 }
 
 void LinuxCncMachine::RequireAxes() {
@@ -270,14 +276,16 @@ std::vector<AxisState> LinuxCncMachine::State() {
 }
 
 /// Whoever commands it; but whoever has taken the command keeps it, for an emergency stop say, where nothing moves.
-void LinuxCncMachine::Stop() {
-  Prepare();
+void LinuxCncMachine::SendStop() {
+  Greet();
   sent_.clear();
+  if (IsSet("abort")) return;
   if (!IsObeyed()) {
     if (Get("program_status") == "IDLE") return;
     TakesOver();
+    if (IsSet("abort")) return;
   }
-  if (!IsSet("abort") && IsOn()) line().Fail(FaultKind::kRefused, "it refuses to abort: " + InWords(Errors()));
+  if (IsOn()) line().Fail(FaultKind::kRefused, "it refuses to abort: " + InWords(Errors()));
 }
 
 void LinuxCncMachine::SendHome() {

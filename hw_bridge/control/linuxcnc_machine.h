@@ -35,15 +35,18 @@ class LinuxCncMachine : public ControlledMachine {
   /// @throws DeviceFault kRefused: it has no pulses at places of an arc, by which instruments could be latched.
   void StartArc(const Arc& arc) override;
   std::vector<AxisState> State() override;
-  /// What an emergency stop or a loss of power has ended needs no command, and takes none: whether the axes rest is
-  /// for State to say.
-  void Stop() override;
 
  private:
+  /// It takes nothing from somebody who has not said the password.
+  std::string StopWord() const override { return ""; }
+  /// What an emergency stop or a loss of power has ended needs no command, and takes none: whether the axes rest is
+  /// for State to say.
+  void SendStop() override;
   bool AskDone() override;
   void SendHome() override;
   bool FindsOrigin(Duration within) override;
 
+  void Greet();
   void Prepare();
   void RequireAxes();
   std::vector<std::string> Words(const std::string& what, std::size_t least);
@@ -66,7 +69,7 @@ class LinuxCncMachine : public ControlledMachine {
 
   std::vector<LinuxCncAxis> at_;
   std::string enable_password_;
-  int prepared_opening_ = 0;
+  int greeted_opening_ = 0, prepared_opening_ = 0;
   std::vector<double> sent_;  // by the move that goes on; empty: none has been sent
   std::chrono::steady_clock::time_point sent_at_;
 };

@@ -54,7 +54,7 @@ TableState ScpiTable::ReadState() {
 }
 
 void ScpiTable::SendStop() {
-  TellScpi(line(), rotation_ + "STOP");
+  TellScpi(line(), StopWord());
 }
 
 void ScpiTable::SendHome() {

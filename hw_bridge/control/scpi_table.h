@@ -13,6 +13,7 @@ class ScpiTable : public ControlledTable {
   void SendMove(const std::string& angle_deg) override;
   bool AwaitSettled(Duration within) override;
   TableState ReadState() override;
+  std::string StopWord() const override { return rotation_ + "STOP"; }
   void SendStop() override;
   void SendHome() override;
   double ReadLowerLimit_rad() override;

@@ -1,6 +1,7 @@
 #include "hw_bridge/replay/replay_machine.h"
 
 #include "twin/core/device_fault.h"
+#include "twin/core/nothing_moves.h"
 #include "twin/core/run_record.h"
 
 namespace twinbench::hw {
@@ -59,7 +60,7 @@ void ReplayMachine::PassAttempt() {
 std::string ReplayMachine::Answer(const std::string& device, const std::string& request) {
   if (device == "machine" && request == "stop") {  // behind a fault; the record keeps nothing of it
     may_begin_ = true;
-    throw BenchError("a recording is not stopped");
+    throw NothingMoves();
   }
   if (AtAttempt()) PassAttempt();
   const DeviceCall& call = calls_.Next(device, request);
@@ -68,6 +69,7 @@ std::string ReplayMachine::Answer(const std::string& device, const std::string& 
 }
 
 Time ReplayMachine::Now() {
+  if (may_begin_ && AtAttempt()) PassAttempt();
   const bool was_looked_at =
       !calls_.AtEnd() && calls_.Ahead().device == kClockDevice && calls_.Ahead().request == kClockShows;
   if (was_looked_at) now_ = calls_.Next(kClockDevice, kClockShows).time;

@@ -131,6 +131,16 @@ TEST_P(DialogueOver, AnAnswerThatNobodyAskedForEndsTheConnection) {
   EXPECT_EQ(talk.Ask("C?"), "3");
 }
 
+TEST_P(DialogueOver, AWordThatCannotWaitGoesOutBehindAnAnswerThatNobodyAskedForAndBeforeAnIdentity) {
+  Talk talk(WithIdentity([&](const std::string& line) { return Reply{line == "A?" ? "1\n2\n" : ""}; }), GetParam());
+  EXPECT_EQ(talk.Ask("A?"), "1");
+  talk.dialogue.SayFirst("STOP\n", "target", kPatience);
+  talk.dialogue.Close();
+  talk.dialogue.SayFirst("STOP\n", "target", kPatience);
+  talk.dialogue.SayFirst("STOP\n", "target", kPatience);  // in order: the command itself will do
+  EXPECT_EQ(talk.controller->Lines(), (std::vector<std::string>{"*IDN?", "A?", "STOP", "STOP", "*IDN?"}));
+}
+
 TEST(Dialogue, ALineWithoutEndIsRefusedAndNotKeptAndHalfAnAnswerAndThenTheEndIsNone) {
   const std::pair<Reply, FaultKind> cases[] = {{{std::string(100'000, '7')}, FaultKind::kProtocol},
                                                {{"12.", 0, true}, FaultKind::kDropped}};

@@ -25,6 +25,7 @@ struct EspGroupModel {
   std::array<double, 2> at_mm{};
   std::array<bool, 2> motor_on = {true, true};
   int decimals = 4, error = 0;
+  std::string group;  // that somebody else has formed: "1,2"; it cannot be formed again
 
   /// Several questions stand on one line.
   FakeController::Reply operator()(const std::string& line) {
@@ -45,6 +46,7 @@ struct EspGroupModel {
     const std::size_t axis = command[0] == '2' ? 1 : 0;
     const std::string verb = command.substr(command.find_first_not_of("0123456789"));
     if (verb == "SN?") return "2";
+    if (verb == "HN?") return group;
     if (verb == "MO?") return motor_on[axis] ? "1" : "0";
     if (verb == "MD?") return "1";
     if (verb == "PA?" || verb == "TP?") return fmt::format("{}", at_mm[axis]);
@@ -58,6 +60,7 @@ struct EspGroupModel {
     if (verb == "MO") motor_on[axis] = true;
     if (verb == "OR") at_mm = {0.0, 0.0};
     if (verb == "MS?") error = 6;
+    if (verb.starts_with("HN") && !group.empty()) error = 16;
     if (!verb.starts_with("HL")) return;
     const std::string places = verb.substr(2);
     const auto comma = places.find(',');
@@ -108,6 +111,25 @@ TEST_F(EspMachineWithoutStatus, AnAxisWhoseMotorIsOffAtTheStartHasNoOrigin) {
   Restart();
   EspMachine machine = Machine();
   EXPECT_EQ(test::KindOf([&] { machine.StartMove({0.01, 0.0}, 0.0); }), FaultKind::kRestarted);
+}
+
+TEST_F(EspMachineWithoutStatus, AGroupThatIsThereAlreadyIsOursIfItIsOfOurAxes) {
+  model_.group = "1, 2";
+  EXPECT_NO_THROW(Machine().State());
+  model_.group = "2,3";
+  EXPECT_EQ(test::KindOf([&] { Machine().State(); }), FaultKind::kRefused);
+}
+
+TEST_F(EspMachineWithoutStatus, AStopIsSaidBeforeAnythingElseWheneverTheConnectionIsNew) {
+  model_.group = "2,3";  // nothing but a stop is taken by it
+  EspMachine machine = Machine();
+  machine.Stop();
+  EXPECT_EQ(controller_.Lines().front(), "ST");
+  dialogue_.Close();
+  const std::size_t said = controller_.Lines().size();
+  machine.Stop();
+  EXPECT_EQ(controller_.Lines()[said], "ST");
+  EXPECT_THAT(controller_.Lines(), testing::Not(Contains(HasSubstr("HN"))));
 }
 
 TEST_F(EspMachineWithoutStatus, NumbersHaveNoMoreDecimalsThanTheControllerUnderstands) {

@@ -40,8 +40,10 @@ struct LinuxCncModel {
     std::string upper = name;
     for (char& c : upper) c = static_cast<char>(std::toupper(c));
     if (line.starts_with("get ")) return {upper + " " + told[name] + "\r\n"};
-    if (line == "set enable WRONG" || (name != "enable" && name != "verbose" && name != "set_wait" && !accepts))
+    const bool is_obeyed = accepts && told["enable"] == "ON";
+    if (line == "set enable WRONG" || (name != "enable" && name != "verbose" && name != "set_wait" && !is_obeyed))
       return {"SET " + upper + " NAK\n\r"};
+    if (name == "enable") told["enable"] = "ON";
     if (name == "mode") told["mode"] = line == "set mode mdi" ? "MDI" : "MANUAL";
     if (name == "home") told["joint_homed"] = "YES YES YES";
     if (name == "mdi") obey(*this, line.substr(8));
@@ -144,15 +146,20 @@ TEST_F(OnLinuxCnc, TheCommandIsTakenBackFromAnotherProgramToStopAMoveOnly) {
   const auto times_taken = [&] { return std::ranges::count(controller_.Lines(), "set enable EMCTOO"); };
   ASSERT_EQ(times_taken(), 1);
   model_.told["enable"] = "OFF";
-  model_.accepts = false;
   EXPECT_KEPT(TextWithoutAddress([&] { machine.StartMove({0.0, 0.0}, 0.0); }));
   machine.Stop();
   EXPECT_EQ(times_taken(), 1) << "nothing moves, and whoever has it may be about to press the emergency stop";
   model_.told["program_status"] = "RUNNING";
-  model_.accepts = true;
   machine.Stop();
   EXPECT_EQ(times_taken(), 2);
   EXPECT_EQ(controller_.Lines().back(), "set abort");
+}
+
+TEST_F(OnLinuxCnc, AStopOnANewConnectionComesBeforeAnyLookAtItsAxes) {
+  model_.told["joint_type"] = "LINEAR LINEAR LINEAR";  // another machine than the file's; it is stopped all the same
+  Machine().Stop();
+  EXPECT_EQ(controller_.Lines().back(), "set abort");
+  EXPECT_THAT(controller_.Lines(), testing::Not(Contains(HasSubstr("joint"))));
 }
 
 TEST_F(OnLinuxCnc, WhatItIsNotIsRefusedAtTheFirstCallAndSoAreCircles) {

@@ -153,7 +153,7 @@ TEST_P(TurningContract, TurnsUntilItIsStopped) {
   EXPECT_FALSE(bench.machine.Settles(std::chrono::seconds(10)));
   EXPECT_TRUE(bench.machine.State()[0].moving);
   EXPECT_NEAR(bench.machine.State()[0].encoder, 45.0, 0.01) << "5 in the mean of the ramp, 40 behind it";
-  EXPECT_TRUE(procedure::StopMachine(bench).is_sure);
+  EXPECT_TRUE(procedure::StopMachine(bench, {}).is_sure);
   EXPECT_FALSE(bench.machine.State()[0].moving);
 }
 

@@ -304,13 +304,13 @@ TEST(MachineFaults, AStopIsReadBack) {
   devices.simulation->Restart();
   devices.machine.StartMove({0.0, 0.0}, 1e-3);
   EXPECT_TRUE(devices.machine.State()[0].moving);
-  EXPECT_TRUE(procedure::StopMachine(devices).is_sure);
+  EXPECT_TRUE(procedure::StopMachine(devices, {}).is_sure);
   EXPECT_FALSE(devices.machine.State()[0].moving);
 
+  devices.machine.StartMove({0.0, 0.0}, 1e-3);
   bench.served.Inject("machine,mute");
-  const procedure::Standstill unknown = procedure::StopMachine(devices);
-  EXPECT_FALSE(unknown.is_sure);
-  EXPECT_THAT(unknown.why_not, HasSubstr("no answer in time"));
+  EXPECT_TRUE(procedure::StopMachine(devices, {}).is_sure) << "a lost answer is no reason to give up";
+  EXPECT_FALSE(devices.machine.State()[0].moving);
 }
 
 /// A served twin at the pace of the world whose clock nobody holds is what hardware is.
@@ -326,7 +326,7 @@ TEST(MachineFaults, AStopIsHeardAtOnceInRealTime) {
   MachineBench devices = opened->Devices();
   const std::vector<AxisState> at = devices.machine.State();
   devices.machine.StartMove({at[0].encoder + 1e-3, at[1].encoder}, 1e-4);  // takes 10 s
-  EXPECT_FALSE(procedure::WhetherMachineStands(devices).is_sure);
+  EXPECT_FALSE(procedure::WhetherMachineStands(devices, {}).is_sure);
   std::jthread operator_([&is_asked] {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     is_asked = true;
@@ -334,8 +334,8 @@ TEST(MachineFaults, AStopIsHeardAtOnceInRealTime) {
   const auto begun = std::chrono::steady_clock::now();
   EXPECT_THROW(devices.machine.Settles(std::chrono::seconds(1)), DeviceFault);
   EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::milliseconds(500)) << "not the second that it may take";
-  EXPECT_TRUE(procedure::StopMachine(devices).is_sure);
-  EXPECT_TRUE(procedure::WhetherMachineStands(devices).is_sure);
+  EXPECT_TRUE(procedure::StopMachine(devices, {}).is_sure);
+  EXPECT_TRUE(procedure::WhetherMachineStands(devices, {}).is_sure);
 }
 
 TEST(MachineFaults, AnOperatorWhoSaysStopIsHeardInTheMiddleOfASweep) {

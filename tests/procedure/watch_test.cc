@@ -192,9 +192,9 @@ test::TroubledBench::Trouble OnceAfterFive(const test::MemoryLog& log, const std
   };
 }
 
-Standstill AfterTheStop(ScriptedBench& scripted) {
+Standstill AfterTheStop(ScriptedBench& scripted, const Options& options = {}) {
   RotaryBench bench = scripted.Bench();
-  return StopBoth(bench);
+  return StopBoth(bench, options);
 }
 
 TEST(StopBoth, IsSureOfTablesThatSayThatTheyStandAndDo) {
@@ -215,19 +215,16 @@ TEST(StopBoth, IsNotSureOfAFrozenControllerThatStillSaysMoving) {
   EXPECT_KEPT(stands.why_not);
 }
 
-TEST(StopBoth, BelievesTheEncoderMoreThanTheControllersWord) {
+/// More is asked in rest_test.cc.
+TEST(StopBoth, StopsBothByTheirOwnLimits) {
   ScriptedBench bench;
-  bench.target.while_looked_at = [](ScriptedTable& table) { table.state.encoder_rad += 1e-3; };
-  EXPECT_FALSE(AfterTheStop(bench).is_sure);
-}
-
-TEST(StopBoth, WaitsForATableThatTakesTimeToComeToRest) {
-  ScriptedBench bench;
-  int looks = 0;
-  bench.target.while_looked_at = [&looks](ScriptedTable& table) {
-    table.state.encoder_rad += ++looks < 5 ? 1e-3 : 0.0;
-  };
-  EXPECT_TRUE(AfterTheStop(bench).is_sure);
+  bench.target.while_looked_at = [](ScriptedTable& table) { table.state.encoder_rad += 8.0 * units::arcsec; };
+  Options options;
+  options.target.in_position_rad = 20.0 * units::arcsec;
+  options.reference.in_position_rad = 1.0 * units::arcsec;
+  EXPECT_TRUE(AfterTheStop(bench, options).is_sure) << "it may be 20 arcsec off";
+  std::swap(bench.target.while_looked_at, bench.reference.while_looked_at);
+  EXPECT_FALSE(AfterTheStop(bench, options).is_sure);
 }
 
 TEST(StopBoth, OneThatDoesNotAnswerKeepsNobodyFromStoppingTheOther) {

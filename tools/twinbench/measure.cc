@@ -20,6 +20,7 @@
 #include "tools/twinbench/rehearsal.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/stop_signal.h"
+#include "tools/twinbench/told_link.h"
 #include "tools/twinbench/told_stopped.h"
 #include "twin/benches/claims.h"
 #include "twin/benches/registry.h"
@@ -83,14 +84,17 @@ void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, 
                 const std::string& kind, LivePage& page) {
   ProgressLine line;
   options.log = &record;
+  if (kind != "replay") options.hear_fault = TellFault;
+  const LinkWatch watch;
   if (bench.simulation) bench.simulation->Restart();
   StandingCheck stands;
-  if (kind != "replay") stands = [&bench] { return procedure::WhetherBothStand(bench); };
+  if (kind != "replay") stands = [&] { return procedure::WhetherBothStand(bench, options); };
   try {
     procedure::CarryOut(bench, scenario, record, page.ShownToo(ShownOn(line), stands), options);
   } catch (const std::exception& fault) {
+    const auto* stopped = dynamic_cast<const procedure::StoppedRun*>(&fault);
     if (kind == "replay") throw;  // of a recording's tables nothing can be asked
-    TellStopped(fault, "tables", procedure::StopBoth(bench));
+    TellStopped(fault, "tables", stopped ? stopped->stands() : procedure::StopBoth(bench, options));
   }
   ListenNoMore();
   record.Finish();
@@ -141,7 +145,7 @@ void Measure(const MeasureOptions& o, LivePage& page, JsonAnswer& answer) {
   const RunFolder folder = FolderOf(o);
   BegunRun begun = TakeUpIfAsked(o, scenario, folder);
   const bool resumes = begun.record != nullptr;
-  ListenForStop();
+  ListenForStop(kStopIsHeard);
   if (!resumes || !begun.record->finished()) MeasureInto(folder, scenario, file, std::move(begun), options, page);
   EvaluateRun(scenario, folder.path, answer);
 }

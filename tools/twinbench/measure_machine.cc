@@ -11,6 +11,7 @@
 #include "tools/twinbench/opened_again.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/stop_signal.h"
+#include "tools/twinbench/told_link.h"
 #include "tools/twinbench/told_stopped.h"
 #include "twin/benches/claims.h"
 #include "twin/benches/registry.h"
@@ -114,14 +115,17 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
   MachineBench bench = opened.Devices();
   ProgressLine line;
   options.log = &record;
+  if (kind != "replay") options.hear_fault = TellFault;
+  const LinkWatch watch;
   StandingCheck stands;
-  if (kind != "replay") stands = [&bench] { return procedure::WhetherMachineStands(bench); };
+  if (kind != "replay") stands = [&] { return procedure::WhetherMachineStands(bench, options); };
   if (bench.simulation && options.kept.empty()) bench.simulation->Restart();
   try {
     BenchOf(scenario).drive(bench, scenario, record, page.ShownToo(ShownOn(line), stands), options);
   } catch (const std::exception& fault) {
+    const auto* stopped = dynamic_cast<const procedure::StoppedRun*>(&fault);
     if (kind == "replay") throw;  // of a recording's axes nothing can be asked
-    TellStopped(fault, "axes", procedure::StopMachine(bench));
+    TellStopped(fault, "axes", stopped ? stopped->stands() : procedure::StopMachine(bench, options));
   }
   ListenNoMore();
   record.Finish();
@@ -151,7 +155,7 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage&
     return answer.Write(RehearsalJson(RehearseMachineFirst(scenario, parts.axes, OpenAnyMachine(file, scenario, parts, {})->Limits()), parts.axes));
   const RunFolder folder = FolderOf(o);
   BegunRun begun = TakeUpIfAsked(o, scenario, folder);
-  ListenForStop();
+  ListenForStop(kStopIsHeard);
   if (!begun.record || !begun.record->finished()) {
     const hw::BenchLock lock(hw::AddressesOf(file), "measure into " + folder.path);
     const Duration since_begin = SinceBegin(begun);

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "twin/core/device_fault.h"
 #include "twin/core/machine.h"
 #include "twin/core/run_log.h"
 #include "twin/procedure/options.h"
@@ -18,6 +19,7 @@ struct MachineOptions {
   bool may_home = true;  // whether axes that have lost their origin may be driven to find it
   RunLog* log = nullptr;                      // none: only readings are kept, and the first fault ends the run
   std::function<bool()> stop_requested = {};  // asked between moves, waits and readings
+  std::function<void(const DeviceFault&)> hear_fault = {};  // before anything is done about it
   std::vector<Reading> kept = {};             // of a resumed run, which goes on behind these
 };
 

@@ -23,16 +23,26 @@ constexpr double kTraverseAtLeast_m_s = 1e-3, kTurnAtLeast_rad_s = 1.0 * units::
 /// A run on a real bench keeps what it has at once; simulated readings come too fast to be waited for one by one.
 constexpr std::size_t kTogetherWatched = 32, kTogetherAlone = 256;
 
+double Radius_m(const Arc& arc, const std::vector<AxisState>& from) {
+  return std::hypot(from[arc.axes[0]].encoder - arc.centre_m[0], from[arc.axes[1]].encoder - arc.centre_m[1]);
+}
+
 }  // namespace
 
 MachineSequencer::MachineSequencer(MachineBench bench, const MachinePlan& plan, ReadingSink& sink,
                                    const MachineOptions& options, const ProgressCallback& progress,
                                    MachineRunState& state)
-    : bench_(bench), plan_(plan), sink_(sink), options_(options), progress_(progress), state_(state) {}
+    : bench_(bench), plan_(plan), sink_(sink), options_(options), progress_(progress), state_(state), where_(bench_.machine.Axes(), options.axes) {}
 
 std::vector<double> MachineSequencer::Where() {
   std::vector<double> at;
   for (const AxisState& axis : bench_.machine.State()) at.push_back(axis.encoder);
+  return at;
+}
+
+std::vector<double> MachineSequencer::WhereSent() {
+  std::vector<double> at;
+  for (const AxisState& axis : bench_.machine.State()) at.push_back(std::isnan(axis.commanded) ? axis.encoder : axis.commanded);
   return at;
 }
 
@@ -80,16 +90,24 @@ void MachineSequencer::MoveTo(const std::vector<double>& to) {
   Move(to, [] {});
 }
 
+/// Nobody else may have sent it anywhere since it was last looked at.
+std::vector<AxisState> MachineSequencer::LookBeforeMotion() {
+  std::vector<AxisState> states = bench_.machine.State();
+  where_.RequireOurs(states);
+  return states;
+}
+
 void MachineSequencer::Move(const std::vector<double>& to, const std::function<void()>& meanwhile) {
   HearOperator(options_);
-  RequireMayGo(bench_, to, options_);
-  const std::vector<double> from = Where();
+  const std::vector<AxisState> from = LookBeforeMotion();
+  RequireMayGo(axes(), from, to, options_);
   double takes_s = 0.0;
   for (std::size_t k = 0; k < to.size(); ++k)
-    takes_s += std::abs(to[k] - from[k]) / (axes()[k].is_rotary ? kTurnAtLeast_rad_s : kTraverseAtLeast_m_s);
+    takes_s += std::abs(to[k] - from[k].encoder) / (axes()[k].is_rotary ? kTurnAtLeast_rad_s : kTraverseAtLeast_m_s);
   bench_.machine.StartMove(to, 0.0);
+  where_.SentTo(to);
   meanwhile();
-  Watch(bench_, takes_s, options_);
+  Watch(bench_, takes_s, where_, options_);
 }
 
 void MachineSequencer::MoveAndIndex(const std::vector<double>& to, int tooth, double tooth_rad) {
@@ -105,33 +123,37 @@ void MachineSequencer::Index(int tooth, double tooth_rad) {
   bench_.indexer->IndexTo(tooth, tooth_rad);
 }
 
-double MachineSequencer::PathTime_s(const Arc& arc) {
-  const std::vector<double> at = Where();
-  const double radius_m = std::hypot(at[arc.axes[0]] - arc.centre_m[0], at[arc.axes[1]] - arc.centre_m[1]);
+double MachineSequencer::PathTime_s(const Arc& arc, double radius_m) const {
   return std::abs(arc.sweep_rad) * radius_m / (arc.feed_m_s > 0.0 ? arc.feed_m_s : kTraverseAtLeast_m_s);
 }
 
 void MachineSequencer::Go(const Arc& arc) {
   HearOperator(options_);
-  const double takes_s = PathTime_s(arc);
+  const std::vector<AxisState> from = LookBeforeMotion();
   bench_.machine.StartArc(arc);
-  Watch(bench_, takes_s, options_);
+  where_.SentRound(arc, from);
+  Watch(bench_, PathTime_s(arc, Radius_m(arc, from)), where_, options_);
 }
 
 void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
   HearOperator(options_);
   if (options_.log) options_.log->RequireRoom();
-  const double takes_s = PathTime_s(arc);
+  const std::vector<AxisState> from = LookBeforeMotion();
+  const double radius_m = Radius_m(arc, from);
   int next = first;
+  Time first_time{};
   Arm(end - first, 0);
   bench_.machine.StartArc(arc);
-  Watch(bench_, takes_s, options_, [&] {
+  where_.SentRound(arc, from);
+  Watch(bench_, PathTime_s(arc, radius_m), where_, options_, [&] {
     const LatchedSamples latched = Latched();
     if (latched.overrun)
       throw DeviceFault(FaultKind::kOverrun, "instruments", "their memory ran full; samples are lost");
     for (const Reading& sample : latched.samples) {
       if (next == end)
         throw DeviceFault(FaultKind::kProtocol, "instruments", "more samples came than there were triggers");
+      if (next == first) first_time = sample.time;
+      RequirePace(arc, radius_m, next - first, first_time, sample.time);
       Keep(next++, sample);
     }
   });
@@ -139,6 +161,18 @@ void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
     throw DeviceFault(
         FaultKind::kGap, "instruments",
         fmt::format("the path has ended and {} of {} triggers latched nothing", end - next, end - first));
+}
+
+/// Of a sample, against the first one.
+void MachineSequencer::RequirePace(const Arc& arc, double radius_m, int trigger, Time first, Time now) const {
+  constexpr double kShare = 0.1, kStamped_s = 1.0;  // an instrument may stamp when it is looked at
+  if (arc.feed_m_s <= 0.0) return;
+  const double takes_s = trigger * arc.trigger_step_rad * radius_m / arc.feed_m_s, took_s = ToSeconds(now - first);
+  if (std::abs(took_s - takes_s) <= kShare * takes_s + kStamped_s) return;
+  throw DeviceFault(FaultKind::kFollowing, "machine",
+                    fmt::format("took {:.3g} s from the first trigger to the {}th and takes {:.3g} s at its feed of {:.6g} mm/min: is an "
+                                "override set?",
+                                took_s, trigger + 1, takes_s, arc.feed_m_s / units::mm * 60.0));
 }
 
 void MachineSequencer::Arm(int samples, int lines) {
@@ -155,8 +189,18 @@ LatchedSamples MachineSequencer::Latched() {
 
 void MachineSequencer::StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) {
   HearOperator(options_);
-  RequireMayTurn(bench_, options_);
+  LookAtTurning();
+  const Time before = Now();
   bench_.machine.StartTurning(axis, speed_rad_s, ramp);
+  where_.Released(axis);
+  turning_.Told(before, Now(), speed_rad_s, ramp);
+}
+
+AxisState MachineSequencer::LookAtTurning() {
+  const Time before = Now();
+  const AxisState state = RequireMayTurn(bench_, options_)[0];
+  turning_.Look(axes()[0], state.encoder, before, Now());
+  return state;
 }
 
 void MachineSequencer::Turn(std::size_t axis, double speed_rad_s, Duration ramp) {
@@ -174,21 +218,8 @@ void MachineSequencer::TakeInMotion(int reading, Time due, Duration late, const 
     throw DeviceFault(FaultKind::kOverrun, "instruments",
                       fmt::format("a reading in motion came {:.3g} s late: they answer more slowly than they are asked",
                                   ToSeconds(now - due)));
-  RequireTurned(reading, RequireMayTurn(bench_, options_)[0].encoder);
+  LookAtTurning();
   Keep(reading, sample, enter);
-}
-
-/// Against the way that is planned since the reading before.
-void MachineSequencer::RequireTurned(int reading, double now_rad) {
-  constexpr double kShare = 0.1, kNoWay_rad = 1e-6;
-  const auto planned_rad = [this](int k) { return plan()[static_cast<std::size_t>(k)].reference_rad; };
-  if (turned_ && turned_->first + 1 == reading) {
-    const double way_rad = std::abs(planned_rad(reading) - planned_rad(reading - 1));
-    if (way_rad > kNoWay_rad && std::abs(now_rad - turned_->second) < kShare * way_rad)
-      throw DeviceFault(FaultKind::kStalled, axes()[0].name,
-                        fmt::format("should turn, and stands at {:.6f} deg", now_rad / units::deg));
-  }
-  turned_ = {reading, now_rad};
 }
 
 void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
@@ -199,7 +230,7 @@ void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
   Duration in_vain{0};
   for (int next = first; next < end;) {
     WaitFor(bench_, poll, options_);
-    RequireMayTurn(bench_, options_);
+    LookAtTurning();
     const LatchedSamples latched = Latched();
     for (const Reading& sample : latched.samples) {
       if (next == end)
@@ -240,11 +271,13 @@ Reading MachineSequencer::ReadAtRest(std::vector<Stood>& stood) {
 /// @param stood  One entry an axis; made by the first look.
 void MachineSequencer::LookAtAxes(std::vector<Stood>& stood, double Stood::*when) {
   const std::vector<AxisState> states = bench_.machine.State();
+  where_.RequireOurs(states);
   for (std::size_t k = 0; k < states.size(); ++k) {
     if (k == stood.size()) {
-      const double tolerance = k < options_.axes.size() ? options_.axes[k].in_position : AxisLimits{}.in_position;
-      stood.push_back({axes()[k].name, axes()[k].is_rotary, states[k].commanded, kNaN, kNaN, tolerance});
+      const double sent = where_.Sent(k, states[k]), at = std::isnan(sent) ? states[k].encoder : sent;
+      stood.push_back({axes()[k].name, axes()[k].is_rotary, at, kNaN, kNaN, where_.Tolerance(k)});
     }
+    if (states[k].moving) throw DeviceFault(FaultKind::kMoved, axes()[k].name, "moves while it is read, as its controller says");
     stood[k].*when = StoodAt(axes()[k], states[k]);
   }
 }
@@ -381,15 +414,17 @@ void CarryOutPlan(MachineBench& bench, const MachinePlan& plan, const MachineWay
       way(sequencer);
       return sequencer.Flush();
     } catch (const DeviceFault& fault) {
-      StopMachine(bench);
+      if (options.hear_fault) options.hear_fault(fault);
+      const Standstill stands = StopMachine(bench, options);
       sequencer.Flush();
       if (options.log) options.log->ForgetCalls();
       const int next = static_cast<int>(state.kept.size());
       NoteFailure(options.log, next, TimeOf(bench, state), fault);
-      if (!options.log || !IsWorthAnotherAttempt(fault.kind()) || !attempts.AnotherAt(next)) throw;
+      if (!options.log || !stands.is_sure || !IsWorthAnotherAttempt(fault.kind()) || !attempts.AnotherAt(next))
+        throw StoppedRun(fault, stands);
       state.lost_origin = fault.kind() == FaultKind::kRestarted && !bench.simulation;
     } catch (...) {  // whatever it is, nothing goes on moving
-      StopMachine(bench);
+      StopMachine(bench, options);
       throw;
     }
   }

@@ -4,6 +4,8 @@
 
 #include "twin/procedure/machine_options.h"
 #include "twin/procedure/stood.h"
+#include "twin/procedure/turning.h"
+#include "twin/procedure/whereabouts.h"
 
 namespace twinbench::procedure {
 
@@ -36,6 +38,8 @@ class MachineSequencer {
   Time Now() const { return bench_.clock.Now(); }
   /// Where the axes stand, by their encoders.
   std::vector<double> Where();
+  /// Where their controller has sent them: its targets, or their encoders where it tells none.
+  std::vector<double> WhereSent();
 
   /// The first reading of [first, end) that is to be gone for; `end` if there is none.
   int From(int first, int end) const;
@@ -65,6 +69,7 @@ class MachineSequencer {
   /// Goes round without taking anything.
   void Go(const Arc& arc);
   /// Goes round; the arc's triggers take the readings [first, end).
+  /// @throws DeviceFault kFollowing for one that is not gone round at its feed, within a tenth; what Watch throws.
   void Sweep(const Arc& arc, int first, int end);
   /// Lets an axis go over to a speed; returns at once.
   void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp);
@@ -73,15 +78,16 @@ class MachineSequencer {
   /// Takes the readings [first, end) from the instruments' memory, one at every so many lines of the encoder that they
   /// count, while an axis turns.
   /// @param poll  From look to look.
-  /// @throws DeviceFault kOverrun if their memory ran full between two looks; kStalled if nothing comes for a minute.
+  /// @throws DeviceFault kOverrun if their memory ran full between two looks; kStalled if nothing comes for a minute; kStalled,
+  ///         kFollowing for an axis that does not turn as it was told.
   void Collect(int first, int end, int lines, Duration poll);
   /// Takes a reading when it is due, and so long behind the end of the last move that nothing settles any more.
   /// @param enter  What the way knows by now and the plan did not.
   void TakeAtRest(int reading, Duration dwell, const std::function<void(Reading&)>& enter = {});
   /// Takes a reading at an instant while an axis turns, which is looked at behind it.
   /// @param late  Behind `due`: what the bench may be.
-  /// @throws DeviceFault kOverrun for a bench that is later; kStalled for an axis that has not gone a tenth of the way since
-  ///         the reading before; kLimit, kRestarted, kRefused as RequireMayTurn.
+  /// @throws DeviceFault kOverrun for a bench that is later; kStalled, kFollowing for an axis that does not turn as it was told;
+  ///         kLimit, kRestarted, kRefused as RequireMayTurn.
   void TakeInMotion(int reading, Time due, Duration late, const std::function<void(Reading&)>& enter = {});
   /// What the instruments show on the way to a reading.
   Reading Look();
@@ -98,11 +104,13 @@ class MachineSequencer {
   void WaitUntilDue(int reading, Duration dwell);
   Reading ReadAtRest(std::vector<Stood>& stood);
   void LookAtAxes(std::vector<Stood>& stood, double Stood::*when);
-  void RequireTurned(int reading, double now_rad);
+  std::vector<AxisState> LookBeforeMotion();
+  AxisState LookAtTurning();
+  void RequirePace(const Arc& arc, double radius_m, int trigger, Time first, Time now) const;
   void Keep(int reading, const Reading& sample, const std::function<void(Reading&)>& enter = {});
   Reading Joined(const Reading& planned, const Reading& sample) const;
   void RequireSame(const Reading& reading) const;
-  double PathTime_s(const Arc& arc);
+  double PathTime_s(const Arc& arc, double radius_m) const;
   std::size_t Together() const;
 
   MachineBench bench_;
@@ -113,7 +121,8 @@ class MachineSequencer {
   MachineRunState& state_;
   std::vector<Reading> taken_;  // not yet kept
   Time armed_{};                // when the instruments last were
-  std::optional<std::pair<int, double>> turned_;  // last reading in motion, and where its axis then was
+  Whereabouts where_;
+  Turning turning_;  // of the first axis
 };
 
 /// For a bench of one axis that turns.

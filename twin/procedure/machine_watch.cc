@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 #include "twin/core/device_fault.h"
+#include "twin/procedure/rest.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -14,9 +14,6 @@ namespace {
 constexpr Duration kMachineLook = std::chrono::seconds(1);
 constexpr Duration kMachineSlice = std::chrono::seconds(5);
 constexpr Duration kUnwatched = std::chrono::hours(1);
-constexpr int kLooksAtStopping = 20;
-constexpr Duration kBetweenLooks = std::chrono::milliseconds(500);
-constexpr double kCreeps = 5e-5;       // m or rad between two of these looks: more than encoders flicker
 constexpr double kStandsStill = 1e-9;  // m or rad: less than any encoder shows
 
 std::string Place(const MachineAxis& axis, double at) {
@@ -37,8 +34,8 @@ void CheckHealth(const MachineAxis& axis, const AxisState& state) {
 /// Looks at a moving machine every second.
 class MachineWatcher {
  public:
-  MachineWatcher(MachineBench& bench, double takes_s, const MachineOptions& options)
-      : bench_(bench), takes_s_(takes_s), options_(options) {}
+  MachineWatcher(MachineBench& bench, double takes_s, const Whereabouts& where, const MachineOptions& options)
+      : bench_(bench), takes_s_(takes_s), where_(where), options_(options) {}
 
   void Look() {
     const std::vector<AxisState> states = bench_.machine.State();
@@ -68,16 +65,22 @@ class MachineWatcher {
     for (std::size_t k = 0; k < states.size(); ++k) {
       const MachineAxis& axis = bench_.machine.Axes()[k];
       CheckHealth(axis, states[k]);
-      const double off = states[k].encoder - states[k].commanded;
-      const bool on_switch = states[k].limit != 0;  // some controllers count it as the end of a motion
-      if (!on_switch && (std::abs(off) <= LimitsOf(options_, k).in_position || std::isnan(off))) continue;
-      throw DeviceFault(on_switch ? FaultKind::kLimit : FaultKind::kNotInPosition, axis.name,
-                        fmt::format("was sent to {} and stands at {}{}", Place(axis, states[k].commanded),
-                                    Place(axis, states[k].encoder), on_switch ? ", on a limit switch" : ""));
+      if (states[k].limit != 0)  // some controllers count it as the end of a motion
+        throw DeviceFault(FaultKind::kLimit, axis.name, fmt::format("{}, on a limit switch", SentAndStands(k, states[k])));
+    }
+    where_.RequireOurs(states);
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      if (!(std::abs(states[k].encoder - where_.Sent(k, states[k])) > where_.Tolerance(k))) continue;
+      throw DeviceFault(FaultKind::kNotInPosition, bench_.machine.Axes()[k].name, SentAndStands(k, states[k]));
     }
   }
 
  private:
+  std::string SentAndStands(std::size_t k, const AxisState& state) const {
+    const MachineAxis& axis = bench_.machine.Axes()[k];
+    return fmt::format("was sent to {} and stands at {}", Place(axis, where_.Sent(k, state)), Place(axis, state.encoder));
+  }
+
   [[noreturn]] void Stalled(const std::vector<AxisState>& states) const {
     std::string where;
     for (std::size_t k = 0; k < states.size(); ++k)
@@ -93,50 +96,20 @@ class MachineWatcher {
 
   MachineBench& bench_;
   double takes_s_;
+  const Whereabouts& where_;
   const MachineOptions& options_;
   std::vector<AxisState> before_;
   double looked_s_ = 0.0, still_s_ = 0.0;
 };
 
-/// Names of the axes that move, by what the controller says or by what their encoders do between two looks.
-std::string Moving(const std::vector<MachineAxis>& axes, const std::vector<AxisState>& before,
-                   const std::vector<AxisState>& now) {
-  std::string names;
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    const bool crept = k < before.size() && std::abs(now[k].encoder - before[k].encoder) > kCreeps;
-    if (now[k].moving || crept) names += (names.empty() ? "" : ", ") + axes[k].name;
-  }
-  return names;
-}
-
 }  // namespace
 
-Standstill StopMachine(MachineBench& bench) {
-  try {
-    bench.machine.Stop();
-    std::string moving;
-    std::vector<AxisState> before = bench.machine.State();
-    for (int look = 0; look < kLooksAtStopping; ++look) {
-      bench.clock.Wait(kBetweenLooks);
-      const std::vector<AxisState> states = bench.machine.State();
-      moving = Moving(bench.machine.Axes(), before, states);
-      if (moving.empty()) return {true, ""};
-      before = states;
-    }
-    return {false, "still moving after the stop: " + moving};
-  } catch (const BenchError& error) {  // it may be the fault that is being dealt with
-    return {false, error.what()};
-  }
+Standstill StopMachine(MachineBench& bench, const MachineOptions& options) {
+  return BringToRest(bench.clock, {{[&] { bench.machine.Stop(); }, [&] { return LookAt(bench.machine, options.axes); }}});
 }
 
-Standstill WhetherMachineStands(MachineBench& bench) {
-  const std::vector<AxisState> before = bench.machine.State();
-  std::string moving = Moving(bench.machine.Axes(), {}, before);
-  if (moving.empty()) {  // else the rest of the way need not wait for a second look
-    std::this_thread::sleep_for(kBetweenTwoLooks);
-    moving = Moving(bench.machine.Axes(), before, bench.machine.State());
-  }
-  return {moving.empty(), moving.empty() ? "" : moving + " moves"};
+Standstill WhetherMachineStands(MachineBench& bench, const MachineOptions& options) {
+  return WhetherAtRest({[&] { return LookAt(bench.machine, options.axes); }});
 }
 
 void HearOperator(const MachineOptions& options) {
@@ -153,10 +126,10 @@ void WaitFor(MachineBench& bench, Duration duration, const MachineOptions& optio
   if (duration > Duration(0)) bench.clock.Wait(duration);
 }
 
-void RequireMayGo(MachineBench& bench, const std::vector<double>& to, const MachineOptions& options) {
-  const std::vector<AxisState> states = bench.machine.State();
+void RequireMayGo(const std::vector<MachineAxis>& axes, const std::vector<AxisState>& states, const std::vector<double>& to,
+                  const MachineOptions& options) {
   for (std::size_t k = 0; k < to.size(); ++k) {
-    const MachineAxis& axis = bench.machine.Axes()[k];
+    const MachineAxis& axis = axes[k];
     const AxisLimits limits = LimitsOf(options, k);
     if (to[k] < limits.lower || to[k] > limits.upper)
       throw DeviceFault(FaultKind::kLimit, axis.name,
@@ -184,8 +157,9 @@ std::vector<AxisState> RequireMayTurn(MachineBench& bench, const MachineOptions&
   return states;
 }
 
-void Watch(MachineBench& bench, double takes_s, const MachineOptions& options, const std::function<void()>& look) {
-  MachineWatcher watcher(bench, takes_s, options);
+void Watch(MachineBench& bench, double takes_s, const Whereabouts& where, const MachineOptions& options,
+           const std::function<void()>& look) {
+  MachineWatcher watcher(bench, takes_s, where, options);
   while (!bench.machine.Settles(options.log ? kMachineLook : kUnwatched)) {
     HearOperator(options);
     watcher.Look();

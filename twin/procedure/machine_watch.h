@@ -2,17 +2,16 @@
 
 #include "twin/procedure/machine_options.h"
 #include "twin/procedure/standstill.h"
+#include "twin/procedure/whereabouts.h"
 
 namespace twinbench::procedure {
 
-/// Tells all axes to stop and asks whether they do: the answer is the controller's, read back within some seconds.
-/// Never throws what the bench throws.
-Standstill StopMachine(MachineBench& bench);
+/// Brings all axes to rest, as BringToRest.
+Standstill StopMachine(MachineBench& bench, const MachineOptions& options);
 
-/// Whether all axes stand: nothing is told to them, the controller is asked twice, and no encoder may have moved between
-/// the two looks.
-/// @throws DeviceFault, BenchError where it does not answer.
-Standstill WhetherMachineStands(MachineBench& bench);
+/// Whether all axes are at rest, as WhetherAtRest.
+/// @throws DeviceFault, BenchError where the controller does not answer.
+Standstill WhetherMachineStands(MachineBench& bench, const MachineOptions& options);
 
 /// @throws DeviceFault kStopped if the operator said so.
 void HearOperator(const MachineOptions& options);
@@ -21,9 +20,11 @@ void HearOperator(const MachineOptions& options);
 void WaitFor(MachineBench& bench, Duration duration, const MachineOptions& options);
 
 /// Whatever speaks against a move to a place, before it begins.
+/// @param states  One entry an axis, of a look just now.
 /// @throws DeviceFault kLimit for a place outside the soft limits or an axis on a limit switch that would be driven
 ///         further; kRestarted for one that has lost its origin; kRefused for one that reports a fault.
-void RequireMayGo(MachineBench& bench, const std::vector<double>& to, const MachineOptions& options);
+void RequireMayGo(const std::vector<MachineAxis>& axes, const std::vector<AxisState>& states, const std::vector<double>& to,
+                  const MachineOptions& options);
 
 /// Whatever speaks against going on with what turns.
 /// @return what was looked at, one entry an axis.
@@ -32,10 +33,11 @@ std::vector<AxisState> RequireMayTurn(MachineBench& bench, const MachineOptions&
 
 /// Returns when the path that was begun has ended with every axis in position.
 /// @param takes_s   What the path should take.
+/// @param where     To which it was sent.
 /// @param look      Called at least every second of bench time on the way.
 /// @throws DeviceFault kStalled, kRestarted, kRefused, kLimit (a switch), kNotInPosition (too late, or not there);
-///         kStopped.
-void Watch(MachineBench& bench, double takes_s, const MachineOptions& options,
+///         kMoved (somebody else sent it elsewhere); kStopped.
+void Watch(MachineBench& bench, double takes_s, const Whereabouts& where, const MachineOptions& options,
            const std::function<void()>& look = {});
 
 }  // namespace twinbench::procedure

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "twin/core/device_fault.h"
 #include "twin/core/devices.h"
 #include "twin/core/run_log.h"
 #include "twin/core/table_limits.h"
@@ -35,6 +36,7 @@ struct Options {
   bool looks_at_encoders = true;  // about every block; false: of a recording that knows no such looks
   RunLog* log = nullptr;                 // none: only readings are kept, and the first fault ends the run
   std::function<bool()> stop_requested;  // asked between moves, waits and readings
+  std::function<void(const DeviceFault&)> hear_fault = {};  // before anything is done about it
 
   int readings_done = 0;                    // a resumed run begins behind these ...
   std::vector<DeviceCall> calls_done = {};  // ... on a simulated bench by doing these again

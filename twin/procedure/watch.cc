@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <thread>
 
 #include "twin/core/device_fault.h"
 #include "twin/core/units.h"
+#include "twin/procedure/rest.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -17,10 +16,6 @@ constexpr Duration kLook = std::chrono::seconds(1);
 constexpr Duration kSlice = std::chrono::seconds(5);
 constexpr double kThere_rad = 1.0 * units::arcsec;  // even where no tolerance was given
 constexpr double kStandsStill_rad = 1e-9;           // less than any encoder shows
-constexpr int kLooksAtTables = 20;
-constexpr int kFailuresAtStopping = 2;  // of one table: each may take as long as its controller's time-out
-constexpr Duration kBetweenTableLooks = std::chrono::milliseconds(500);
-constexpr double kCreeps_rad = 10.0 * units::arcsec;  // in that time: more than encoders flicker
 
 /// One table on its way.
 class Watched {
@@ -103,63 +98,9 @@ class Watched {
   double still_s_ = 0.0, looked_s_ = 0.0;
 };
 
-/// One table that is being brought to rest.
-class Stopping {
- public:
-  Stopping(RotaryTable& table, const char* name) : table_(&table), name_(name) {}
-
-  /// Stops it if that has not come through, and looks. @return whether another look may tell more.
-  bool IsOpenAfterALook() {
-    if (stands_ || failures_ >= kFailuresAtStopping) return false;
-    try {
-      Look();
-    } catch (const BenchError& error) {  // it may be the fault that is being dealt with
-      ++failures_;
-      why_not_ = error.what();
-    }
-    return !stands_;
-  }
-
-  bool stands() const { return stands_; }
-  const std::string& why_not() const { return why_not_; }
-
- private:
-  void Look() {
-    if (!is_told_) table_->Stop();
-    is_told_ = true;
-    const TableState state = table_->State();
-    const bool crept = std::abs(state.encoder_rad - seen_rad_) > kCreeps_rad;  // not where the origin is lost
-    stands_ = looks_++ > 0 && !state.moving && !crept;
-    seen_rad_ = state.encoder_rad;
-    why_not_ = fmt::format("{} still moves after the stop, at {:.6f} deg", name_, state.encoder_rad / units::deg);
-  }
-
-  RotaryTable* table_;
-  const char* name_;
-  bool is_told_ = false, stands_ = false;
-  int looks_ = 0, failures_ = 0;
-  double seen_rad_ = kNaN;
-  std::string why_not_;
-};
-
-/// Names of the tables that move, by what their controllers say or by what their encoders do between two looks.
-std::string Moving(const std::array<TableState, 2>& before, const std::array<TableState, 2>& now) {
-  constexpr std::array kNames = {"target", "reference"};
-  std::string names;
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    const bool crept = std::abs(now[k].encoder_rad - before[k].encoder_rad) > kCreeps_rad;
-    if (now[k].moving || crept) names += (names.empty() ? "" : ", ") + std::string(kNames[k]);
-  }
-  return names;
-}
-
-/// A bench whose clock fails too is a real one.
-void Pause(Clock& clock) {
-  try {
-    clock.Wait(kBetweenTableLooks);
-  } catch (const BenchError&) {
-    std::this_thread::sleep_for(kBetweenTableLooks);
-  }
+std::vector<AxesLook> LooksAtBoth(RotaryBench& bench, const Options& options) {
+  return {[&] { return LookAt(bench.target, "target", options.target); },
+          [&] { return LookAt(bench.reference, "reference", options.reference); }};
 }
 
 }  // namespace
@@ -194,30 +135,13 @@ void WaitFor(RotaryBench& bench, Duration duration, const Options& options) {
   bench.clock.Wait(duration);
 }
 
-Standstill StopBoth(RotaryBench& bench) {
-  std::array tables = {Stopping(bench.target, "target"), Stopping(bench.reference, "reference")};
-  for (int look = 0; look < kLooksAtTables; ++look) {
-    bool is_open = false;
-    for (Stopping& table : tables) is_open = table.IsOpenAfterALook() || is_open;
-    if (!is_open) break;
-    Pause(bench.clock);
-  }
-  std::string why_not;
-  for (const Stopping& table : tables) {
-    if (!table.stands()) why_not += (why_not.empty() ? "" : "; ") + table.why_not();
-  }
-  return {why_not.empty(), why_not};
+Standstill StopBoth(RotaryBench& bench, const Options& options) {
+  const std::vector<AxesLook> looks = LooksAtBoth(bench, options);
+  return BringToRest(bench.clock, {{[&] { bench.target.Stop(); }, looks[0]}, {[&] { bench.reference.Stop(); }, looks[1]}});
 }
 
-Standstill WhetherBothStand(RotaryBench& bench) {
-  const auto look = [&bench] { return std::array{bench.target.State(), bench.reference.State()}; };
-  const std::array<TableState, 2> before = look();
-  std::string moving = Moving(before, before);
-  if (moving.empty()) {  // else the rest of the way need not wait for a second look
-    std::this_thread::sleep_for(kBetweenTwoLooks);
-    moving = Moving(before, look());
-  }
-  return {moving.empty(), moving.empty() ? "" : moving + " moves"};
+Standstill WhetherBothStand(RotaryBench& bench, const Options& options) {
+  return WhetherAtRest(LooksAtBoth(bench, options));
 }
 
 }  // namespace twinbench::procedure

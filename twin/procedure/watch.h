@@ -18,15 +18,12 @@ void MoveBoth(RotaryBench& bench, double target_rad, double reference_rad, const
 /// Lets bench time pass in slices, so that an operator who says stop is heard.
 void WaitFor(RotaryBench& bench, Duration duration, const Options& options);
 
-/// Tells both tables to stop, whatever state the bench is in, and asks whether they do: the answer is the controllers',
-/// read back within some seconds, and no encoder may have moved between two looks. One table that does not answer keeps
-/// nobody from stopping the other. Never throws what the bench throws.
-Standstill StopBoth(RotaryBench& bench);
+/// Brings both tables to rest, as BringToRest. One that does not answer keeps nobody from stopping the other.
+Standstill StopBoth(RotaryBench& bench, const Options& options);
 
-/// Whether both tables stand: nothing is told to them, their controllers are asked twice, and no encoder may have moved
-/// between the two looks.
+/// Whether both tables are at rest, as WhetherAtRest.
 /// @throws DeviceFault, BenchError where a controller does not answer.
-Standstill WhetherBothStand(RotaryBench& bench);
+Standstill WhetherBothStand(RotaryBench& bench, const Options& options);
 
 /// @throws DeviceFault kStopped if the operator said so.
 void HearOperator(const Options& options);

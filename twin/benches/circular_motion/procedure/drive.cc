@@ -15,7 +15,8 @@ using namespace benches::circular;
 
 constexpr double kLeadIn_rad = units::kPi;
 constexpr double kRunOut_rad = 5.0 * units::deg;  // behind the last point, to slow down in
-constexpr double kOnTheCircle_m = 0.5 * units::mm;
+constexpr double kWithinReach_m = 0.5 * units::mm;  // of an instrument that is mounted
+constexpr double kBesideTheCircle_m = 1.0 * units::um;
 constexpr double kThere_rad = 1e-6;
 
 /// The readings [first, end) of one way round.
@@ -77,13 +78,17 @@ class CircleDrive {
 
   /// On the circle, in the direction of the pass to an angle; a whole turn is none.
   void GoRoundTo(double angle_rad, double radius_m, int direction) {
-    const std::vector<double> at = sequencer_.Where();
+    const std::vector<double> at = sequencer_.WhereSent();
     const double off_m = std::hypot(at[0], at[1]) - radius_m;
-    if (std::abs(off_m) > kOnTheCircle_m)
+    if (std::abs(off_m) > kWithinReach_m)
       throw DeviceFault(
           FaultKind::kImplausible, "machine",
           fmt::format("stands {:.4g} mm off the circle with an instrument mounted; bring it back by hand",
                       off_m / units::mm));
+    if (std::abs(off_m) > kBesideTheCircle_m) {  // where somebody else has left it
+      const double back = radius_m / (radius_m + off_m);
+      sequencer_.MoveTo({at[0] * back, at[1] * back});
+    }
     const double ahead_rad = direction * (angle_rad - std::atan2(at[1], at[0]));
     const double way_rad = ahead_rad - units::turn * std::floor(ahead_rad / units::turn);
     if (way_rad < kThere_rad || way_rad > units::turn - kThere_rad) return;

@@ -43,14 +43,16 @@ void CarryOut(RotaryBench& bench, const Scenario& scenario, ReadingSink& sink, c
       return CarryOutPhases(Sequencer(journal, scenario, sink, options, progress, state),
                             RotaryOf(scenario).procedure);
     } catch (const DeviceFault& fault) {
-      StopBoth(bench);
+      if (options.hear_fault) options.hear_fault(fault);
+      const Standstill stands = StopBoth(bench, options);
       journal.Forget();
       state.disturbed = true;
       NoteFailure(options.log, state.kept, bench.clock.Now(), fault);
       const bool knows_the_way = journal.kept();
-      if (!knows_the_way || !IsWorthAnotherAttempt(fault.kind()) || !attempts.AnotherAt(state.kept)) throw;
+      if (!knows_the_way || !stands.is_sure || !IsWorthAnotherAttempt(fault.kind()) || !attempts.AnotherAt(state.kept))
+        throw StoppedRun(fault, stands);
     } catch (...) {  // whatever it is, no table goes on moving
-      StopBoth(bench);
+      StopBoth(bench, options);
       throw;
     }
   }

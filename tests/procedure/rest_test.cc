@@ -1,0 +1,217 @@
+#include "twin/procedure/rest.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/kept_text.h"
+#include "twin/core/device_fault.h"
+#include "twin/core/nothing_moves.h"
+#include "twin/procedure/turning.h"
+#include "twin/procedure/whereabouts.h"
+
+/// What counts as rest, and what axes that turn or were sent somewhere are held to.
+namespace twinbench::procedure {
+namespace {
+
+struct CountingClock : Clock {
+  Time Now() const override { return now; }
+  void Wait(Duration duration) override { now += duration; }
+  Time now{};
+};
+
+/// An axis in mm whose controller does whatever the test wants, from the first stop and look on.
+struct ScriptedAxis {
+  std::function<void(ScriptedAxis&)> when_stopped = [](ScriptedAxis&) {}, when_looked_at = [](ScriptedAxis&) {};
+  SeenAxis axis{"x", false, false, 0.0, 1.0 * units::um};
+  int stops = 0, looks = 0;
+
+  Stoppable Part() {
+    return {[this] {
+              ++stops;
+              when_stopped(*this);
+            },
+            [this] {
+              ++looks;
+              when_looked_at(*this);
+              return std::vector{axis};
+            }};
+  }
+};
+
+struct Creeps {
+  double per_look_um;
+  void operator()(ScriptedAxis& a) const { a.axis.encoder += per_look_um * units::um; }
+};
+
+struct Stop {
+  const char* name;
+  std::function<void(ScriptedAxis&)> is_so;
+  bool is_at_rest;
+  std::pair<int, int> stops = {1, 1};  // it is told at least and at most
+};
+
+class BringingToRest : public testing::TestWithParam<Stop> {};
+
+TEST_P(BringingToRest, EndsWhereRestIsSeenOrNobodyKnows) {
+  ScriptedAxis axis;
+  GetParam().is_so(axis);
+  CountingClock clock;
+  const Standstill stands = BringToRest(clock, {axis.Part()});
+  EXPECT_EQ(stands.is_sure, GetParam().is_at_rest) << stands.why_not;
+  EXPECT_EQ(stands.is_sure, stands.why_not.empty());
+  EXPECT_GE(axis.stops, GetParam().stops.first);
+  EXPECT_LE(axis.stops, GetParam().stops.second);
+  if (stands.is_sure && axis.looks > 0) {
+    EXPECT_GE(axis.looks, 3);
+    EXPECT_GE(ToSeconds(clock.now), 1.0);
+  }
+}
+
+const DeviceFault kMute(FaultKind::kTimeout, "machine", "no answer");
+
+const Stop kStops[] = {
+    {"ThatWasAtRest", [](ScriptedAxis&) {}, true},
+    {"ThatStopsWhenItIsTold",
+     [](ScriptedAxis& a) {
+       a.axis.moving = true;
+       a.when_stopped = [](ScriptedAxis& b) { b.axis.moving = false; };
+     },
+     true},
+    {"ThatTakesTime", [](ScriptedAxis& a) { a.when_looked_at = [](ScriptedAxis& b) { b.axis.moving = b.looks < 8; }; }, true, {2, 3}},
+    {"ThatFlickersWithinItsLimit",
+     [](ScriptedAxis& a) { a.when_looked_at = [](ScriptedAxis& b) { b.axis.encoder = b.looks % 2 * 0.9 * units::um; }; }, true},
+    {"ThatCreepsFasterThanItsLimit", [](ScriptedAxis& a) { a.when_looked_at = Creeps{0.6}; }, false, {4, 6}},
+    {"ThatCreepsAtNinetyMicrometresASecond", [](ScriptedAxis& a) { a.when_looked_at = Creeps{45.0}; }, false, {4, 6}},
+    {"ThatCreepsAndHasNoLimit",
+     [](ScriptedAxis& a) {
+       a.axis.in_position = std::numeric_limits<double>::infinity();
+       a.when_looked_at = Creeps{6.0};
+     },
+     false, {4, 6}},
+    {"ThatNeverSaysSo", [](ScriptedAxis& a) { a.axis.moving = true; }, false, {4, 6}},
+    {"ThatHearsTheThirdWord",
+     [](ScriptedAxis& a) {
+       a.axis.moving = true;
+       a.when_stopped = [](ScriptedAxis& b) { b.axis.moving = b.stops < 3; };
+     },
+     true, {3, 3}},
+    {"WhoseWordIsLostTwice",
+     [](ScriptedAxis& a) {
+       a.axis.moving = true;
+       a.when_stopped = [](ScriptedAxis& b) {
+         if (b.stops < 3) throw kMute;
+         b.axis.moving = false;
+       };
+     },
+     true, {3, 3}},
+    {"ThatRefusesAndIsAtRest",
+     [](ScriptedAxis& a) {
+       a.when_stopped = [](ScriptedAxis&) { throw DeviceFault(FaultKind::kRefused, "machine", "it does not move"); };
+     },
+     true, {3, 20}},
+    {"ThatNobodyReaches",
+     [](ScriptedAxis& a) { a.when_stopped = a.when_looked_at = [](ScriptedAxis&) { throw kMute; }; }, false, {4, 20}},
+    {"WithoutAnOriginByItsControllersWord", [](ScriptedAxis& a) { a.axis.encoder = kNaN; }, true},
+    {"OfARecording", [](ScriptedAxis& a) { a.when_stopped = [](ScriptedAxis&) { throw NothingMoves(); }; }, true}};
+INSTANTIATE_TEST_SUITE_P(Of, BringingToRest, testing::ValuesIn(kStops), [](const auto& test) { return test.param.name; });
+
+TEST(BringingToRest, TellsAllBeforeItLooksAtAnyAndSaysWhoMoves) {
+  ScriptedAxis mute, moving;
+  mute.when_stopped = mute.when_looked_at = [](ScriptedAxis&) { throw kMute; };
+  mute.when_looked_at = [&](ScriptedAxis&) {
+    EXPECT_GT(moving.stops, 0);
+    throw kMute;
+  };
+  moving.axis.moving = true;
+  CountingClock clock;
+  EXPECT_KEPT(BringToRest(clock, {mute.Part(), moving.Part()}).why_not);
+}
+
+TEST(WhetherAtRest, IsAskedThreeTimesOrUntilSomethingMoves) {
+  ScriptedAxis rests, moves;
+  EXPECT_TRUE(WhetherAtRest({rests.Part().look}).is_sure);
+  EXPECT_EQ(rests.looks, 3);
+  moves.axis.moving = true;
+  EXPECT_EQ(WhetherAtRest({rests.Part().look, moves.Part().look}).why_not, "moving: x at 0.000000 mm");
+  EXPECT_EQ(moves.looks, 1);
+  EXPECT_EQ(rests.stops, 0);
+}
+
+/// A shaft that is told to go up to 10 deg/s within 2 s, and shows that times `factor`.
+struct Shaft {
+  const char* name;
+  std::function<double(double told_deg)> shows_deg;
+  const char* fault;
+};
+
+class TurningShaft : public testing::TestWithParam<Shaft> {};
+
+TEST_P(TurningShaft, IsHeldToItsSpeed) {
+  Turning turning;
+  const MachineAxis axis{"shaft", true};
+  std::string fault;
+  const auto at = [](double s) { return Time{} + FromSeconds(s); };
+  turning.Look(axis, 0.0, at(0.0), at(0.0));
+  turning.Told(at(0.0), at(0.0), 10.0 * units::deg, std::chrono::seconds(2));
+  for (double s = 0.5; s < 20.0 && fault.empty(); s += 0.5) {
+    const double told_deg = s < 2.0 ? 2.5 * s * s : 10.0 * (s - 1.0);
+    try {
+      turning.Look(axis, GetParam().shows_deg(told_deg) * units::deg, at(s), at(s));
+    } catch (const DeviceFault& error) {
+      fault = FaultName(error.kind());
+    }
+  }
+  EXPECT_EQ(fault, GetParam().fault);
+}
+
+const Shaft kShafts[] = {{"ThatObeys", [](double told) { return told; }, ""},
+                         {"ThatIsSlowerByACommonSlip", [](double told) { return 0.95 * told; }, ""},
+                         {"ThatStands", [](double) { return 0.0; }, "stalled"},
+                         {"ThatStopsOnTheWay", [](double told) { return std::min(told, 80.0); }, "stalled"},
+                         {"AtAThousandth", [](double told) { return 1e-3 * told; }, "stalled"},
+                         {"AtTenTimesItsSpeed", [](double told) { return 10.0 * told; }, "following"},
+                         {"AtATwentiethMoreThanATenth", [](double told) { return 1.15 * told; }, "following"},
+                         {"TheOtherWayRound", [](double told) { return -told; }, "following"},
+                         {"ThatTurnsBackOnTheWay", [](double told) { return told < 80.0 ? told : 160.0 - told; }, "following"}};
+INSTANTIATE_TEST_SUITE_P(Is, TurningShaft, testing::ValuesIn(kShafts), [](const auto& test) { return test.param.name; });
+
+TEST(Turning, UpAndDownAgainIsHeldToTheWayOfBothRamps) {
+  const MachineAxis axis{"hob", true};
+  for (const auto& [shown_deg, is_told] : {std::pair(40.0, false), {-40.0, true}, {400.0, true}, {0.04, true}}) {
+    Turning turning;
+    const auto at = [](int s) { return Time{} + std::chrono::seconds(s); };
+    turning.Look(axis, 0.0, at(0), at(0));
+    turning.Told(at(0), at(0), 20.0 * units::deg, std::chrono::seconds(2));
+    turning.Told(at(2), at(2), 0.0, std::chrono::seconds(2));
+    const auto look = [&] { turning.Look(axis, shown_deg * units::deg, at(10), at(10)); };
+    if (is_told)
+      EXPECT_THROW(look(), DeviceFault) << shown_deg;
+    else
+      EXPECT_NO_THROW(look());
+  }
+}
+
+TEST(Whereabouts, FollowACircleAndTellWhoeverChangesATarget) {
+  const std::vector<MachineAxis> axes = {{"x"}, {"y"}};
+  const std::vector<AxisLimits> none;
+  Whereabouts where(axes, none);
+  std::vector<AxisState> states(2);
+  states[0].commanded = 0.1;
+  states[1].commanded = 0.0;
+  EXPECT_NO_THROW(where.RequireOurs(states)) << "nobody was sent anywhere yet";
+  where.SentRound({.sweep_rad = 0.5 * units::kPi}, states);
+  EXPECT_NEAR(where.Sent(0, states[0]), 0.0, 1e-15);
+  EXPECT_NEAR(where.Sent(1, states[1]), 0.1, 1e-15);
+  EXPECT_THROW(where.RequireOurs(states), DeviceFault) << "it did not go";
+  states[0].commanded = 9e-6;
+  states[1].commanded = 0.1;
+  EXPECT_NO_THROW(where.RequireOurs(states)) << "rounded";
+  states[0].commanded = kNaN;
+  EXPECT_NO_THROW(where.RequireOurs(states)) << "its origin is lost, which others tell";
+  where.Released(1);
+  states[1].commanded = 7.0;
+  EXPECT_NO_THROW(where.RequireOurs(states)) << "it turns on";
+  EXPECT_TRUE(std::isnan(where.Sent(1, states[1]))) << "whatever target its controller had before";
+}
+
+}  // namespace
+}  // namespace twinbench::procedure

@@ -1,0 +1,184 @@
+#include "twin/procedure/rest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "twin/core/nothing_moves.h"
+
+namespace twinbench::procedure {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr Duration kBetweenLooks = std::chrono::milliseconds(500);
+constexpr int kLooksOfRest = 3;
+constexpr int kMostLooks = 20;
+constexpr int kLooksUntilSaidAgain = 4;  // to what has not come to rest
+constexpr int kFailuresOfADeadLink = 8;
+constexpr auto kDeadAfter = std::chrono::seconds(4);  // of nothing but failures
+constexpr double kRestsWithin = 1e-5;                 // m or rad: where no in-position limit is known
+
+/// What an axis has shown since it was last seen to move.
+class RestWatch {
+ public:
+  void Look(const SeenAxis& seen) {
+    axis_ = seen;
+    const double width = std::isfinite(seen.in_position) ? seen.in_position : kRestsWithin;
+    const double lowest = std::fmin(lowest_, seen.encoder), highest = std::fmax(highest_, seen.encoder);
+    moves_ = seen.moving || highest - lowest > width;  // the latter never, where the encoder shows nothing
+    lowest_ = moves_ ? seen.encoder : lowest;
+    highest_ = moves_ ? seen.encoder : highest;
+    looks_ = seen.moving ? 0 : moves_ ? 1 : looks_ + 1;
+  }
+
+  bool AtRest() const { return looks_ >= kLooksOfRest; }
+  bool Restless() const { return !AtRest(); }
+  /// At the last look.
+  bool Moves() const { return moves_; }
+  std::string Place() const {
+    return fmt::format("{} at {:.6f} {}", axis_.name, axis_.encoder / (axis_.is_rotary ? units::deg : units::mm),
+                       axis_.is_rotary ? "deg" : "mm");
+  }
+
+ private:
+  SeenAxis axis_;
+  bool moves_ = false;
+  int looks_ = 0;
+  double lowest_ = kNaN, highest_ = kNaN;
+};
+
+class AxesWatch {
+ public:
+  void Look(const std::vector<SeenAxis>& seen) {
+    axes_.resize(seen.size());
+    for (std::size_t k = 0; k < seen.size(); ++k) axes_[k].Look(seen[k]);
+  }
+  bool AtRest() const { return !axes_.empty() && std::ranges::all_of(axes_, &RestWatch::AtRest); }
+  bool Moves() const { return std::ranges::any_of(axes_, &RestWatch::Moves); }
+  std::string Places(bool (RestWatch::*is_told)() const) const {
+    std::string places;
+    for (const RestWatch& axis : axes_)
+      if ((axis.*is_told)()) places += (places.empty() ? "" : ", ") + axis.Place();
+    return places;
+  }
+
+ private:
+  std::vector<RestWatch> axes_;
+};
+
+/// One part on its way to rest.
+class Stopping {
+ public:
+  explicit Stopping(const Stoppable& part) : part_(&part) {}
+
+  void Say() {
+    Try([this] {
+      was_heard_ = false;
+      part_->stop();
+      was_heard_ = true;
+    });
+  }
+
+  void Look() {
+    const bool is_restless = looks_ > 0 && looks_ % kLooksUntilSaidAgain == 0;
+    if (!was_heard_ || is_restless) Say();
+    Try([this] {
+      watch_.Look(part_->look());
+      ++looks_;
+      failures_ = 0;
+    });
+  }
+
+  bool AtRest() const { return is_recording_ || watch_.AtRest(); }
+  /// Whether another look may tell more.
+  bool IsOpen() const { return !AtRest() && !IsDead(); }
+  std::string WhyNot() const {
+    return failures_ > 0 ? why_not_ : fmt::format("still moving after the stop: {}", watch_.Places(&RestWatch::Restless));
+  }
+
+ private:
+  bool IsDead() const {
+    return failures_ >= kFailuresOfADeadLink || (failures_ > 0 && SteadyClock::now() - failing_since_ > kDeadAfter);
+  }
+
+  /// What fails may be the fault that is being dealt with.
+  void Try(const std::function<void()>& ask) {
+    try {
+      ask();
+    } catch (const NothingMoves&) {
+      is_recording_ = true;
+    } catch (const BenchError& error) {
+      if (failures_++ == 0) failing_since_ = SteadyClock::now();
+      why_not_ = error.what();
+    }
+  }
+
+  const Stoppable* part_;
+  AxesWatch watch_;
+  bool was_heard_ = false, is_recording_ = false;
+  int looks_ = 0, failures_ = 0;  // since the last look that was answered
+  SteadyClock::time_point failing_since_;
+  std::string why_not_;
+};
+
+/// A bench whose clock fails too is a real one.
+void PauseBetweenLooks(Clock& clock) {
+  try {
+    clock.Wait(kBetweenLooks);
+  } catch (const BenchError&) {
+    std::this_thread::sleep_for(kBetweenLooks);
+  }
+}
+
+}  // namespace
+
+std::vector<SeenAxis> LookAt(RotaryTable& table, const std::string& name, const TableLimits& limits) {
+  const TableState state = table.State();
+  return {{name, true, state.moving, state.encoder_rad, limits.in_position_rad}};
+}
+
+std::vector<SeenAxis> LookAt(MachineController& machine, const std::vector<AxisLimits>& limits) {
+  const std::vector<AxisState> states = machine.State();
+  std::vector<SeenAxis> seen;
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    const MachineAxis& axis = machine.Axes()[k];
+    const double in_position = k < limits.size() ? limits[k].in_position : AxisLimits{}.in_position;
+    seen.push_back({axis.name, axis.is_rotary, states[k].moving, states[k].encoder, in_position});
+  }
+  return seen;
+}
+
+Standstill BringToRest(Clock& clock, const std::vector<Stoppable>& parts) {
+  std::vector<Stopping> all(parts.begin(), parts.end());
+  for (Stopping& part : all) part.Say();
+  for (int look = 0; look < kMostLooks && std::ranges::any_of(all, &Stopping::IsOpen); ++look) {
+    if (look > 0) PauseBetweenLooks(clock);
+    for (Stopping& part : all)
+      if (part.IsOpen()) part.Look();
+  }
+  std::string why_not;
+  for (const Stopping& part : all)
+    if (!part.AtRest()) why_not += (why_not.empty() ? "" : "; ") + part.WhyNot();
+  return {why_not.empty(), why_not};
+}
+
+Standstill WhetherAtRest(const std::vector<AxesLook>& looks) {
+  std::vector<AxesWatch> all(looks.size());
+  for (int look = 0; look < kLooksOfRest; ++look) {
+    if (look > 0) std::this_thread::sleep_for(kBetweenLooks);
+    for (std::size_t k = 0; k < looks.size(); ++k) all[k].Look(looks[k]());
+    if (std::ranges::any_of(all, &AxesWatch::Moves)) break;
+  }
+  std::string moving;
+  for (const AxesWatch& part : all) {
+    const std::string places = part.Places(&RestWatch::Moves);
+    if (!places.empty()) moving += (moving.empty() ? "" : ", ") + places;
+  }
+  return {moving.empty(), moving.empty() ? "" : "moving: " + moving};
+}
+
+}  // namespace twinbench::procedure
