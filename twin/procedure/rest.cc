@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 #include "twin/core/nothing_moves.h"
 
@@ -16,8 +17,10 @@ using SteadyClock = std::chrono::steady_clock;
 
 constexpr Duration kBetweenLooks = std::chrono::milliseconds(500);
 constexpr int kLooksOfRest = 3;
-constexpr int kMostLooks = 20;
-constexpr int kLooksUntilSaidAgain = 4;  // to what has not come to rest
+constexpr int kLooksInTime = 10;  // behind which nobody waits any more ...
+constexpr int kMostLooks = 20;    // ... but for what gets slower
+constexpr double kSlower = 0.95;  // from look to look
+constexpr int kLooksUntilSaidAgain = 3;  // to what has not come to rest
 constexpr int kFailuresOfADeadLink = 8;
 constexpr auto kDeadAfter = std::chrono::seconds(4);  // of nothing but failures
 constexpr double kRestsWithin = 1e-5;                 // m or rad: where no in-position limit is known
@@ -26,8 +29,10 @@ constexpr double kRestsWithin = 1e-5;                 // m or rad: where no in-p
 class RestWatch {
  public:
   void Look(const SeenAxis& seen) {
-    axis_ = seen;
     const double width = std::isfinite(seen.in_position) ? seen.in_position : kRestsWithin;
+    const double step = std::abs(seen.encoder - axis_.encoder);  // NaN at the first look
+    slows_ = step < kSlower * std::exchange(step_, step);
+    axis_ = seen;
     const double lowest = std::fmin(lowest_, seen.encoder), highest = std::fmax(highest_, seen.encoder);
     moves_ = seen.moving || highest - lowest > width;  // the latter never, where the encoder shows nothing
     lowest_ = moves_ ? seen.encoder : lowest;
@@ -39,6 +44,7 @@ class RestWatch {
   bool Restless() const { return !AtRest(); }
   /// At the last look.
   bool Moves() const { return moves_; }
+  bool Slows() const { return Restless() && slows_; }
   std::string Place() const {
     return fmt::format("{} at {:.6f} {}", axis_.name, axis_.encoder / (axis_.is_rotary ? units::deg : units::mm),
                        axis_.is_rotary ? "deg" : "mm");
@@ -46,9 +52,9 @@ class RestWatch {
 
  private:
   SeenAxis axis_;
-  bool moves_ = false;
+  bool moves_ = false, slows_ = false;
   int looks_ = 0;
-  double lowest_ = kNaN, highest_ = kNaN;
+  double lowest_ = kNaN, highest_ = kNaN, step_ = kNaN;
 };
 
 class AxesWatch {
@@ -59,6 +65,7 @@ class AxesWatch {
   }
   bool AtRest() const { return !axes_.empty() && std::ranges::all_of(axes_, &RestWatch::AtRest); }
   bool Moves() const { return std::ranges::any_of(axes_, &RestWatch::Moves); }
+  bool Slows() const { return std::ranges::any_of(axes_, &RestWatch::Slows); }
   std::string Places(bool (RestWatch::*is_told)() const) const {
     std::string places;
     for (const RestWatch& axis : axes_)
@@ -94,6 +101,7 @@ class Stopping {
   }
 
   bool AtRest() const { return is_recording_ || watch_.AtRest(); }
+  bool Slows() const { return watch_.Slows(); }
   /// Whether another look may tell more.
   bool IsOpen() const { return !AtRest() && !IsDead(); }
   std::string WhyNot() const {
@@ -156,6 +164,7 @@ Standstill BringToRest(Clock& clock, const std::vector<Stoppable>& parts) {
   std::vector<Stopping> all(parts.begin(), parts.end());
   for (Stopping& part : all) part.Say();
   for (int look = 0; look < kMostLooks && std::ranges::any_of(all, &Stopping::IsOpen); ++look) {
+    if (look >= kLooksInTime && std::ranges::none_of(all, &Stopping::Slows)) break;
     if (look > 0) PauseBetweenLooks(clock);
     for (Stopping& part : all)
       if (part.IsOpen()) part.Look();
