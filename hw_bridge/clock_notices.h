@@ -1,7 +1,10 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
+
+#include "twin/core/devices.h"
 
 namespace twinbench::hw {
 
@@ -10,5 +13,9 @@ struct ClockNotices {
   std::function<void(const std::string&)> listener = {};
   void Tell(const std::string& notice) const;
 };
+
+/// The computer's clock, which tells there and hears a stop while it waits.
+/// @param notices  Outlives it.
+std::unique_ptr<Clock> OpenHostClock(Duration elapsed, const ClockNotices& notices, const std::function<bool()>& stop_asked);
 
 }  // namespace twinbench::hw

@@ -12,7 +12,6 @@
 #include "hw_bridge/control/absent.h"
 #include "hw_bridge/control/described_devices.h"
 #include "hw_bridge/control/esp_table.h"
-#include "hw_bridge/control/host_clock.h"
 #include "hw_bridge/control/operator_devices.h"
 #include "hw_bridge/control/scpi_instruments.h"
 #include "hw_bridge/control/scpi_table.h"
@@ -29,7 +28,7 @@ class OpenedBench : public OpenBench {
   OpenedBench(const BenchFile& file, const AdcSettings& adc, double noise_V, Duration elapsed, int run,
               const std::function<bool()>& stop_asked)
       : file_(file), hands_(std::cin, std::cerr) {
-    OpenClock(elapsed, run);  // first: a served twin's time stands still from here on
+    OpenClock(elapsed, run, stop_asked);  // first: a served twin's time stands still from here on
     target_ = OpenTable("target", file.target, file.target_limits);
     reference_ = OpenTable("reference", file.reference, file.reference_limits);
     target_->HearStop(stop_asked);
@@ -81,9 +80,9 @@ class OpenedBench : public OpenBench {
   }
 
  private:
-  void OpenClock(Duration elapsed, int run) {
+  void OpenClock(Duration elapsed, int run, const std::function<bool()>& stop_asked) {
     if (file_.clock.kind != "scpi") {
-      clock_ = std::make_unique<HostClock>(elapsed, [this](const std::string& notice) { clock_notices_.Tell(notice); });
+      clock_ = OpenHostClock(elapsed, clock_notices_, stop_asked);
       return;
     }
     auto clock = std::make_unique<ScpiClock>(own_conversation_.LineOf("clock", file_.clock));

@@ -8,7 +8,6 @@
 #include "hw_bridge/clock_notices.h"
 #include "hw_bridge/control/described_devices.h"
 #include "hw_bridge/control/esp_machine.h"
-#include "hw_bridge/control/host_clock.h"
 #include "hw_bridge/control/linuxcnc_machine.h"
 #include "hw_bridge/control/operator_devices.h"
 #include "hw_bridge/control/scpi_instruments.h"
@@ -26,7 +25,7 @@ class OpenedMachine : public OpenMachine {
                 const std::vector<ReadingColumn>& columns, Duration elapsed, int run,
                 const std::function<bool()>& stop_asked)
       : name_(file.name),
-        clock_(OpenClock(file.clock, elapsed, run)),
+        clock_(OpenClock(file.clock, elapsed, run, stop_asked)),
         machine_(OpenAxes(file, axes)),
         instruments_(OpenInstruments(file, columns), *clock_),
         indexer_(OpenIndexer(file)),
@@ -50,9 +49,9 @@ class OpenedMachine : public OpenMachine {
 
  private:
   /// First of all: a served twin's time stands still from here on.
-  std::unique_ptr<Clock> OpenClock(const ControlSettings& settings, Duration elapsed, int run) {
+  std::unique_ptr<Clock> OpenClock(const ControlSettings& settings, Duration elapsed, int run, const std::function<bool()>& stop_asked) {
     if (settings.kind != "scpi") {
-      return std::make_unique<HostClock>(elapsed, [this](const std::string& notice) { clock_notices_.Tell(notice); });
+      return OpenHostClock(elapsed, clock_notices_, stop_asked);
     }
     auto clock = std::make_unique<ScpiClock>(own_conversation_.LineOf("clock", settings));
     clock->Open();

@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <thread>
+
+#include "twin/core/device_fault.h"
 
 namespace twinbench::hw {
 namespace {
 
 constexpr Duration kWorthTelling = std::chrono::milliseconds(500);
+constexpr Duration kHearsStop = std::chrono::milliseconds(50);
 
 template <class ClockType>
 std::int64_t ReadClock_ns() {
@@ -35,7 +39,11 @@ Time HostClock::Now() const {
 }
 
 void HostClock::Wait(Duration duration) {
-  wait_(duration);
+  const Time end = Now() + duration;
+  for (Duration left = duration; left > Duration(0); left = end - Now()) {
+    if (stop_asked_ && stop_asked_()) throw DeviceFault(FaultKind::kStopped, "operator", "the run was stopped");
+    wait_(stop_asked_ ? std::min(left, kHearsStop) : left);
+  }
   CompareClocks();
 }
 

@@ -19,6 +19,10 @@ class HostClock : public Clock {
   /// With other clocks than the computer's; `wait` passes time.
   HostClock(Duration elapsed, Notice notice, Reading steady_ns, Reading utc_ns, std::function<void(Duration)> wait);
 
+  /// From here on Wait asks `stop_asked` every 50 ms, and ends with a DeviceFault kStopped where it says so: an axis may be turning
+  /// meanwhile.
+  void HearStop(std::function<bool()> stop_asked) { stop_asked_ = std::move(stop_asked); }
+
   Time Now() const override;
   void Wait(Duration duration) override;
   /// How far the wall clock has gone ahead of the steady one since the start.
@@ -30,6 +34,7 @@ class HostClock : public Clock {
   Notice notice_;
   Reading steady_ns_, utc_ns_;
   std::function<void(Duration)> wait_;
+  std::function<bool()> stop_asked_;
   std::int64_t origin_ns_;      // of Time 0, on the steady clock
   std::int64_t difference_ns_;  // utc - steady at the start
   Duration told_{};

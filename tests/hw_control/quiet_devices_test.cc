@@ -46,6 +46,14 @@ TEST(HostClock, BeginsAtZeroOrBehindWhatHasElapsedAndIsNotMovedByTheWallClock) {
   EXPECT_EQ(resumed.Now(), Time(std::chrono::minutes(7) + std::chrono::seconds(3)));
 }
 
+TEST(HostClock, HearsAStopWhileItWaits) {
+  Computer computer;
+  HostClock clock = computer.Clock(Duration(0));
+  clock.HearStop([&] { return clock.Now() > Time(std::chrono::seconds(1)); });
+  EXPECT_EQ(KindOf([&] { clock.Wait(std::chrono::seconds(5)); }), FaultKind::kStopped);
+  EXPECT_LT(clock.Now(), Time(std::chrono::milliseconds(1100)));
+}
+
 TEST(HostClock, TellsOnceOfEachStepOfTheWallClockAndNotOfItsSlewing) {
   Computer computer;
   HostClock clock = computer.Clock(Duration(0));

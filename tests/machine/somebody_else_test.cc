@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <sstream>
 
 #include "tests/machine/benches.h"
 #include "tests/machine/driven_twin.h"
@@ -25,6 +26,10 @@ void Act(Hand hand, MachineController& machine) {
   machine.StartMove(to, 0.0);
 }
 
+MachineBench AsHardware(const MachineBench& twin) {
+  return {twin.clock, twin.machine, twin.instruments, twin.fixture, nullptr, twin.indexer};
+}
+
 /// A run in which a hand acts before the machine is asked for the n-th time; never: 0.
 struct HandledRun {
   HandledRun(const Scenario& scenario, Hand hand, int at_call)
@@ -36,10 +41,7 @@ struct HandledRun {
     MachineBench bench = troubled.Bench();
     fault = twin.FaultOn(bench);
   }
-  MachineBench Unsimulated() const {
-    const MachineBench& inner = twin.bench;
-    return {inner.clock, inner.machine, inner.instruments, inner.fixture, nullptr, inner.indexer};
-  }
+  MachineBench Unsimulated() const { return AsHardware(twin.bench); }
 
   DrivenTwin twin;
   TroubledMachine troubled;
@@ -81,6 +83,29 @@ TEST_P(SomebodyElse, WhoStopsOrMovesAnAxisCostsAnAttemptAndLeavesNoReadingAtAWro
     if (hand == Hand::kJogs) {
       EXPECT_GE(noticed, kMoments / 2);  // a jog before a move that goes elsewhere anyway changes nothing
     }
+  }
+}
+
+/// The call that begins a circle, with its feed times `factor`; others as they are.
+std::string Overridden(const std::string& request, double factor) {
+  if (!request.starts_with("arc ")) return request;
+  constexpr int kFeed = 6;
+  std::istringstream words(request);
+  std::string changed, word;
+  for (int k = 0; words >> word; ++k) changed += (k > 0 ? " " : "") + (k == kFeed ? std::to_string(factor * std::stod(word)) : word);
+  return changed;
+}
+
+TEST(SomebodyElse, WhoTurnsTheFeedOverrideEndsACircle) {
+  for (const auto& [factor, fault] : {std::pair(1.0, ""), {0.5, "following"}, {1.5, "following"}}) {
+    DrivenTwin twin(ShortCircles());
+    MachineBench inner = AsHardware(twin.bench);
+    const std::vector<ReadingColumn> shown = InstrumentColumns(FormatOf(twin.scenario.bench).columns);
+    AskedMachine overridden(
+        [&](const std::string& device, const std::string& request) { return Perform(inner, shown, device, Overridden(request, factor)); },
+        [&] { return inner.clock.Now(); }, {inner.machine.Axes(), shown, false, nullptr});
+    MachineBench bench = overridden.Bench();
+    EXPECT_EQ(twin.FaultOn(bench), fault) << factor << twin.said;
   }
 }
 

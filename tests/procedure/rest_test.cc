@@ -88,6 +88,12 @@ const Stop kStops[] = {
        };
      },
      true, {3, 6}},
+    {"ThatIsBusyForALookWithEveryWord",
+     [](ScriptedAxis& a) {
+       a.when_stopped = [](ScriptedAxis& b) { b.axis.moving = true; };
+       a.when_looked_at = [heard = 0](ScriptedAxis& b) mutable { b.axis.moving = b.stops > std::exchange(heard, b.stops); };
+     },
+     true},
     {"ThatFlickersWithinItsLimit",
      [](ScriptedAxis& a) { a.when_looked_at = [](ScriptedAxis& b) { b.axis.encoder = b.looks % 2 * 0.9 * units::um; }; }, true},
     {"ThatCreepsFasterThanItsLimit", [](ScriptedAxis& a) { a.when_looked_at = Creeps{0.6}; }, false, {3, 6}},

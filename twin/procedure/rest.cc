@@ -20,7 +20,7 @@ constexpr int kLooksOfRest = 3;
 constexpr int kLooksInTime = 10;  // behind which nobody waits any more ...
 constexpr int kMostLooks = 20;    // ... but for what gets slower
 constexpr double kSlower = 0.95;  // from look to look
-constexpr int kLooksUntilSaidAgain = 3;  // to what has not come to rest
+constexpr int kLooksUntilSaidAgain = 3;  // to what moves on; some are busy for a moment with every word
 constexpr int kFailuresOfADeadLink = 8;
 constexpr auto kDeadAfter = std::chrono::seconds(4);  // of nothing but failures
 constexpr double kRestsWithin = 1e-5;                 // m or rad: where no in-position limit is known
@@ -83,6 +83,7 @@ class Stopping {
   explicit Stopping(const Stoppable& part) : part_(&part) {}
 
   void Say() {
+    said_at_look_ = looks_;
     Try([this] {
       was_heard_ = false;
       part_->stop();
@@ -91,8 +92,8 @@ class Stopping {
   }
 
   void Look() {
-    const bool is_restless = looks_ > 0 && looks_ % kLooksUntilSaidAgain == 0;
-    if (!was_heard_ || is_restless) Say();
+    const bool moves_on = watch_.Moves() && looks_ - said_at_look_ >= kLooksUntilSaidAgain;
+    if (!was_heard_ || moves_on) Say();
     Try([this] {
       watch_.Look(part_->look());
       ++looks_;
@@ -128,7 +129,7 @@ class Stopping {
   const Stoppable* part_;
   AxesWatch watch_;
   bool was_heard_ = false, is_recording_ = false;
-  int looks_ = 0, failures_ = 0;  // since the last look that was answered
+  int looks_ = 0, said_at_look_ = 0, failures_ = 0;  // failures: since the last look that was answered
   SteadyClock::time_point failing_since_;
   std::string why_not_;
 };
