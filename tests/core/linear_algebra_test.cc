@@ -98,5 +98,29 @@ TEST(LinearAlgebra, FindsTheRootOfACovarianceOfAnyUnitsAndRank) {
   EXPECT_EQ(back.row(2).norm(), 0.0);
 }
 
+/// Eigen reads what is not its own where there are no columns, and says rank 0 of what is not finite.
+TEST(LinearAlgebra, DecomposesNeitherWhatIsNotFiniteNorNothing) {
+  MatrixXd bad = Parabola(), square = bad.transpose() * bad;
+  bad(2, 1) = std::nan("");
+  square(0, 0) = INFINITY;
+  const MatrixXd b = MatrixXd::Ones(5, 2), none(5, 0);
+  for (const MatrixXd& answer :
+       {SolveRanked(bad, b, 1e-9).x, SolveShortest(bad, b), SolveLeastSquares(bad, b), MatrixXd(SolveSquare(square, b.topRows(3)))}) {
+    EXPECT_EQ(answer.rows(), 3);
+    EXPECT_TRUE(answer.array().isNaN().all()) << answer;
+  }
+  for (const MatrixXd& answer : {GeneralInverseOf(bad), PseudoInverseOf(bad), NullSpaceOf(bad, 1e-9), OrthonormalBasisOf(bad, 1e-9),
+                                 EigenOfSymmetric(square).vectors, MatrixXd(EigenvaluesOfSymmetric(square)),
+                                 SolveNormal(square, b.col(0).head(3)).inverse, CovarianceRootOf(square)})
+    EXPECT_TRUE(answer.array().isNaN().all()) << answer;
+  EXPECT_FALSE(InverseOfPositive(square, 0.0).has_value());
+  EXPECT_FALSE(InverseCholeskyFactor(square).has_value());
+  EXPECT_EQ(SolveRanked(none, b, 1e-9).x.rows(), 0);
+  EXPECT_EQ(SolveLeastSquares(none, b).rows(), 0);
+  EXPECT_EQ(SolveShortest(none, b).rows(), 0);
+  EXPECT_EQ(OrthonormalBasisOf(none, 1e-9).cols(), 0);
+  EXPECT_EQ(EigenvaluesOfSymmetric(MatrixXd(0, 0)).size(), 0);
+}
+
 }  // namespace
 }  // namespace twinbench

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "twin/core/stream.h"
+#include "twin/sim/schedule.h"
 
 namespace twinbench::sim {
 namespace {
@@ -85,6 +86,22 @@ TEST(EventQueue, GoesOnAfterAnExceptionInACallback) {
   EXPECT_EQ(queue.Pending(), 1u);
   queue.RunUntil(AtNs(5));
   EXPECT_EQ(n, 1);
+}
+
+TEST(EventQueue, KeepsNoEventThatRefersToAFrameWhichAnExceptionHasLeft) {
+  EventQueue queue;
+  Schedule device(queue, "device");
+  int n = 0;
+  const auto block = [&] {
+    ScopedEvents own(device);
+    own.At(AtNs(1), [] { throw std::runtime_error("device lost"); });
+    own.At(AtNs(3), [&] { ++n; });
+    device.RunUntil(AtNs(2), [&] { ++n; });
+  };
+  EXPECT_THROW(block(), std::runtime_error);
+  EXPECT_EQ(queue.Pending(), 0u);
+  queue.RunUntil(AtNs(5));
+  EXPECT_EQ(n, 0);
 }
 
 TEST(EventQueue, DestroysCapturesWhenTheyAreNoLongerNeeded) {

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "twin/sim/event_queue.h"
 
@@ -24,23 +25,50 @@ class Schedule {
   /// What a device does at once, in its turn among what else happens now.
   template <typename F>
   void Now(F&& f) {
-    At(queue_.Now(), std::forward<F>(f));
-    queue_.RunUntil(queue_.Now());
+    RunUntil(queue_.Now(), std::forward<F>(f));
   }
 
   /// Lets time pass, with everything that happens meanwhile.
   void RunUntil(Time until) { queue_.RunUntil(until); }
 
-  /// The same with an event of its own at the end.
+  /// The same with an event of its own at the end, which an exception before it takes back.
   template <typename F>
-  void RunUntil(Time until, F&& f) {
-    At(until, std::forward<F>(f));
-    queue_.RunUntil(until);
-  }
+  void RunUntil(Time until, F&& f);
+
+  void Cancel(EventId id) { queue_.Cancel(id); }
 
  private:
   EventQueue& queue_;
   std::uint64_t& count_;
 };
+
+/// Events that refer to locals of whoever makes them: those that have not run when this goes out of scope, by an
+/// exception above all, are cancelled, so that no later event finds a frame that is gone.
+class ScopedEvents {
+ public:
+  explicit ScopedEvents(Schedule& schedule) : schedule_(schedule) {}
+  ~ScopedEvents() {
+    for (const EventId& id : ids_) schedule_.Cancel(id);
+  }
+  ScopedEvents(const ScopedEvents&) = delete;
+  ScopedEvents& operator=(const ScopedEvents&) = delete;
+
+  /// As Schedule::At.
+  template <typename F>
+  void At(Time when, F&& f) {
+    ids_.push_back(schedule_.At(when, std::forward<F>(f)));
+  }
+
+ private:
+  Schedule& schedule_;
+  std::vector<EventId> ids_;
+};
+
+template <typename F>
+void Schedule::RunUntil(Time until, F&& f) {
+  ScopedEvents event(*this);
+  event.At(until, std::forward<F>(f));
+  queue_.RunUntil(until);
+}
 
 }  // namespace twinbench::sim

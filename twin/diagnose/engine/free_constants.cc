@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
 
 namespace twinbench::diagnose {
@@ -115,6 +116,9 @@ FreeConstants FitFree(const Followed& twin, std::vector<FreePoint> points, const
     least = now;
     if (has_settled) break;
   }
+  if (!free.values.allFinite() || !std::isfinite(least))
+    throw InputError("readings", "no constants of the scenario's bench come near them: the fit leads to what is no number",
+                     "readings of the bench that the scenario describes, and in its units");
   free.fitted = Fitted(free, how);
   return free;
 }

@@ -129,8 +129,9 @@ Acquisition World::Acquire(int n_samples, bool keep_raw) {
   const Duration block = BlockTime(RotaryOf(actual()).adc, n_samples);
   const int steps = StepsOf(block, Shortest_s(), kChannels * n_samples);
   Followed followed{Before(), BlockCourse(block / steps, steps + 1), {}};
+  ScopedEvents knots(adc_);
   for (int k = 0; k <= steps; ++k) {
-    adc_.At(start + k * (block / steps), [&, k] {
+    knots.At(start + k * (block / steps), [&, k] {
       const Spots spots = AddKnot(followed.course);
       Spots& seen = followed.seen;
       if (k == 0 || (seen.status == ReadingStatus::kOk && spots.status != ReadingStatus::kOk)) seen = spots;
