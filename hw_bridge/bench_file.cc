@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "hw_bridge/ad/ad_source.h"
 #include "hw_bridge/bench_dialogue.h"
 #include "hw_bridge/control/address.h"
 #include "hw_bridge/file_places.h"
 #include "twin/core/errors.h"
+#include "twin/core/input_text.h"
 #include "twin/core/reading.h"
 #include "twin/core/toml_reader.h"
 
@@ -143,11 +142,7 @@ BenchFile ParseBenchFile(const std::string& text, const std::string& name, const
 }
 
 BenchFile LoadBenchFile(const std::string& path) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
-    throw InputError(path, "the file cannot be read or is empty", "a bench file in TOML");
-  return ParseBenchFile(text.str(), path, std::filesystem::path(path).parent_path().string());
+  return ParseBenchFile(InputText(path, "a bench file in TOML"), path, std::filesystem::path(path).parent_path().string());
 }
 
 }  // namespace twinbench::hw

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "hw_bridge/bench_dialogue.h"
 #include "hw_bridge/control/address.h"
 #include "hw_bridge/file_places.h"
 #include "twin/core/errors.h"
+#include "twin/core/input_text.h"
 #include "twin/core/toml_reader.h"
 
 namespace twinbench::hw {
@@ -338,12 +338,8 @@ MachineFile ParseMachineFile(const std::string& text, const std::string& name, c
 }
 
 MachineFile LoadMachineFile(const std::string& path, const std::vector<MachineAxis>& axes) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
-    throw InputError(path, "the file cannot be read or is empty", "a bench file in TOML");
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  MachineFile file = ParseMachineFile(text.str(), path, axes, folder);
+  MachineFile file = ParseMachineFile(InputText(path, "a bench file in TOML"), path, axes, folder);
   MakeAbsolute(folder, file.record);
   return file;
 }

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <optional>
-#include <sstream>
 
 #include "twin/core/errors.h"
+#include "twin/core/input_text.h"
 #include "twin/core/nearest_key.h"
 #include "twin/core/toml_reader.h"
 #include "twin/core/units.h"
@@ -173,11 +172,7 @@ DialogueWords LoadDialogue(const std::string& name_or_path, const std::string& f
                      fmt::format("one of {}, or a file whose name ends in .toml", NamesOfReady()));
   }
   const std::string path = (std::filesystem::path(folder) / name_or_path).lexically_normal().string();
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
-    throw InputError(where, fmt::format("the dialogue {} cannot be read or is empty", path), "a dialogue in TOML");
-  return ParseDialogue(text.str(), path);
+  return ParseDialogue(InputText(path, "a dialogue in TOML", where), path);
 }
 
 LineWords WithAnyLineEnd() {

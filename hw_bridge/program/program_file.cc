@@ -1,26 +1,13 @@
 #include "hw_bridge/program/program_file.h"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "hw_bridge/file_places.h"
 #include "twin/core/errors.h"
+#include "twin/core/input_text.h"
 #include "twin/core/toml_reader.h"
 
 namespace twinbench::hw {
-namespace {
-
-std::string ProgramTextOf(const std::string& path) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
-    throw InputError(path, "the file cannot be read or is empty", "a bench file in TOML");
-  return text.str();
-}
-
-}  // namespace
-
 std::vector<ScenarioKey> KeysOf(ProgramFile& file) {
   const std::vector<std::string> any;
   std::vector<ScenarioKey> keys;
@@ -38,13 +25,13 @@ std::vector<ScenarioKey> KeysOf(ProgramFile& file) {
 }
 
 bool IsProgramFile(const std::string& path) {
-  return TextAtTop(ProgramTextOf(path), path, "kind") == "program";
+  return TextAtTop(InputText(path, "a bench file in TOML"), path, "kind") == "program";
 }
 
 ProgramFile LoadProgramFile(const std::string& path) {
   ProgramFile file;
   file.path = path;
-  const KeyPlaces places = ReadToml(ProgramTextOf(path), path, KeysOf(file));
+  const KeyPlaces places = ReadToml(InputText(path, "a bench file in TOML"), path, KeysOf(file));
   const std::string where = WhereIn(places, path, "command");
   if (file.command.empty())
     throw InputError(where, "there is no command", "command = [\"python3\", \"acquire.py\", ...]");

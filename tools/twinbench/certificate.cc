@@ -13,6 +13,7 @@
 #include "tools/twinbench/xmllint.h"
 #include "twin/benches/certified_parts.h"
 #include "twin/core/errors.h"
+#include "twin/core/input_text.h"
 #include "twin/core/run_record.h"
 #include "twin/report/certificate/certificate_xml.h"
 #include "twin/report/page/diagnosis_page.h"
@@ -73,7 +74,7 @@ Certified CertifiedOf(const RunFolder& folder, const nlohmann::json& results, co
 CertificateContent ContentOf(const CertificateOptions& options) {
   const RunFolder folder{options.run};
   CertificateContent content;
-  content.laboratory = ReadLaboratory(WholeFile(options.laboratory), options.laboratory);
+  content.laboratory = ReadLaboratory(InputText(options.laboratory, "what new --laboratory writes"), options.laboratory);
   const auto record = RunRecord::Open(folder.path);
   if (!record->finished()) throw InputError(folder.record(), "the run is not finished", "a complete run");
   const twinbench::Provenance provenance = record->provenance();

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "twin/core/errors.h"
+#include "twin/core/input_text.h"
 #include "twin/core/run_record.h"
 #include "twin/report/page/modest_json.h"
 
@@ -79,11 +80,7 @@ void WriteTables(const std::string& folder, const std::vector<report::ResultTabl
 }
 
 nlohmann::json ReadJson(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw InputError(path, "cannot be opened", "a file of a twinbench run");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return report::ParseModestJson(text.str(), path);
+  return report::ParseModestJson(InputText(path, "a file of a twinbench run"), path);
 }
 
 RecordedRun LoadRecordedRun(const std::string& source, const std::string& scenario_path,

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "twin/campaign/study_check.h"
 #include "twin/campaign/vary_block.h"
 #include "twin/core/errors.h"
+#include "twin/core/input_text.h"
 #include "twin/core/scenario_values.h"
 #include "twin/core/schema_table.h"
 
@@ -68,13 +67,6 @@ StudyFile ReadStudyFile(const ScenarioText& text) {
   return file;
 }
 
-std::string ContentsOf(const std::string& path, const std::string& where, const std::string& what) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) throw InputError(where, path + " cannot be read or is empty", what);
-  return text.str();
-}
-
 void FindScenario(const ScenarioText& text, const StudyFile& file, const std::string& folder, Study& study) {
   if (file.scenario.empty() == file.scenario_text.empty())
     throw InputError(text.Where("scenario", text.name() + ":1"),
@@ -88,7 +80,7 @@ void FindScenario(const ScenarioText& text, const StudyFile& file, const std::st
   }
   const std::filesystem::path path = std::filesystem::path(folder) / file.scenario;
   study.scenario_name = path.lexically_normal().string();
-  study.scenario_text = ContentsOf(study.scenario_name, text.Where("scenario", text.name()), "a scenario in TOML");
+  study.scenario_text = InputText(study.scenario_name, "a scenario in TOML", text.Where("scenario", text.name()));
   study.scenario_folder = path.parent_path().string();
 }
 
@@ -119,7 +111,7 @@ Study ParseStudy(const std::string& text, const std::string& name, const std::st
 }
 
 Study LoadStudy(const std::string& path) {
-  return ParseStudy(ContentsOf(path, path, "a study in TOML"), path,
+  return ParseStudy(InputText(path, "a study in TOML"), path,
                     std::filesystem::path(path).parent_path().string());
 }
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <istream>
 
 #include "twin/core/errors.h"
+#include "twin/core/input_text.h"
 #include "twin/core/number_text.h"
 
 namespace twinbench {
@@ -50,6 +50,9 @@ std::vector<std::string> SplitLine(const std::string& line, const std::string& w
 }
 
 void CheckHeader(const CsvTable& table) {
+  constexpr std::size_t kMostColumns = 4096;
+  if (table.columns.size() > kMostColumns)
+    throw InputError(table.WhereHeader(), fmt::format("{} columns", table.columns.size()), fmt::format("at most {}", kMostColumns));
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const std::string& column = table.columns[i];
     if (column.empty())
@@ -109,8 +112,7 @@ CsvTable ParseCsv(std::istream& in, const std::string& name) {
 }
 
 CsvTable ReadCsv(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw InputError(path, "the file cannot be opened", "a readable file");
+  std::istringstream in(InputText(path, "a table (CSV)"));
   return ParseCsv(in, path);
 }
 

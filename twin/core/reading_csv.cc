@@ -8,6 +8,7 @@
 #include "twin/core/bench_format.h"
 #include "twin/core/csv.h"
 #include "twin/core/errors.h"
+#include "twin/core/input_text.h"
 #include "twin/core/reading.h"
 #include "twin/core/reading_column.h"
 
@@ -145,8 +146,7 @@ std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name,
 }
 
 std::vector<Reading> ReadReadingsCsv(const std::string& path, const std::string& bench) {
-  std::ifstream in(path);
-  if (!in) throw InputError(path, "the file cannot be opened", "a readable readings.csv");
+  std::istringstream in(InputText(path, "a readings.csv"));
   return ParseReadingsCsv(in, path, bench);
 }
 

@@ -8,12 +8,12 @@
 #include <fstream>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "twin/core/bench_format.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
+#include "twin/core/input_text.h"
 #include "twin/core/nearest_key.h"
 #include "twin/core/number_text.h"
 #include "twin/core/reading.h"
@@ -351,14 +351,6 @@ std::string ReadBench(const ScenarioText& text) {
   throw InputError(text.name() + ":1", "bench is missing", "bench = " + Alternatives(BenchNames()));
 }
 
-std::string TextOf(const std::string& path) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
-    throw InputError(path, "the file cannot be read or is empty", "a scenario in TOML");
-  return text.str();
-}
-
 // --- files that a scenario names ---
 
 std::string AbsolutePath(const std::string& folder, const std::string& file) {
@@ -444,11 +436,11 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const s
 }
 
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides) {
-  return ParseScenario(TextOf(path), path, std::filesystem::path(path).parent_path().string(), overrides);
+  return ParseScenario(InputText(path, "a scenario in TOML"), path, std::filesystem::path(path).parent_path().string(), overrides);
 }
 
 std::string BenchOfScenarioFile(const std::string& path) {
-  return ReadBench(ScenarioText(TextOf(path), path, {}));
+  return ReadBench(ScenarioText(InputText(path, "a scenario in TOML"), path, {}));
 }
 
 std::uint64_t Scenario::RunSeed() const {

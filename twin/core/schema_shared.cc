@@ -18,7 +18,7 @@ void AddMotion(Table& t, TableSettings& s) {
   t.Add("half_frequency_tilt", kArcsec, UpTo(3600), &s.half_frequency_tilt_rad, "amplitude");
   t.Add("half_frequency_radial", kUm, UpTo(10000), &s.half_frequency_radial_m, "amplitude");
   t.Add("backlash", kArcsec, UpTo(36000), &s.backlash_rad, "full width, of the servo's encoder against the rotor");
-  t.Add("speed", {"deg_s", units::deg}, Positive(3600), &s.speed_rad_s, "of long moves");
+  t.Add("speed", {"deg_s", units::deg}, Between(1e-4, 3600), &s.speed_rad_s, "of long moves");
   t.Add("move_time", kSecond, Positive(3600), &s.move_time_s, "of one step");
   t.Add("settle", kSecond, UpTo(3600), &s.settle_s, "in-position window after the profile");
 }

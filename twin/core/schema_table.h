@@ -27,8 +27,12 @@ inline Bounds Within(double limit) {
 inline Bounds UpTo(double upper) {
   return {0.0, upper};
 }
+/// What is divided by: nothing that anybody builds is a million million times smaller than the largest.
 inline Bounds Positive(double upper) {
-  return {0.0, upper, true};
+  return {1e-12 * upper, upper};
+}
+inline Bounds Between(double lower, double upper) {
+  return {lower, upper};
 }
 
 /// Adds keys to one table.

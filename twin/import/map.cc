@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <sstream>
 
+#include "twin/core/input_text.h"
 #include "twin/core/nearest_key.h"
 #include "twin/core/schema_table.h"
 #include "twin/core/toml_reader.h"
@@ -148,13 +148,10 @@ Map LoadMap(const std::string& name_or_path) {
   if (name_or_path.empty()) return {};
   const auto ready = std::ranges::find(ReadyMaps(), name_or_path, &ReadyMap::name);
   if (ready != ReadyMaps().end()) return ParseMap(ready->text, ready->name);
-  std::ifstream in(name_or_path);
-  if (!in || std::filesystem::is_directory(name_or_path))
+  if (!std::ifstream(name_or_path) || std::filesystem::is_directory(name_or_path))
     throw InputError("--map " + name_or_path, "there is no such file, and no ready map of that name",
                      "a TOML file or one of " + Names());
-  std::ostringstream text;
-  text << in.rdbuf();
-  return ParseMap(text.str(), name_or_path);
+  return ParseMap(InputText(name_or_path, "a map in TOML"), name_or_path);
 }
 
 void SetColumn(const std::string& assignment, Map& map) {

@@ -5,10 +5,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <utility>
 
 #include "twin/core/errors.h"
+#include "twin/core/input_text.h"
 
 namespace twinbench::imports {
 namespace {
@@ -41,16 +41,6 @@ std::string FromUtf16(std::string_view bytes, bool low_first) {
   return text;
 }
 
-std::string ReadBytes(const std::string& path) {
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) throw InputError(path, "the file cannot be opened", "a readable text file");
-  std::string bytes(static_cast<std::size_t>(std::max<std::streamoff>(0, in.tellg())), '\0');
-  in.seekg(0);
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!in) throw InputError(path, "the file cannot be read to its end", "a readable text file");
-  return bytes;
-}
-
 void SplitAtBlanks(std::string_view line, std::vector<std::string_view>& fields) {
   for (std::size_t at = 0; (at = line.find_first_not_of(" \t", at)) != std::string_view::npos;) {
     const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
@@ -79,7 +69,7 @@ std::size_t EndOfField(std::string_view line, std::size_t at, char separator) {
 }  // namespace
 
 std::string LoadText(const std::string& path) {
-  std::string bytes = ReadBytes(path);
+  std::string bytes = InputText(path, "a readable text file");
   if (bytes.empty()) throw InputError(path, "the file is empty", "rows of numbers");
   if (bytes.starts_with("\xFF\xFE")) return FromUtf16(bytes, true);
   if (bytes.starts_with("\xFE\xFF")) return FromUtf16(bytes, false);

@@ -153,11 +153,11 @@ void AddSetup(Table& t, CircularSetup& s) {
 void AddProcedure(Keys& keys, CircularProcedureSettings& s) {
   Table t(keys, "circular_procedure");
   t.Records("setups", s.setups, AddSetup, "what is mounted, one after the other");
-  t.Add("feeds", kMm_min, Positive(100000), &s.feeds_m_s, "of the sweeps, each in all directions");
+  t.Add("feeds", kMm_min, Between(1e-3, 100000), &s.feeds_m_s, "of the sweeps, each in all directions");
   t.Add("points", kPure, {3, 100000}, &s.points, "readings a sweep, evenly spaced");
   t.Add("stops", kPure, UpTo(100000), &s.stops, "a turn, one reading each, behind the sweeps; 0: none");
   t.Add("dwell", kSecond, UpTo(3600), &s.dwell_s, "at a stop until it is read");
-  t.Add("rapid", kMm_min, Positive(1e6), &s.rapid_m_s, "from stop to stop");
+  t.Add("rapid", kMm_min, Between(1e-3, 1e6), &s.rapid_m_s, "from stop to stop");
   t.Add("directions", kPure, {-1, 1}, &s.directions, "1: counter-clockwise from above, -1: clockwise");
   t.Add("start", kDeg, Within(360), &s.start_rad, "where every pass begins");
   t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");

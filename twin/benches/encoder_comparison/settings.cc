@@ -50,7 +50,7 @@ void AddEncoderProcedure(Keys& keys, EncoderProcedureSettings& s) {
   t.Add("readings_per_stop", kPure, {1, 100000}, &s.readings_per_stop,
         "stops: at each of them; their mean is one reading");
   t.Add("read", kSecond, Positive(3600), &s.read_s, "stops: that each of these takes");
-  t.Add("speeds", {"deg_s", units::deg}, Positive(36000), &s.speeds_rad_s, "sweep: one after the other; coast: at the start");
+  t.Add("speeds", {"deg_s", units::deg}, Between(1e-4, 36000), &s.speeds_rad_s, "sweep: one after the other; coast: at the start");
   t.Add("ramp", kSecond, Positive(3600), &s.ramp_s, "sweep: to reach the speed and to stop");
   t.Add("rest", kSecond, UpTo(86400), &s.rest_s, "sweep, coast: behind every pass");
   t.Add("interval", kSecond, Positive(3600), &s.interval_s, "sweep: between readings");

@@ -76,7 +76,7 @@ void AddHobProcedure(Keys& keys, HobProcedureSettings& s) {
   t.Add("heads", kDeg, Within(360), &s.heads_rad, "where the mark passes the table's reading head, one a set-up");
   t.Text("encoder_zero", &s.encoder_zero, {"table_origin", "reference_mark"},
          "where the table's encoder counts from");
-  t.Add("hob_speeds", {"rev_min", 2.0 * units::kPi / 60.0}, Positive(100000), &s.hob_speeds_rad_s,
+  t.Add("hob_speeds", {"rev_min", 2.0 * units::kPi / 60.0}, Between(0.01, 100000), &s.hob_speeds_rad_s,
         "one after the other");
   t.Add("passes", kPure, {-1, 1}, &s.passes, "directions of the table, 1 or -1; at each speed");
   t.Add("turns", kPure, {1, 1000}, &s.turns, "of the table, a pass");
@@ -85,7 +85,7 @@ void AddHobProcedure(Keys& keys, HobProcedureSettings& s) {
   t.Add("rest", kSecond, UpTo(86400), &s.rest_s, "behind every pass");
   t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
   t.Add("fifo_samples", kPure, {1, kHuge}, &s.fifo_samples, "that the counter card holds");
-  t.Add("poll", kSecond, Positive(3600), &s.poll_s, "the computer empties the FIFO this often");
+  t.Add("poll", kSecond, Between(1e-3, 3600), &s.poll_s, "the computer empties the FIFO this often");
 }
 
 void AddMotionOfTheChain(Keys& keys, MechanicsSettings& s) {

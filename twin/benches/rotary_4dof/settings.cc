@@ -89,7 +89,7 @@ void AddPsd(Keys& keys, const std::string& table, PsdSettings& s) {
   t.Flag("window", s.window, "a window in front of the silicon");
   t.Add("window_thickness", kMm, Positive(20), &s.window_thickness_m, "of the glass");
   t.Add("window_index", kPure, {1, 4}, &s.window_index, "refractive index of the glass");
-  t.Add("window_gap", kMm, UpTo(50), &s.window_gap_m, "from the window's back to the silicon");
+  t.Add("window_gap", kMm, Positive(50), &s.window_gap_m, "from the window's back to the silicon");
   t.Add("window_reflectance", kPure, UpTo(0.99), &s.window_reflectance, "of one surface");
   t.Add("window_wedge", kMrad, Within(200), &s.window_wedge_rad, "between the faces");
   t.Flag("window_coherent", s.window_coherent, "interference between the window's faces");
@@ -123,7 +123,7 @@ void AddAdc(Keys& keys, AdcSettings& s, ChainSettings& chain) {
   t.Text("scan_list", &s.scan_list, {kChannelNames.begin(), kChannelNames.end()}, "order of conversion, each once");
   t.Add("bits", kPure, {4, 16}, &s.bits, "of one conversion");
   t.Add("range", kVolt, Positive(1000), &s.range_V, "+- this voltage");
-  t.Add("rate", kKilohertz, Positive(1e6), &s.rate_Hz, "conversions, all channels together");
+  t.Add("rate", kKilohertz, Between(1e-3, 1e6), &s.rate_Hz, "conversions, all channels together");
   t.Add("fifo_samples", kPure, UpTo(kHuge), &s.fifo_samples, "0: the computer always keeps up");
   t.Add("drain_rate", kKilohertz, Positive(1e6), &s.drain_rate_Hz, "at which the computer empties the FIFO");
   t.Add("samples", kPure, {1, 1e7}, &s.samples, "scans a reading");
@@ -155,7 +155,7 @@ void AddMechanics(Keys& keys, MechanicsSettings& s) {
   t.Add("tilt_stiffness", {"Nm_mrad", 1e3}, Positive(1e9), List(s.tilt_stiffness_Nm_rad), "target, reference");
   t.Add("damping_ratio", kPure, UpTo(2), &s.damping_ratio, "of the bearings");
   t.Add("servo", kHz, Positive(10000), List(s.servo_Hz), "bandwidth: target, reference");
-  t.Add("step", kMicrosecond, Positive(100000), &s.step_s, "longest, of friction within a servo period");
+  t.Add("step", kMicrosecond, Between(0.1, 100000), &s.step_s, "longest, of friction within a servo period");
 }
 
 /// What acts on the drives; each key has an entry for the target and one for the reference.
