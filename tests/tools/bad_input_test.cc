@@ -34,6 +34,42 @@ TEST_F(BadInput, InAScenarioOrAFileThatItNamesIsToldWithItsLine) {
   EXPECT_THAT(Refusal({"run", "bad.toml", "-o", "out"}), HasSubstr(" bad.toml:2: "));
 }
 
+TEST_F(BadInput, WithoutEndIsRefused) {
+  ExpectRefused({"run", "/dev/zero", "-o", "out"}, "larger than 256 MB");
+  ExpectRefused({"separate", "/dev/zero", "--scenario", "small.toml"}, "larger than 256 MB");
+  std::string header = "reading";
+  for (int k = 0; k < 5000; ++k) header += ",x" + std::to_string(k);
+  Write("wide.csv", header + "\n");
+  ExpectRefused({"separate", "wide.csv", "--scenario", "small.toml"}, "wide.csv:1: 5001 columns");
+  ExpectRefused({"import", "wide.csv", "--scenario", "small.toml", "-o", "out"}, "columns");
+}
+
+/// Pixels a thousandth of an atom wide show what no machine does: nothing may be certain of that.
+TEST_F(BadInput, ThatNoFitDescribesHasNoResult) {
+  Write("five.toml", "bench = \"freeform_five_axis\"\n[freeform_procedure]\nposes = 30\n[ccd]\npixel_um = 1e-9\n");
+  const Outcome run = Call({"run", "five.toml", "-o", "run"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("does not describe the readings: ccd leaves "));
+  EXPECT_THAT(run.out, testing::AllOf(HasSubstr("no result: the fit "), testing::Not(HasSubstr("um rms"))));
+  const nlohmann::json results = nlohmann::json::parse(Read("run/results.json"));
+  EXPECT_TRUE(results.contains("not_described"));
+  EXPECT_TRUE(results.at("error_map").at("u_dx_um").at(0).is_null());
+  for (const char* command : {"separate", "score"}) EXPECT_THAT(Refusal({command, "run"}), HasSubstr("ccd leaves "));
+}
+
+/// What ended a run in words of its functions, or never, is said when the scenario is loaded.
+TEST_F(BadInput, OfASizeThatNobodyBuildsIsRefused) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"rotary_4dof", "adc.rate_kHz=1e-300"},        {"rotary_4dof", "target.speed_deg_s=1e-9"},
+      {"rotary_4dof", "psd_b.window_gap_mm=0.0"},    {"rotary_4dof", "mechanics.step_us=1e-9"},
+      {"hob_transmission", "hob_procedure.poll_s=1e-10"}, {"circular_motion", "circular_procedure.feeds_mm_min=[1e-300]"},
+      {"freeform_five_axis", "ccd.image_mm=1e-300"}, {"turntable_autocollimator", "turntable.speed_deg_s=1e-300"}};
+  for (const auto& [bench, set] : cases) {
+    Write("bad.toml", std::string("bench = \"") + bench + "\"\n");
+    ExpectRefused({"run", "bad.toml", "-o", "out", "--set", set});
+  }
+}
+
 TEST_F(BadInput, OfAFileThatIsNotThereIsRefused) {
   ExpectRefused({"run", "none.toml", "-o", "out"}, "none.toml: ");
   ExpectRefused({"export", "none", "--readings", "r.csv"}, "none: ");

@@ -18,6 +18,7 @@
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/diagnosis_json.h"
 #include "twin/benches/encoder_comparison/procedure.h"
+#include "twin/benches/evaluated.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/core/errors.h"
@@ -97,7 +98,7 @@ py::tuple PartsForPython(const Scenario& scenario) {
 }
 
 report::Evaluation Separated(const Scenario& scenario, const Readings& r, const std::string& estimator) {
-  report::Evaluation evaluation = BenchOf(scenario).evaluate(scenario, r.readings, EstimatorNamed(estimator));
+  report::Evaluation evaluation = EvaluationOf(scenario, r.readings, EstimatorNamed(estimator));
   if (!evaluation.Separated())
     throw InputError("the readings", evaluation.not_separated, "readings of a full-circle test");
   return evaluation;
@@ -207,7 +208,7 @@ void AddFunctions(py::module_& m) {
   });
   m.def("score", [](const Scenario& scenario, const Readings& r, const py::object& truth,
                     const std::string& estimator) {
-    return ValueOf(BenchOf(scenario).score(scenario, r.readings, JsonOf(truth), EstimatorNamed(estimator)).json);
+    return ValueOf(ScoreOf(scenario, r.readings, JsonOf(truth), EstimatorNamed(estimator)).json);
   });
   m.def("diagnose", [](const Scenario& scenario, const Readings& r, const std::string& model,
                        const std::vector<std::string>& excluded, const std::string& cache_folder) {

@@ -5,10 +5,12 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/passing_run.h"
+#include "twin/benches/evaluated.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
 #include "twin/report/evaluation.h"
+#include "twin/report/sound.h"
 #include "twin/report/uncertainty_text.h"
 
 namespace twinbench::tools {
@@ -33,7 +35,7 @@ void AddFigures(const nlohmann::json& node, const std::string& path, const std::
 
 std::vector<uncertainty::Figure> FiguresOf(const Scenario& scenario, const std::string& wanted) {
   std::vector<uncertainty::Figure> figures;
-  AddFigures(BenchOf(scenario).evaluate(scenario, ReadingsOfTwin(scenario), Estimator::kRigorous).results, "",
+  AddFigures(EvaluationOf(scenario, ReadingsOfTwin(scenario), Estimator::kRigorous).results, "",
              wanted, figures);
   return figures;
 }
@@ -50,7 +52,7 @@ void Share(const BudgetOptions& options, JsonAnswer& answer) {
     throw InputError("--of " + options.figures, "results.json has no number there",
                      "a place of results.json, as stability.range");
   answer.Write(report::ContributionsJson(found));
-  if (!answer.IsOnStdout()) fmt::print("{}", report::ContributionsText(found));
+  if (!answer.IsOnStdout()) fmt::print("{}", report::WithoutNoNumbers(report::ContributionsText(found)));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "tools/twinbench/stop_signal.h"
 #include "twin/campaign/trial.h"
 #include "twin/core/errors.h"
+#include "twin/report/sound.h"
 
 namespace twinbench::tools {
 namespace {
@@ -54,7 +55,7 @@ Begun Begin(const CampaignOptions& options, campaign::Ranks& ranks) {
 void Report(const campaign::Table& table, const CampaignOptions& options, JsonAnswer& answer) {
   const campaign::Summary summary = SummaryOf(table);
   answer.Write(SummaryJson(summary));
-  if (!answer.IsOnStdout()) fmt::print("{}", campaign::SummaryText(summary, options.study));
+  if (!answer.IsOnStdout()) fmt::print("{}", report::WithoutNoNumbers(campaign::SummaryText(summary, options.study)));
   if (!options.csv.empty()) WriteFileAtOnce(options.csv, table.Csv());
 }
 

@@ -9,6 +9,7 @@
 #include "twin/core/errors.h"
 #include "twin/report/compensation_text.h"
 #include "twin/report/controller_tables.h"
+#include "twin/report/sound.h"
 
 namespace twinbench::tools {
 namespace {
@@ -51,8 +52,8 @@ void Compensate(const CompensateOptions& options, JsonAnswer& answer) {
                                             report::CompensationComments(compensation, options.source)));
   answer.Write(report::CompensationJson(errors, compensation, check ? &*check : nullptr));
   if (answer.IsOnStdout()) return;
-  fmt::print("{}", report::CompensationText(errors, compensation));
-  if (check) fmt::print("{}", report::CompensationCheckText(*check));
+  fmt::print("{}", report::WithoutNoNumbers(report::CompensationText(errors, compensation)));
+  if (check) fmt::print("{}", report::WithoutNoNumbers(report::CompensationCheckText(*check)));
 }
 
 std::string FormsText() {

@@ -29,6 +29,7 @@
 #include "twin/diagnose/shown.h"
 #include "twin/plausible/check.h"
 #include "twin/report/diagnosis_text.h"
+#include "twin/report/sound.h"
 
 namespace twinbench::tools {
 namespace {
@@ -146,7 +147,7 @@ void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
       fmt::print(stderr, "twinbench: {} is read-only: the diagnosis is not put into its results.json\n",
                  options.source);
   }
-  if (!answer.IsOnStdout()) fmt::print("{}", report::DiagnosisText(page, {LettersOfStdout(), options.verbose}));
+  if (!answer.IsOnStdout()) fmt::print("{}", report::WithoutNoNumbers(report::DiagnosisText(page, {LettersOfStdout(), options.verbose})));
   if (!disagreement.is_plausible)
     throw InputError(options.source, disagreement.line, "readings that the scenario describes");
 }

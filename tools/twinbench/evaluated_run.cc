@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "twin/benches/registry.h"
+#include "twin/benches/evaluated.h"
+#include "twin/core/errors.h"
 #include "twin/core/estimator.h"
 #include "twin/core/run_record.h"
 #include "twin/report/evaluation.h"
+#include "twin/report/sound.h"
 #include "twin/report/uncertainty_text.h"
 
 namespace twinbench::tools {
@@ -18,18 +20,18 @@ namespace {
 /// Every result with what its readings and each constant that is known only so well add to its uncertainty.
 std::vector<uncertainty::Budget> BudgetsOf(const Scenario& scenario, const std::vector<Reading>& readings) {
   return uncertainty::Budgets(scenario, [&](const Scenario& changed) {
-    return uncertainty::QuantitiesOf(BenchOf(changed).evaluate(changed, readings, Estimator::kRigorous).results);
+    return uncertainty::QuantitiesOf(EvaluationOf(changed, readings, Estimator::kRigorous).results);
   });
 }
 
 }  // namespace
 
 EvaluatedRun EvaluatedWithBudget(const Scenario& scenario, const std::vector<Reading>& readings) {
-  EvaluatedRun run = {BenchOf(scenario).evaluate(scenario, readings, Estimator::kRigorous), {}};
+  EvaluatedRun run = {EvaluationOf(scenario, readings, Estimator::kRigorous), {}};
   const std::vector<uncertainty::Budget> budgets = BudgetsOf(scenario, readings);
   run.evaluation.results["uncertainty_budget"] = report::BudgetsByList(budgets);
   run.text = run.evaluation.summary;
-  if (!scenario.uncertainties.empty()) run.text += "\n" + report::BudgetText(budgets);
+  if (!scenario.uncertainties.empty()) run.text += "\n" + report::WithoutNoNumbers(report::BudgetText(budgets));
   return run;
 }
 
@@ -53,6 +55,7 @@ bool EvaluateRun(const Scenario& scenario, const std::string& folder, JsonAnswer
   WriteTables(folder, run.evaluation.tables);
   fmt::print("{}", run.text);
   answer.Write(RunJson({folder}, scenario, readings, run));
+  if (run.evaluation.IsRefuted()) throw InputError(folder, run.evaluation.not_separated, "readings of the bench in the scenario");
   return run.evaluation.Separated();
 }
 

@@ -21,6 +21,7 @@ EvaluatedRun EvaluatedWithBudget(const Scenario& scenario, const std::vector<Rea
 
 /// Evaluates a finished run from its record, as any later look at it will, writes results.json, prints the summary and answers with both.
 /// @return whether there was enough to separate the tables.
+/// @throws InputError after all that, if a fit does not describe the readings.
 bool EvaluateRun(const Scenario& scenario, const std::string& folder, JsonAnswer& answer);
 
 /// What a command that makes a run answers: {"run", "bench", "title", "seed", "readings", "readings_ok", "separated", "results"}, the last as

@@ -18,6 +18,7 @@
 #include "twin/investigate/investigation.h"
 #include "twin/investigate/json.h"
 #include "twin/report/investigation_text.h"
+#include "twin/report/sound.h"
 
 namespace twinbench::tools {
 namespace {
@@ -97,14 +98,14 @@ void Investigate(const InvestigateOptions& options, LivePage& page, JsonAnswer& 
   laboratory.told = [&](const investigate::Investigation& so_far) {
     Keep(options, scenario, so_far);
     page.Told("believed", BelievedJson(so_far.steps.back()));
-    fmt::print("{}", report::StepText(so_far.steps.back(), so_far.goal));
+    fmt::print("{}", report::WithoutNoNumbers(report::StepText(so_far.steps.back(), so_far.goal)));
     std::fflush(stdout);
   };
   const investigate::Investigation found = investigate::Investigate(scenario, how, means, laboratory);
   Keep(options, scenario, found);
   WriteFileAtOnce(options.folder + "/extended.toml", WriteScenario(investigate::Extended(scenario, found)));
   answer.Write(investigate::ToJson(found, scenario.bench));
-  if (!answer.IsOnStdout()) fmt::print("{}", report::InvestigationText(found, scenario.bench));
+  if (!answer.IsOnStdout()) fmt::print("{}", report::WithoutNoNumbers(report::InvestigationText(found, scenario.bench)));
 }
 
 }  // namespace

@@ -6,10 +6,13 @@
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <regex>
+#include <set>
 #include <string_view>
 
 #include "tools/twinbench/exit_code.h"
+#include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
@@ -77,6 +80,13 @@ nlohmann::json Fault(const char* kind, const std::string& message, ExitCode code
   return {{"kind", kind}, {"message", message}, {"exit_code", static_cast<int>(code)}};
 }
 
+/// Nobody waits at these for a device or a browser: what takes long is computed, and may do so without a word.
+bool Computes(const std::string& command) {
+  static const std::set<std::string> commands = {"run",  "separate", "score",   "diagnose", "plan",   "budget",
+                                                 "uncertainty", "import", "report", "certificate", "compensate"};
+  return commands.contains(command);
+}
+
 std::string TextOf(const nlohmann::json& json) {
   constexpr int kIndent = 1;
   return json.dump(kIndent, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";  // a file's name may be any bytes
@@ -113,8 +123,11 @@ void AnswerWith(CLI::App& command, const std::string& what, std::function<void(J
       ->type_name("[FILE]")
       ->expected(0, 1)
       ->default_str("-");
-  command.callback([to, action = std::move(action)] {
+  const bool computes = Computes(command.get_name());
+  command.callback([to, computes, action = std::move(action)] {
     JsonAnswer answer(*to);
+    std::optional<StillWorking> patience;
+    if (computes) patience.emplace();
     try {
       action(answer);
     } catch (const std::exception& error) {

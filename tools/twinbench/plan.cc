@@ -16,6 +16,7 @@
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/report/plan_text.h"
+#include "twin/report/sound.h"
 
 namespace twinbench::tools {
 namespace {
@@ -171,7 +172,7 @@ void Plan(const PlanOptions& options, JsonAnswer& answer) {
   RequireFreeNext(options, next);
   if (!options.next.empty()) WriteNext(options.next, next, scenario);
   answer.Write(JsonOf(planned, next));
-  if (!answer.IsOnStdout()) fmt::print("{}", TextOf(planned));
+  if (!answer.IsOnStdout()) fmt::print("{}", report::WithoutNoNumbers(TextOf(planned)));
 }
 
 }  // namespace

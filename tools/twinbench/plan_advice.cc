@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "tools/twinbench/passing_run.h"
+#include "twin/benches/evaluated.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
@@ -23,7 +24,7 @@ namespace twinbench::tools {
 namespace {
 
 nlohmann::json EvaluatedBy(const Scenario& scenario, const std::vector<Reading>& readings) {
-  return BenchOf(scenario).evaluate(scenario, readings, Estimator::kRigorous).results;
+  return EvaluationOf(scenario, readings, Estimator::kRigorous).results;
 }
 
 std::shared_ptr<const diagnose::Isolability> ShownBy(const Scenario& scenario,

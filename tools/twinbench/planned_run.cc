@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/passing_run.h"
+#include "twin/benches/evaluated.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
@@ -18,7 +19,7 @@ namespace twinbench::tools {
 namespace {
 
 nlohmann::json ResultsOf(const Scenario& scenario, const std::vector<Reading>& readings) {
-  return BenchOf(scenario).evaluate(scenario, readings, Estimator::kRigorous).results;
+  return EvaluationOf(scenario, readings, Estimator::kRigorous).results;
 }
 
 plan::Outlook OutlookOf(const Scenario& scenario, const std::vector<Reading>& readings) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 
 namespace twinbench::tools {
@@ -14,8 +15,12 @@ std::string Clock(double seconds_s) {
                       : fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
+using Steady = std::chrono::steady_clock;
+std::atomic<Steady::rep> last_said{0};
+
 /// A terminal that is gone must not end a measurement.
 void Say(const std::string& text) {
+  last_said = Steady::now().time_since_epoch().count();
   std::fputs(text.c_str(), stderr);
   std::fflush(stderr);
 }
@@ -67,6 +72,17 @@ void TrialsLine::Show(std::int64_t done, std::int64_t planned, std::int64_t lost
   Say(on_terminal_ ? "\r\033[K" + text : text + "\n");
   line_open_ = on_terminal_;
 }
+
+StillWorking::StillWorking(std::chrono::milliseconds quiet)
+    : thread_([this, quiet](const std::stop_token& stop) {
+        const auto begin = Steady::now();
+        std::unique_lock lock(mutex_);
+        while (!ends_.wait_for(lock, stop, quiet, [&stop] { return stop.stop_requested(); })) {
+          const auto now = Steady::now();
+          if (now - Steady::time_point(Steady::duration(last_said)) < quiet) continue;
+          Say(fmt::format("still working, {}\n", Clock(std::chrono::duration<double>(now - begin).count())));
+        }
+      }) {}
 
 procedure::ProgressCallback ShownOn(ProgressLine& line) {
   return [&line](const procedure::Progress& p) {

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
 #include <string>
+#include <thread>
 
 #include "twin/core/reading.h"
 #include "twin/procedure/options.h"
@@ -41,6 +44,18 @@ class TrialsLine {
   WallClock::time_point started_;
   std::int64_t shown_tenth_ = 0;
   bool line_open_ = false;
+};
+
+/// Says on stderr every kQuiet that the work goes on, if nothing else was said meanwhile, as long as this lives.
+class StillWorking {
+ public:
+  static constexpr std::chrono::seconds kQuiet{15};
+  explicit StillWorking(std::chrono::milliseconds quiet = kQuiet);
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any ends_;
+  std::jthread thread_;  // the last: it uses the others
 };
 
 /// What a procedure calls to be shown on `line`, which must outlive it.

@@ -6,7 +6,7 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
-#include "twin/benches/registry.h"
+#include "twin/benches/evaluated.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
 #include "twin/report/evaluation.h"
@@ -36,7 +36,7 @@ void PrintScore(const ScoreOptions& options, JsonAnswer& answer) {
   const nlohmann::json truth = ReadJson(folder.truth());
   const RecordedRun run = LoadRecordedRun(folder.path, "", {});
   const report::ScoredRun score =
-      BenchOf(run.scenario).score(run.scenario, run.readings, truth, EstimatorNamed(options.estimator));
+      ScoreOf(run.scenario, run.readings, truth, EstimatorNamed(options.estimator));
   answer.Write(WithValues(score));
   if (answer.IsOnStdout()) return;
   if (options.positions) fmt::print("{}\n", score.positions);

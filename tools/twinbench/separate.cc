@@ -3,7 +3,7 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
-#include "twin/benches/registry.h"
+#include "twin/benches/evaluated.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
 #include "twin/report/evaluation.h"
@@ -20,7 +20,7 @@ void Separate(const SeparateOptions& options, JsonAnswer& answer) {
   RequireOutput(answer.to(), {options.source, options.scenario});
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   const report::Evaluation evaluation =
-      BenchOf(run.scenario).evaluate(run.scenario, run.readings, EstimatorNamed(options.estimator));
+      EvaluationOf(run.scenario, run.readings, EstimatorNamed(options.estimator));
   if (!evaluation.Separated())
     throw InputError(options.source, evaluation.not_separated, "readings of a full-circle test");
   answer.Write(evaluation.separation);

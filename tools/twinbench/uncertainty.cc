@@ -6,10 +6,11 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
-#include "twin/benches/registry.h"
+#include "twin/benches/evaluated.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
 #include "twin/report/evaluation.h"
+#include "twin/report/sound.h"
 #include "twin/report/uncertainty_text.h"
 
 namespace twinbench::tools {
@@ -25,7 +26,7 @@ struct UncertaintyOptions {
 uncertainty::Evaluate EvaluationOf(const RecordedRun& run, const std::string& estimator) {
   return [&run, estimator](const Scenario& scenario) {
     return uncertainty::QuantitiesOf(
-        BenchOf(scenario).evaluate(scenario, run.readings, EstimatorNamed(estimator)).results);
+        EvaluationOf(scenario, run.readings, EstimatorNamed(estimator)).results);
   };
 }
 
@@ -36,7 +37,7 @@ std::vector<uncertainty::Joint> JointsOf(const RecordedRun& run, const std::stri
   for (const uncertainty::Budget& budget : budgets) names.push_back(budget.quantity.name);
   std::vector<uncertainty::Joint> joints;
   for (const uncertainty::Joint& joint :
-       BenchOf(run.scenario).evaluate(run.scenario, run.readings, EstimatorNamed(estimator)).Joints())
+       EvaluationOf(run.scenario, run.readings, EstimatorNamed(estimator)).Joints())
     joints.push_back(Determined(joint, names));
   return joints;
 }
@@ -62,7 +63,7 @@ void State(const UncertaintyOptions& options, JsonAnswer& answer) {
   if (answer.IsOnStdout()) return;
   if (run.scenario.uncertainties.empty())
     fmt::print("The scenario states no u_<key> (u_wavelength_nm = 0.01): only what the readings say counts.\n\n");
-  fmt::print("{}", report::BudgetText(budgets, joints, drawn));
+  fmt::print("{}", report::WithoutNoNumbers(report::BudgetText(budgets, joints, drawn)));
 }
 
 }  // namespace

@@ -16,6 +16,12 @@ struct ResultTable {
   std::string text;
 };
 
+/// What a fit leaves of readings, rms, over the standard uncertainty that is stated of them; 1 if both are right.
+struct Misfit {
+  std::string of;  // "ccd_px"
+  double per_u;    // NaN: nothing is stated, or nothing is left over
+};
+
 /// What the readings of any bench come to.
 struct Evaluation {
   nlohmann::json results;     // results.json
@@ -26,8 +32,11 @@ struct Evaluation {
   /// Results that the readings leave uncertain together; empty: none. Asked for only where somebody wants their matrices, as large as the square of the
   /// results.
   std::function<std::vector<uncertainty::Joint>()> joints = {};
+  std::vector<Misfit> misfits = {};  // of the fits behind it, where an uncertainty is stated that is not theirs
 
   bool Separated() const { return !separation.is_null(); }
+  /// Whether a fit does not describe the readings (report/sound.h).
+  bool IsRefuted() const { return results.contains("not_described"); }
   std::vector<uncertainty::Joint> Joints() const { return joints ? joints() : std::vector<uncertainty::Joint>(); }
 };
 

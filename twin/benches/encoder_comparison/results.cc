@@ -18,6 +18,7 @@
 #include "twin/core/written_number.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
+#include "twin/report/sound.h"
 
 namespace twinbench::benches::encoder {
 namespace {
@@ -176,6 +177,8 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   AddDevice(device, device_settings, evaluation.results);
   if (device.highest_order > 0) {
     evaluation.separation = SeparationJson(device, device_settings);
+    if (device.curves.dof > 0)
+      evaluation.misfits = {report::WidenedMisfit("the separation of device and reference", std::sqrt(device.curves.chi2 / device.curves.dof))};
     evaluation.joints = [curves = device.curves] { return JointsOf(curves); };
   }
   if (EncoderOf(scenario).encoder_procedure.kind == "stops") {

@@ -233,6 +233,12 @@ std::string VolumetricWords(const Unseen& unseen) {
       unseen.poses.size(), RmsLength(unseen.errors.error_um), RmsLength(unseen.errors.u_um));
 }
 
+/// Of each channel.
+std::vector<report::Misfit> MisfitsOf(const Identification& found) {
+  if (found.dof <= 0) return {};
+  return {{"qpd_x", found.residual_per_u[0]}, {"qpd_y", found.residual_per_u[1]}, {"ccd", found.residual_per_u[2]}};
+}
+
 }  // namespace
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
@@ -264,7 +270,8 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
           {{"volumetric.csv", VolumetricCsv(unseen.poses, unseen.errors)},
            {"volumetric_grid.csv", VolumetricCsv(map.poses, map.errors)},
            {"compensation.csv", CompensationCsv(bench, seen, found)}},
-          joints};
+          joints,
+          MisfitsOf(found)};
 }
 
 }  // namespace twinbench::benches::freeform

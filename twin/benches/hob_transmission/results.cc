@@ -282,13 +282,27 @@ report::CurveScore CurveOf(const std::string& name, const HarmonicSeries& series
   return curve;
 }
 
+/// Of all orders together, of e_T + psi.
+report::Misfit MisfitOf(const separate::hob::HeadSeparation& separation) {
+  double chi2 = 0.0;
+  int dof = 0;
+  for (const SeparatedOrder& order : separation.orders) {
+    if (order.dof <= 0 || !std::isfinite(order.chi2)) continue;
+    chi2 += order.chi2;
+    dof += order.dof;
+  }
+  return {"the separation of transmission and table encoder", std::sqrt(chi2 / dof)};
+}
+
 }  // namespace
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
   const nlohmann::json separation =
       analysis.separation ? SeparationJson(analysis, HobOf(scenario)) : nlohmann::json();
-  return {ResultsOf(analysis, HobOf(scenario)), separation, analysis.not_separated, SummaryOf(analysis)};
+  report::Evaluation evaluation{ResultsOf(analysis, HobOf(scenario)), separation, analysis.not_separated, SummaryOf(analysis)};
+  if (analysis.separation) evaluation.misfits = {MisfitOf(*analysis.separation)};
+  return evaluation;
 }
 
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,

@@ -1,4 +1,7 @@
 #include <fmt/core.h>
+
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/rotary_4dof/analysis.h"
@@ -7,6 +10,7 @@
 #include "twin/benches/rotary_4dof/tables.h"
 #include "twin/benches/rotary_4dof/uncertainty_parts.h"
 #include "twin/core/errors.h"
+#include "twin/report/sound.h"
 
 namespace twinbench::benches::rotary {
 namespace {
@@ -31,6 +35,14 @@ TableErrors ErrorsOf(const nlohmann::json& truth, const std::string& table) {
   return errors;
 }
 
+std::vector<report::Misfit> MisfitsOf(const separate::Separation& s) {
+  std::vector<report::Misfit> misfits;
+  for (int d = 0; d < 4; ++d)
+    if (s.dof_of[d] >= 1.0)
+      misfits.push_back(report::WidenedMisfit(std::array{"ez", "ex", "ey", "dy"}[static_cast<std::size_t>(d)], std::sqrt(s.chi2[d] / s.dof_of[d])));
+  return misfits;
+}
+
 }  // namespace
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
@@ -42,6 +54,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   report::Evaluation evaluation{results, separation, analysis.not_separated, Summary(analysis)};
   if (!analysis.separation) return evaluation;
   evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
+  evaluation.misfits = MisfitsOf(*analysis.separation);
   const report::ErrorMotionTexts motions = EvaluateErrorMotions(*analysis.separation, analysis.motions);
   evaluation.results["iso230_7"] = motions.json;
   evaluation.summary += motions.text;

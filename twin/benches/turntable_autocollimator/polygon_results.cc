@@ -12,6 +12,7 @@
 #include "twin/core/units.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
+#include "twin/report/sound.h"
 #include "twin/report/uncertainty_parts.h"
 
 namespace twinbench::benches::turntable {
@@ -175,7 +176,9 @@ report::Evaluation EvaluatePolygon(const Scenario& scenario, const std::vector<R
                                    Estimator estimator) {
   const PolygonAnalysis a = separate::turntable::AnalysePolygon(readings, scenario, estimator);
   const nlohmann::json separation = a.closure ? ClosureJson(a) : nlohmann::json();
-  return {PolygonJson(a), separation, a.not_separated, PolygonSummary(a)};
+  report::Evaluation evaluation{PolygonJson(a), separation, a.not_separated, PolygonSummary(a)};
+  if (a.closure) evaluation.misfits = {report::WidenedMisfit("the closure of encoder and polygon", a.closure->noise.scale)};
+  return evaluation;
 }
 
 report::ScoredRun ScorePolygon(const Scenario& scenario, const std::vector<Reading>& readings,

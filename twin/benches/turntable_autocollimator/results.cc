@@ -14,6 +14,7 @@
 #include "twin/core/written_number.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
+#include "twin/report/sound.h"
 #include "twin/report/uncertainty_parts.h"
 
 namespace twinbench::benches::turntable {
@@ -280,6 +281,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   report::Evaluation evaluation{ResultsOf(analysis, scenario), separation, analysis.not_separated,
                                 SummaryOf(analysis)};
   if (analysis.separation) AddTilt(analysis, scenario, evaluation);
+  if (analysis.separation) evaluation.misfits = {report::WidenedMisfit("the separation of both tables", analysis.separation->scale)};
   if (analysis.separation) evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
   return evaluation;
 }

@@ -82,6 +82,10 @@ class Separation {
   }
 
   double Widening(int order, const harmonics::OrderSolution& solution) {
+    if (order > 1 && solution.dof > 0 && std::isfinite(solution.chi2)) {
+      curves_.chi2 += solution.chi2;
+      curves_.dof += solution.dof;
+    }
     if (solution.dof <= 0 || ChiSquaredExceedance(solution.chi2, solution.dof) > kContradiction / highest_)
       return 1.0;
     curves_.disagreeing.push_back(order);

@@ -10,6 +10,8 @@ struct SeparatedCurves {
   harmonics::HarmonicSeries device, forward, backward, reversal;
   harmonics::HarmonicSeries reference;  // NaN in the orders of `lost`; empty if all are lost
   std::vector<int> lost;                // orders that the mountings see alike: counted as the device's
+  double chi2 = 0.0;                    // against the stated covariances, from order 2 on: order 1 may change with the mounting
+  int dof = 0;
   std::vector<int>
       disagreeing;  // orders in which the mountings contradict each other; their uncertainty is widened
 };

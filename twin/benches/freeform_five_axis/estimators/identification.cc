@@ -162,6 +162,7 @@ void SetResiduals(const FreeformSettings& bench, const std::vector<PoseRead>& po
   const Eigen::VectorXd left = Residual(bench, poses, found.unknowns);
   found.residual_rms =
       left.reshaped(3, std::ssize(poses)).rowwise().norm() / std::sqrt(static_cast<double>(poses.size()));
+  found.residual_per_u = found.residual_rms.cwiseProduct(WeightsOf(bench, 1));
 }
 
 Identification Identify(const FreeformSettings& bench, const std::vector<PoseRead>& poses) {

@@ -22,6 +22,7 @@ struct Identification {
   Eigen::VectorXd singular_values;  // of unit columns, descending, the largest is 1
   std::vector<NotSeparable> not_separable;
   Eigen::Vector3d residual_rms;  // V, V, px
+  Eigen::Vector3d residual_per_u;  // over the noise that weighs the readings
   Eigen::Index dof = 0;
   int rounds = 0;
   bool converged = false;
