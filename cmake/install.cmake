@@ -50,7 +50,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME twinbench)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtwinbench-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libeigen3-dev, libbullet-dev, libembree-dev, libopenexr-dev, libtomlplusplus-dev, libfmt-dev, libsqlite3-dev, nlohmann-json3-dev, libceres-dev, libpugixml-dev")
+  "libeigen3-dev, libbullet-dev, libembree-dev, libopenexr-dev, libtomlplusplus-dev, libfmt-dev, libsqlite3-dev, libssl-dev, nlohmann-json3-dev, libceres-dev, libpugixml-dev")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-twinbench)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
 include(CPack)

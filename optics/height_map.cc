@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
 #include "optics/exr_header.h"
@@ -100,9 +101,13 @@ void WriteHeightMap(const std::string& path, const HeightMap& map) {
   Imf::FrameBuffer buffer;
   buffer.insert("Y", PixelsOf(pixels, header.dataWindow(), map.width));
   try {
-    Imf::OutputFile file(path.c_str(), header);
-    file.setFrameBuffer(buffer);
-    file.writePixels(map.height);
+    const std::string beside = path + ".part";  // a reader sees a whole file or none
+    {
+      Imf::OutputFile file(beside.c_str(), header);
+      file.setFrameBuffer(buffer);
+      file.writePixels(map.height);
+    }
+    std::filesystem::rename(beside, path);
   } catch (const std::exception& error) {
     throw std::runtime_error(path + ": cannot write the height map: " + error.what());
   }

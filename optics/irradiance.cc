@@ -16,6 +16,7 @@
 #include <ImfVecAttribute.h>
 
 #include <cmath>
+#include <filesystem>
 #include <set>
 #include <stdexcept>
 
@@ -184,8 +185,12 @@ void WriteIrradianceMaps(const std::string& path, const std::vector<IrradianceMa
   std::vector<Imf::Header> headers;
   for (const IrradianceMap& map : maps) headers.push_back(MakeHeader(map));
   try {
-    Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()));
-    for (std::size_t i = 0; i < maps.size(); ++i) WritePart(file, static_cast<int>(i), maps[i]);
+    const std::string beside = path + ".part";  // a reader sees a whole file or none
+    {
+      Imf::MultiPartOutputFile file(beside.c_str(), headers.data(), static_cast<int>(headers.size()));
+      for (std::size_t i = 0; i < maps.size(); ++i) WritePart(file, static_cast<int>(i), maps[i]);
+    }
+    std::filesystem::rename(beside, path);
   } catch (const std::exception& error) {
     throw std::runtime_error(path + ": cannot write the irradiance map: " + error.what());
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -14,6 +13,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
 #include "twin/core/reading_column.h"
+#include "twin/core/whole_file.h"
 
 namespace twinbench::hw {
 namespace {
@@ -90,7 +90,7 @@ std::string FieldOf(const CsvTable& table, const CsvTable::Row& row, const std::
 void WriteStops(const std::vector<Reading>& planned, const std::string& bench, const std::string& path) {
   const CsvTable table = TableOf(planned, bench);
   const std::set<std::string> shown = ShownColumns(bench);
-  std::ofstream out(path);
+  std::ostringstream out;
   const auto print = [&](const std::vector<std::string>& all) {
     std::vector<std::string> fields;
     for (std::size_t k = 0; k < all.size(); ++k) {
@@ -100,7 +100,7 @@ void WriteStops(const std::vector<Reading>& planned, const std::string& bench, c
   };
   print(table.columns);
   for (const CsvTable::Row& row : table.rows) print(row.fields);
-  if (!out.flush()) throw BenchError(path + ": cannot be written");
+  WriteFileAtOnce(path, out.str());
 }
 
 ReadStops ReadStopsBack(const std::string& path, const std::vector<Reading>& planned, const std::string& bench) {

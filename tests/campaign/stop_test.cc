@@ -2,6 +2,7 @@
 
 #include "tests/campaign/small_study.h"
 #include "tests/core/input_error.h"
+#include "tests/support/kept_text.h"
 #include "twin/campaign/campaign.h"
 
 namespace twinbench::campaign {
@@ -27,6 +28,19 @@ TEST(RunCampaign, ThatIsStoppedKeepsWhatHasBegunAndGoesOnToTheSameTable) {
   EXPECT_LT(kept, 20);
   EXPECT_TRUE(RunCampaign(study, table, 2, alone, [](const CampaignProgress&) {}));
   EXPECT_EQ(table.Csv(), whole.Csv());
+}
+
+TEST(Table, HasOneWriterWhateverItIsCalledAndIsReadMeanwhile) {
+  const TemporaryFolder folder;
+  const Study study = ParseStudy(StudyOf("trials = 2\n"), "study.toml", "");
+  const std::string path = folder.File("table.sqlite"), link = folder.File("link.sqlite");
+  std::filesystem::create_symlink("table.sqlite", link);
+  {
+    const Table table = Table::Create(path, "1", study);
+    for (const std::string& name : {path, link}) EXPECT_KEPT(MessageOf([&] { Table::Continue(name, "1", study); }));
+    EXPECT_TRUE(Table::Open(path).Done().empty());
+  }
+  EXPECT_NO_THROW(Table::Continue(path, "1", study));
 }
 
 }  // namespace

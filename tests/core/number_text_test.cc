@@ -56,7 +56,8 @@ TEST(PrintInUnit, IsReadBackToTheSameBitsWithEveryFactor) {
   for (const double to_SI : {1.0, units::deg, units::arcsec, units::mrad, units::um, units::nm, units::mm, 1e6,
                              units::urad / units::hour}) {
     for (int i = 0; i < 2000; ++i) {
-      const double value = AnyFinite(random);
+      // First two that need more than 17 digits and have a zero behind them, in degrees.
+      const double value = i == 0 ? 0x1.c79cdf9d63f7p+3 : i == 1 ? -0x1.2694c5bd26a4ep+3 : AnyFinite(random);
       const std::string text = PrintInUnit(value, to_SI);
       const auto read = ParseInUnit(text, to_SI);
       ASSERT_TRUE(read) << text;

@@ -1,5 +1,6 @@
 #include "twin/core/run_record.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sqlite3.h>
@@ -179,7 +180,69 @@ TEST(RunRecord, MustBeThereAndOfThisProgramAndVersionToBeOpenedAndIsNotMadeOverA
   for (const std::string& text : said) EXPECT_KEPT(text);
 }
 
-constexpr int kNow = 5;
+/// Carries out SQL that the record's triggers would refuse.
+void Force(const std::string& directory, const std::string& sql) {
+  for (const char* table : {"provenance", "readings", "raw_blocks", "events", "finished", "calls", "attempts", "digests", "files"})
+    for (const char* change : {"UPDATE", "DELETE"}) Sql(directory, fmt::format("DROP TRIGGER no_{}_{}", change, table).c_str());
+  EXPECT_EQ(Sql(directory, sql.c_str()), "") << sql;
+}
+
+/// Six readings with a block and two calls each, an event, a failed attempt and files.
+void MakeSealed(const TemporaryFolder& folder) {
+  const auto record = RunRecord::Create(folder.path(), AnyProvenance());
+  record->WriteBeside("scenario.toml", "first");
+  record->WriteBeside("scenario.toml", "as it stays");
+  for (int k = 0; k < 6; ++k) {
+    for (const char* answer : {"1", "2"}) record->Called({Time(Duration(k)), "target", "state", answer});
+    record->Append(ReadingOf(k), BlockOf({1, 2, 3, 4}));
+  }
+  record->AttemptFailed(6, Time{}, "gap", "3 scans");
+  record->AppendEvent(Time{}, "operator", "lamp off");
+  record->Finish();
+}
+
+TEST(RunRecord, SaysWhatIsAlteredMissingOrAddedSinceItWasWritten) {
+  for (const char* sql :
+       {"UPDATE readings SET psd_a_x_V = psd_a_x_V * (1 + 1e-15) WHERE reading = 3", "DELETE FROM readings WHERE reading IN (3, 4)",
+        "DELETE FROM readings WHERE reading = 5", "UPDATE readings SET id = 50 WHERE reading = 2",
+        "UPDATE raw_blocks SET samples = x'0100' WHERE reading = 1", "UPDATE calls SET answer = '3' WHERE id = 4",
+        "DELETE FROM events", "INSERT INTO events VALUES(NULL, 0, 'operator', 'lamp on')", "UPDATE attempts SET fault = 'stuck'",
+        "UPDATE provenance SET seed = '2'", "UPDATE files SET sha256 = ''", "DELETE FROM finished",
+        "DELETE FROM digests WHERE id = 9", "DELETE FROM digests", "DROP TABLE digests",
+        "DELETE FROM digests WHERE id > 9; DELETE FROM readings WHERE reading > 1; DELETE FROM raw_blocks WHERE reading > 1"}) {
+    const TemporaryFolder folder;
+    MakeSealed(folder);
+    ASSERT_EQ(RunRecord::Open(folder.path())->Readings().size(), 6u);
+    Force(folder.path(), sql);
+    EXPECT_KEPT(OpenError(folder.path()));
+  }
+}
+
+TEST(RunRecord, SaysWhenAFileBesideItIsNoneThatWasWrittenWithItAndReadsOneThatIsMissing) {
+  const TemporaryFolder folder;
+  MakeSealed(folder);
+  folder.Write("scenario.toml", "first");
+  EXPECT_NO_THROW(RunRecord::Open(folder.path())) << "the power failed behind the digest of the second";
+  folder.Write("scenario.toml", "as it stays\n");
+  EXPECT_KEPT(OpenError(folder.path()));
+  std::filesystem::remove(folder.File("scenario.toml"));
+  EXPECT_NO_THROW(RunRecord::Open(folder.path())) << "whoever needs it says so";
+}
+
+TEST(RunRecord, AgreesWithAScenarioThatHasNoDigestOrSaysSo) {
+  const TemporaryFolder folder;
+  RunRecord::Create(folder.path(), {"0.1.0", "twin", 7, "", kHobBench});
+  for (const char* fits : {"bench = \"hob_transmission\"\nseed = 7\n", "bench = \"hob_transmission\"\n[laser]  # of another version\n"}) {
+    folder.Write("scenario.toml", fits);
+    EXPECT_NO_THROW(RunRecord::Open(folder.path())) << fits;
+  }
+  for (const char* other : {"bench = \"hob_transmission\"\nseed = 8\n", "bench = \"encoder_comparison\"\nseed = 7\n"}) {
+    folder.Write("scenario.toml", other);
+    EXPECT_KEPT(OpenError(folder.path()));
+  }
+}
+
+constexpr int kNow = 6;
 
 /// Takes from a record what later versions brought.
 void MakeVersion(int version, const std::string& folder) {
@@ -189,14 +252,14 @@ void MakeVersion(int version, const std::string& folder) {
        {"raw_blocks DROP COLUMN first_scan", "raw_blocks DROP COLUMN device_ns", "raw_blocks DROP COLUMN host_ns",
         "raw_blocks DROP COLUMN utc_ns", "raw_blocks DROP COLUMN saturated_mask"}},
       {4, {"readings DROP COLUMN head_rad", "readings DROP COLUMN interferometer_rad"}},
-      {5, {"provenance DROP COLUMN bench_name", "readings DROP COLUMN quantities"}}};
+      {5, {"provenance DROP COLUMN bench_name", "readings DROP COLUMN quantities"}},
+      {6, {}}};
   for (int later = kNow; later > version; --later) {
     for (const std::string change : brought.at(later))
       EXPECT_EQ(Sql(folder, ("ALTER TABLE " + change).c_str()), "");
   }
-  if (version < 3) {
-    EXPECT_EQ(Sql(folder, "DROP TABLE calls; DROP TABLE attempts"), "");
-  }
+  EXPECT_EQ(Sql(folder, version < 3 ? "DROP TABLE calls; DROP TABLE attempts" : ""), "");
+  EXPECT_EQ(Sql(folder, "DROP TABLE digests; DROP TABLE files"), "");
   EXPECT_EQ(Sql(folder, ("PRAGMA user_version = " + std::to_string(version)).c_str()), "");
 }
 
@@ -218,6 +281,8 @@ TEST(RunRecord, OfEveryEarlierVersionIsBroughtUpToDate) {
     record->AttemptFailed(1, Time{}, "gap", "3 scans");
     EXPECT_EQ(record->FailedAttempts().size(), 1u);
     EXPECT_EQ(Sql(folder.path(), "DELETE FROM attempts"), "a run record is insert-only");
+    Force(folder.path(), "UPDATE readings SET setup = 9 WHERE reading = 0");
+    EXPECT_THAT(OpenError(folder.path()), testing::HasSubstr("reading 0 altered")) << "since it was brought up to date";
   }
 }
 

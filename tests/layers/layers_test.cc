@@ -62,7 +62,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
 const std::map<std::string, std::set<std::string>> kOwners = {
     {"embree", {"optics"}}, {"OpenEXR/", {"optics"}}, {"Imf", {"optics"}}, {"Imath", {"optics"}},
     {"BulletDynamics", {"mechanics"}}, {"LinearMath/", {"mechanics"}}, {"btBullet", {"mechanics"}},
-    {"sqlite3", {"twin/core"}}, {"toml++", {"twin/core"}}, {"mpi", {"twin/campaign"}}, {"asio", {"hw_bridge"}},
+    {"sqlite3", {"twin/core"}}, {"openssl/", {"twin/core"}}, {"toml++", {"twin/core"}}, {"mpi", {"twin/campaign"}}, {"asio", {"hw_bridge"}},
     {"iio", {"hw_bridge"}}, {"comedi", {"hw_bridge"}}, {"pugi", {"hw_bridge", "twin/report"}}};
 
 std::string RoomOf(const std::string& path) {

@@ -15,11 +15,13 @@ int main(int argc, char** argv) {
   const bool sparing = argc == 4 && std::string(argv[3]) == "sparing";
   const std::string folder = argv[1];
   const auto record = RunRecord::Create(folder, {"test", "writer", 1, "", kRotaryBench});
+  record->WriteBeside("truth.json", "{}");
   if (sparing) record->SpareTheDisk();
   const int acknowledged = open((folder + "/acknowledged").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
   for (int k = 0; k < std::atoi(argv[2]); ++k) {
     record->Called({Time{}, "adc", "acquire 3000", std::to_string(k)});
     record->Append(test::NumberedReading(k), test::NumberedBlock(k));
+    if (!sparing && k % 25 == 0) record->WriteBeside("results.json", std::to_string(k));
     const std::string line = std::to_string(k) + "\n";
     if (!sparing && write(acknowledged, line.data(), line.size()) < 0) return 1;
   }

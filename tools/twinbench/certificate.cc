@@ -5,19 +5,18 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/xmllint.h"
 #include "twin/benches/certified_parts.h"
+#include "twin/core/digest.h"
 #include "twin/core/errors.h"
 #include "twin/core/input_text.h"
 #include "twin/core/run_record.h"
 #include "twin/report/certificate/certificate_xml.h"
 #include "twin/report/page/diagnosis_page.h"
-#include "twin/report/page/digest.h"
 
 namespace twinbench::tools {
 namespace {
@@ -30,11 +29,8 @@ struct CertificateOptions {
 };
 
 std::string WholeFile(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(path, "cannot be read", "a file");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  if (!std::ifstream(path)) throw InputError(path, "cannot be read", "a file");
+  return BytesOfFile(path);
 }
 
 Temperature TemperatureOf(const std::vector<Reading>& readings, const Laboratory& laboratory, const std::string& laboratory_file) {
@@ -90,7 +86,7 @@ CertificateContent ContentOf(const CertificateOptions& options) {
   content.simulated = IsSimulated(provenance, content.laboratory);
   content.temperature = TemperatureOf(record->Readings(), content.laboratory, options.laboratory);
   for (const std::string& file : {folder.results(), folder.scenario(), folder.record()})
-    content.digests.emplace_back(std::filesystem::path(file).filename().string(), report::Sha256(WholeFile(file)));
+    content.digests.emplace_back(std::filesystem::path(file).filename().string(), Sha256(BytesOfFile(file)));
   RequireTraceability(content, options.laboratory);
   return content;
 }

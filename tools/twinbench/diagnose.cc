@@ -102,13 +102,15 @@ void Screen(const std::string& folder, const RecordedRun& run, report::Diagnosis
 }
 
 /// Puts the diagnosis into the run's results.json, beside what is there.
-void MergeIntoResults(const std::string& path, nlohmann::json diagnosis, const report::DiagnosisPage& page) {
+void MergeIntoResults(const RunFolder& folder, nlohmann::json diagnosis, const report::DiagnosisPage& page) {
+  const auto record = RunRecord::Open(folder.path);
+  const std::string path = folder.results();
   nlohmann::json results = fs::exists(path) ? ReadJson(path) : nlohmann::json::object();
   diagnosis["plots"] = diagnose::PlotsJson(page.found);
   diagnosis["in_words"] = report::DiagnosisText(page, {report::Letters::kAscii, true});
   diagnosis["screen"] = diagnose::ToJson(page.screen);
   results["diagnosis"] = std::move(diagnosis);
-  WriteJson(path, results);
+  record->WriteBeside(kResultsFile, JsonText(results));
 }
 
 /// What speaks against the readings themselves, where whoever reads the answer sees it first.
@@ -142,7 +144,7 @@ void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
   if (fs::is_directory(options.source)) {
     Screen(options.source, run, page);
     if (access(options.source.c_str(), W_OK) == 0)
-      MergeIntoResults(RunFolder{options.source}.results(), json, page);
+      MergeIntoResults({options.source}, json, page);
     else
       fmt::print(stderr, "twinbench: {} is read-only: the diagnosis is not put into its results.json\n",
                  options.source);

@@ -49,9 +49,10 @@ nlohmann::json RunJson(const RunFolder& folder, const Scenario& scenario, const 
 }
 
 bool EvaluateRun(const Scenario& scenario, const std::string& folder, JsonAnswer& answer) {
-  const std::vector<Reading> readings = RunRecord::Open(folder)->Readings();
+  const auto record = RunRecord::Open(folder);
+  const std::vector<Reading> readings = record->Readings();
   const EvaluatedRun run = EvaluatedWithBudget(scenario, readings);
-  WriteJson(RunFolder{folder}.results(), run.evaluation.results);
+  record->WriteBeside(kResultsFile, JsonText(run.evaluation.results));
   WriteTables(folder, run.evaluation.tables);
   fmt::print("{}", run.text);
   answer.Write(RunJson({folder}, scenario, readings, run));

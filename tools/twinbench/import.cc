@@ -114,11 +114,11 @@ void Write(const Taken& taken, const ImportOptions& options, JsonAnswer& answer)
   {
     const auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, "import: " + options.files.front(),
                                                         taken.scenario.seed, "", taken.scenario.bench});
+    record->WriteBeside(kScenarioFile, WriteScenario(taken.scenario));
     record->AppendAll(taken.readings);
     record->Finish();
+    record->WriteBeside(kResultsFile, JsonText(run.evaluation.results));
   }
-  WriteFileAtOnce(folder.scenario(), WriteScenario(taken.scenario));
-  WriteJson(folder.results(), run.evaluation.results);
   if (!taken.story.empty()) WriteFileAtOnce(folder.path + "/import.txt", taken.story);
   fmt::print("{}", run.text);
   nlohmann::json json = RunJson(folder, taken.scenario, taken.readings, run);

@@ -53,7 +53,7 @@ bool Ask(const investigate::Step& step, const std::vector<investigate::Advice>& 
 
 /// What is known so far outlives the program: a file at every step.
 void Keep(const InvestigateOptions& options, const Scenario& scenario, const investigate::Investigation& so_far) {
-  WriteJson(options.folder + "/investigation.json", investigate::ToJson(so_far, scenario.bench));
+  WriteFileAtOnce(options.folder + "/investigation.json", JsonText(investigate::ToJson(so_far, scenario.bench)));
 }
 
 nlohmann::json BelievedJson(const investigate::Step& step) {

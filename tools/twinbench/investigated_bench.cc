@@ -48,7 +48,7 @@ class HiddenTwin : public InvestigatedBench {
     std::error_code ignored;
     fs::remove_all(run.path, ignored);
     RunOnTwin(investigate::HiddenRun(hidden_, believed_, step.run, asked.repeat), run, false, page_);
-    WriteFileAtOnce(run.scenario(), WriteScenario(asked));  // what is believed; the rest is in truth.json
+    RunRecord::Open(run.path)->WriteBeside(kScenarioFile, WriteScenario(asked));  // what is believed; the rest is in truth.json
   }
 
   Scenario hidden_, believed_;

@@ -23,9 +23,7 @@ std::string UtcText(std::time_t now) {
 }
 
 void RequireSameScenario(const Scenario& scenario, const RunFolder& folder) {
-  if (!std::filesystem::exists(folder.scenario())) {  // the program ended between making the record and writing it
-    WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
-  } else if (WriteScenario(LoadScenario(folder.scenario())) != WriteScenario(scenario)) {
+  if (WriteScenario(LoadScenario(folder.scenario())) != WriteScenario(scenario)) {
     throw InputError(folder.path, "the run was begun with another scenario or other --set", "the same");
   }
 }
@@ -86,7 +84,10 @@ BegunRun TakeUpIfAsked(const MeasureOptions& options, const Scenario& scenario, 
     return {};
   }
   BegunRun begun{RunRecord::Continue(folder.path), {}};
-  RequireSameScenario(scenario, folder);
+  if (std::filesystem::exists(folder.scenario()))
+    RequireSameScenario(scenario, folder);
+  else  // the program ended between making the record and writing it
+    begun.record->WriteBeside(kScenarioFile, WriteScenario(scenario));
   begun.readings = begun.record->Readings();
   return begun;
 }
@@ -97,7 +98,7 @@ std::unique_ptr<RunRecord> BeginRun(const Scenario& scenario, const RunFolder& f
   auto record =
       RunRecord::Create(folder.path, {TWINBENCH_VERSION, identity, scenario.seed, origin, scenario.bench});
   if (!origin.empty()) record->AppendEvent(Time{}, kClock, TextOf(ClockMarkNow()));
-  WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
+  record->WriteBeside(kScenarioFile, WriteScenario(scenario));
   return record;
 }
 

@@ -22,7 +22,7 @@ bool BeginsLike(const std::string& path, std::string_view own) {
 
 void RequireOldRunOfTwin(const RunFolder& folder) {
   if (RunRecord::HasWriter(folder.path))
-    throw InputError(folder.record(), "another program is writing this record", "a folder without one");
+    throw InputError(folder.record(), "another program is writing it", "a folder without a record");
   const std::string source = RunRecord::Open(folder.path)->provenance().source;
   if (source != "twin")
     throw InputError(folder.record(), "this record was not made by the twin (" + source + ") and cannot be made again; --force is not for it",

@@ -3,17 +3,15 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "tools/twinbench/light_pictures.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/campaign/campaign_page.h"
+#include "twin/core/digest.h"
 #include "twin/core/errors.h"
 #include "twin/core/run_record.h"
 #include "twin/report/page/diagnosis_page.h"
-#include "twin/report/page/digest.h"
 #include "twin/report/page/investigation_page.h"
 #include "twin/report/page/plan_page.h"
 #include "twin/report/page/run_page.h"
@@ -26,19 +24,12 @@ namespace fs = std::filesystem;
 constexpr const char* kExpected =
     "the folder of a run or an investigation, diagnosis.json, what plan --json has written, or a campaign's table";
 
-std::string DigestOfFile(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return report::Sha256(text.str());
-}
-
 report::PageSource SourceOf(const std::string& path, const std::vector<std::string>& files) {
   report::PageSource source;
   source.name = fs::weakly_canonical(path).filename().string();
   source.program_version = TWINBENCH_VERSION;
   for (const std::string& file : files) {
-    if (fs::exists(file)) source.digests.emplace_back(fs::path(file).filename().string(), DigestOfFile(file));
+    if (fs::exists(file)) source.digests.emplace_back(fs::path(file).filename().string(), Sha256(BytesOfFile(file)));
   }
   return source;
 }

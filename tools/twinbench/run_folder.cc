@@ -1,10 +1,8 @@
 #include "tools/twinbench/run_folder.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string_view>
 
 #include "twin/core/errors.h"
@@ -18,13 +16,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void WriteTo(const std::string& file, const std::string& text, const std::string& path) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.flush();
-  if (!out) throw BenchError(path + ": cannot be written");
-}
-
 bool IsDatabase(const std::string& path) {
   constexpr std::string_view kBegin = "SQLite format 3";
   std::string begin(kBegin.size(), '\0');
@@ -36,9 +27,7 @@ bool IsDatabase(const std::string& path) {
 
 void RequireRoomFor(const RunFolder& folder, const Scenario& scenario) {
   if (fs::exists(folder.record())) return;  // the record says so itself
-  std::ostringstream left;
-  left << std::ifstream(folder.scenario()).rdbuf();
-  if (left.str() == WriteScenario(scenario)) return;
+  if (BytesOfFile(folder.scenario()) == WriteScenario(scenario)) return;
   for (const std::string& file : {folder.scenario(), folder.truth(), folder.results()}) {
     if (fs::exists(file))
       throw InputError(file, "the file is there already, and the run would overwrite it", "a folder without it");
@@ -57,18 +46,8 @@ void RequireOutput(const std::string& output, const std::vector<std::string>& in
     throw InputError(output, "this is a record or another database and would be overwritten", "another name");
 }
 
-void WriteFileAtOnce(const std::string& path, const std::string& text) {
-  std::error_code unknown;
-  if (fs::exists(path, unknown) && !fs::is_regular_file(path)) return WriteTo(path, text, path);
-  const std::string beside = path + ".part";
-  WriteTo(beside, text, path);
-  std::error_code error;
-  fs::rename(beside, path, error);
-  if (error) throw BenchError(path + ": " + error.message());
-}
-
-void WriteJson(const std::string& path, const nlohmann::json& json) {
-  WriteFileAtOnce(path, json.dump(1) + "\n");
+std::string JsonText(const nlohmann::json& json) {
+  return json.dump(1) + "\n";
 }
 
 void WriteTables(const std::string& folder, const std::vector<report::ResultTable>& tables) {

@@ -6,17 +6,23 @@
 
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
+#include "twin/core/whole_file.h"
 #include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
 
+/// Files of a run that its record has digests of (RunRecord::WriteBeside).
+inline constexpr const char* kScenarioFile = "scenario.toml";
+inline constexpr const char* kTruthFile = "truth.json";
+inline constexpr const char* kResultsFile = "results.json";
+
 /// The files of one run (architecture.md, "Run record").
 struct RunFolder {
   std::string path;
-  std::string scenario() const { return path + "/scenario.toml"; }
+  std::string scenario() const { return path + "/" + kScenarioFile; }
   std::string record() const { return path + "/record.sqlite"; }
-  std::string truth() const { return path + "/truth.json"; }
-  std::string results() const { return path + "/results.json"; }
+  std::string truth() const { return path + "/" + kTruthFile; }
+  std::string results() const { return path + "/" + kResultsFile; }
   std::string images() const { return path + "/images"; }
 };
 
@@ -31,13 +37,8 @@ void RequireRoomFor(const RunFolder& folder, const Scenario& scenario);
 /// @throws InputError if the output is one of them, a record, or a folder.
 void RequireOutput(const std::string& output, const std::vector<std::string>& inputs);
 
-/// Writes beside the file and renames, so that a reader sees the old file or the new one, never half of one. What is no file (a pipe, a
-/// device) is written to.
-/// @throws BenchError if the disk refuses.
-void WriteFileAtOnce(const std::string& path, const std::string& text);
-
-/// A file of ours; what a command answers goes through JsonAnswer.
-void WriteJson(const std::string& path, const nlohmann::json& json);
+/// JSON as a file of a run has it; what a command answers goes through JsonAnswer.
+std::string JsonText(const nlohmann::json& json);
 
 /// Each into the folder, which is made if it is not there.
 void WriteTables(const std::string& folder, const std::vector<report::ResultTable>& tables);

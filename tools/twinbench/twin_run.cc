@@ -33,9 +33,9 @@ void RunOnTwin(const Scenario& scenario, const RunFolder& folder, bool images, L
   const std::unique_ptr<BenchTwin> twin = bench.make_twin(scenario);
   const auto record =
       RunRecord::Create(folder.path, {TWINBENCH_VERSION, "twin", scenario.seed, "", scenario.bench});
+  record->WriteBeside(kScenarioFile, WriteScenario(scenario));
+  record->WriteBeside(kTruthFile, JsonText(twin->Truth()));
   record->SpareTheDisk();
-  WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
-  WriteJson(folder.truth(), twin->Truth());
   ProgressLine progress;
   page.Watch(*record, scenario, folder.path);
   twin->CarryOut(*record, UnlessStopped(page.ShownToo(ShownOn(progress))));

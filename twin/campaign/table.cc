@@ -13,6 +13,7 @@ namespace twinbench::campaign {
 namespace {
 
 constexpr int kTableId = 0x7442434D;  // "tBCM"
+constexpr const char* kExpected = "a table made by twinbench campaign";
 constexpr const char* kAskRows =
     "SELECT t.trial, t.failure, t.verdict, r.name, r.value, r.u, r.error, r.k FROM trials t "
     "LEFT JOIN results r USING(trial) ORDER BY t.trial, r.name";
@@ -61,16 +62,19 @@ void MakeCampaignSafe(SqliteDatabase& database) {
   database.Execute("PRAGMA synchronous = NORMAL");
 }
 
+void RequireTable(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) throw InputError(path, "the file is not there", kExpected);
+}
+
 std::unique_ptr<SqliteDatabase> OpenTable(const std::string& path, int flags) {
-  const std::string expected = "a table made by twinbench campaign";
-  if (!std::filesystem::is_regular_file(path)) throw InputError(path, "the file is not there", expected);
+  RequireTable(path);
   try {
     auto database = std::make_unique<SqliteDatabase>(path, flags);
     if (database->Ask("PRAGMA application_id") != fmt::format("{}", kTableId))
-      throw InputError(path, "this is another kind of database", expected);
+      throw InputError(path, "this is another kind of database", kExpected);
     return database;
   } catch (const BenchError& failure) {
-    throw InputError(path, fmt::format("it cannot be opened ({})", failure.what()), expected);
+    throw InputError(path, fmt::format("it cannot be opened ({})", failure.what()), kExpected);
   }
 }
 
@@ -113,11 +117,17 @@ std::string CsvResults(const TrialRow& row, const std::map<std::string, bool>& n
   return text;
 }
 
+/// Of the file itself, whatever link it is named by.
+WriterLock LockOf(const std::string& path) {
+  return {std::filesystem::weakly_canonical(path).string() + ".lock", path};
+}
+
 }  // namespace
 
 Table Table::Create(const std::string& path, const std::string& version, const Study& study) {
   if (std::filesystem::exists(path))
     throw InputError(path, "the file is there already", "a new name, or --resume to go on with its study");
+  WriterLock lock = LockOf(path);
   // Made beside its place and renamed when whole: a table that is there can be continued.
   const std::string beside = path + ".part";
   for (const char* ending : {"", "-wal", "-shm", "-journal"}) std::filesystem::remove(beside + ending);
@@ -126,14 +136,19 @@ Table Table::Create(const std::string& path, const std::string& version, const S
     MakeCampaignTables(made, version, study);
   }
   std::filesystem::rename(beside, path);
-  return Continue(path, version, study);
+  return Continue(path, version, study, std::move(lock));
 }
 
 Table Table::Continue(const std::string& path, const std::string& version, const Study& study) {
+  RequireTable(path);
+  return Continue(path, version, study, LockOf(path));
+}
+
+Table Table::Continue(const std::string& path, const std::string& version, const Study& study, WriterLock lock) {
   auto database = OpenTable(path, SQLITE_OPEN_READWRITE);
   RequireSame(*database, version, study);
   MakeCampaignSafe(*database);
-  return Table(std::move(database));
+  return Table(std::move(database), std::move(lock));
 }
 
 Table Table::Open(const std::string& path) {

@@ -4,12 +4,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "twin/campaign/trial.h"
 #include "twin/core/sqlite_database.h"
+#include "twin/core/writer_lock.h"
 
 namespace twinbench::campaign {
 
@@ -21,13 +23,14 @@ struct VariedKey {
 
 /// The results of a study in one SQLite file (docs/campaign.md): `provenance`, `trials` with the values of the
 /// varied keys, and `results`, one row a number, because trials need not come to the same numbers. Each trial is
-/// written in one transaction, or not at all. Ordered by trial and name the content is the same whoever computed
+/// written in one transaction, or not at all, by one program at a time. Ordered by trial and name the content is the same whoever computed
 /// it.
 class Table {
  public:
-  /// @throws InputError if the file is there already.
+  /// @throws InputError if the file is there already, or another program is making it.
   static Table Create(const std::string& path, const std::string& version, const Study& study);
-  /// @throws InputError if it is not there, no table of a campaign, or of another study, scenario or version.
+  /// @throws InputError if it is not there, no table of a campaign, or of another study, scenario or version, or if
+  ///         another program is writing it.
   static Table Continue(const std::string& path, const std::string& version, const Study& study);
   /// To be read, of any study.
   static Table Open(const std::string& path);
@@ -46,9 +49,12 @@ class Table {
   std::string Csv() const;
 
  private:
-  explicit Table(std::unique_ptr<SqliteDatabase> database) : database_(std::move(database)) {}
+  explicit Table(std::unique_ptr<SqliteDatabase> database, std::optional<WriterLock> lock = {})
+      : lock_(std::move(lock)), database_(std::move(database)) {}
+  static Table Continue(const std::string& path, const std::string& version, const Study& study, WriterLock lock);
   std::vector<std::string> Keys() const;
 
+  std::optional<WriterLock> lock_;  // of a table that is written
   std::unique_ptr<SqliteDatabase> database_;
 };
 

@@ -74,7 +74,10 @@ std::string PrintInUnit(double value_SI, double to_SI) {
     if (const auto text = fmt::format("{:.{}g}", number, digits); ReadsBack(text, to_SI, value_SI)) return text;
   }
   const long double extended = static_cast<long double>(value_SI) / static_cast<long double>(to_SI);
-  return fmt::format("{:.21g}", extended);  // 21 digits name every 64-bit mantissa
+  for (int digits = 18; digits <= 20; ++digits) {  // zeros at the end stay: they say that it is to be read in extended precision
+    if (const auto text = fmt::format("{:#.{}g}", extended, digits); ReadsBack(text, to_SI, value_SI)) return text;
+  }
+  return fmt::format("{:#.21g}", extended);  // 21 digits name every 64-bit mantissa
 }
 
 }  // namespace twinbench

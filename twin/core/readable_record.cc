@@ -4,7 +4,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <utility>
 
 #include "twin/core/errors.h"
 
@@ -29,7 +28,7 @@ ReadableRecord::~ReadableRecord() {
   if (!folder_.empty()) fs::remove_all(folder_, ignored);
 }
 
-/// With what was written since the last checkpoint, and with the scenario, which an old record has its bench's name from.
+/// With what was written since the last checkpoint.
 void ReadableRecord::Copy(const std::string& path) {
   std::error_code error;
   std::string made = (fs::temp_directory_path(error) / "twinbench-XXXXXX").string();
@@ -39,12 +38,8 @@ void ReadableRecord::Copy(const std::string& path) {
   place_ = made + "/record.sqlite";
   fs::copy_file(path, place_, error);
   if (error) throw BenchError(path + ": cannot be read: " + error.message());
-  for (const auto& [from, to] : {std::pair{path + "-wal", place_ + "-wal"},
-                                 std::pair{(fs::path(path).parent_path() / "scenario.toml").string(),
-                                           made + "/scenario.toml"}}) {
-    if (fs::exists(from)) fs::copy_file(from, to, error);
-    if (error) throw BenchError(from + ": cannot be read: " + error.message());
-  }
+  if (fs::exists(path + "-wal")) fs::copy_file(path + "-wal", place_ + "-wal", error);
+  if (error) throw BenchError(path + "-wal: cannot be read: " + error.message());
   fs::permissions(place_, fs::perms::owner_read | fs::perms::owner_write);
   if (fs::exists(place_ + "-wal")) fs::permissions(place_ + "-wal", fs::perms::owner_read | fs::perms::owner_write);
 }

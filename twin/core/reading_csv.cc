@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <set>
+#include <sstream>
 
 #include "twin/core/bench_format.h"
 #include "twin/core/csv.h"
@@ -11,6 +12,7 @@
 #include "twin/core/input_text.h"
 #include "twin/core/reading.h"
 #include "twin/core/reading_column.h"
+#include "twin/core/whole_file.h"
 
 namespace twinbench {
 namespace {
@@ -125,9 +127,9 @@ void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& b
 }
 
 void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& bench, const std::string& path) {
-  std::ofstream out(path);
+  std::ostringstream out;
   WriteReadingsCsv(readings, bench, out);
-  if (!out.flush()) throw BenchError(path + ": the file cannot be written");
+  WriteFileAtOnce(path, out.str());
 }
 
 std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name, const std::string& bench) {

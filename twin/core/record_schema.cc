@@ -9,6 +9,7 @@
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
+#include "twin/core/record_digests.h"
 #include "twin/core/record_rows.h"
 #include "twin/core/scenario.h"
 
@@ -16,7 +17,7 @@ namespace twinbench {
 namespace {
 
 constexpr int kApplicationId = 0x54574E42;  // "TWNB"
-constexpr int kVersion = 5;                 // of the tables below
+constexpr int kVersion = 6;                 // of the tables below
 
 constexpr const char* kTables = R"sql(
 CREATE TABLE provenance(program_version TEXT, bench TEXT, seed TEXT, clock_origin_utc TEXT, bench_name TEXT);
@@ -41,6 +42,13 @@ CREATE TABLE calls(id INTEGER PRIMARY KEY, reading INTEGER NOT NULL, time_ns INT
   request TEXT NOT NULL, answer TEXT);
 CREATE TABLE attempts(id INTEGER PRIMARY KEY, reading INTEGER NOT NULL, attempt INTEGER NOT NULL, time_ns INTEGER,
   fault TEXT, text TEXT, UNIQUE(reading, attempt));
+)sql";
+
+/// Since version 6: digests of all other rows, and of files beside the record.
+constexpr const char* kDigestTables = R"sql(
+CREATE TABLE digests(id INTEGER PRIMARY KEY, part TEXT NOT NULL, first INTEGER NOT NULL, last INTEGER NOT NULL,
+  digest TEXT NOT NULL);
+CREATE TABLE files(id INTEGER PRIMARY KEY, name TEXT NOT NULL, sha256 TEXT NOT NULL);
 )sql";
 
 /// Nothing of a record may be changed or taken away once it is in.
@@ -90,8 +98,8 @@ void FromVersion3(SqliteDatabase& database) {
 }
 
 /// The bench that the run's scenario names; empty if there is no scenario, or none that can be read.
-std::string BenchOfScenario(const std::string& record) {
-  const std::string scenario = std::filesystem::path(record).parent_path() / "scenario.toml";
+std::string BenchOfScenario(const std::string& folder) {
+  const std::string scenario = std::filesystem::path(folder) / "scenario.toml";
   try {
     return std::filesystem::exists(scenario) ? BenchOfScenarioFile(scenario) : "";
   } catch (const InputError&) {
@@ -112,21 +120,29 @@ std::string BenchOfReadings(SqliteDatabase& database) {
 
 /// Version 4 knew the quantities of four benches and did not say of which it was. Nothing in a record may be
 /// changed, but a new column may have a value for the row that is there.
-void FromVersion4(SqliteDatabase& database) {
+void FromVersion4(SqliteDatabase& database, const std::string& folder) {
   AddColumns(database, "readings", "TEXT", {"quantities"});
-  std::string bench = BenchOfScenario(database.path());
+  std::string bench = BenchOfScenario(folder);
   if (bench.empty()) bench = BenchOfReadings(database);
   AddColumns(database, "provenance", fmt::format("TEXT DEFAULT '{}'", bench).c_str(), {"bench_name"});
 }
 
-void BringUpToDate(SqliteDatabase& database) {
+/// Version 5 had no digests: what is altered from now on is told.
+void AddDigests(SqliteDatabase& database) {
+  database.Execute(kDigestTables);
+  ForbidChanges(database, {"digests", "files"});
+  RecordDigests(database).SealAll();
+}
+
+void BringUpToDate(SqliteDatabase& database, const std::string& folder) {
   const auto version = ParseWholeNumber(database.Ask("PRAGMA user_version")).value_or(0);
   if (version < 1 || version >= kVersion) return;
   SqliteTransaction transaction(database);
   if (version < 2) FromVersion1(database);
   if (version < 3) FromVersion2(database);
   if (version < 4) FromVersion3(database);
-  FromVersion4(database);
+  if (version < 5) FromVersion4(database, folder);
+  AddDigests(database);
   database.Execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());
   transaction.Commit();
 }
@@ -139,17 +155,18 @@ void MakeTables(SqliteDatabase& database, const Provenance& provenance) {
   database.Execute(kJournalTables);
   ForbidChanges(database, {"provenance", "readings", "raw_blocks", "events", "finished", "calls", "attempts"});
   WriteProvenance(database, provenance);
+  AddDigests(database);
   database.Execute(fmt::format("PRAGMA application_id = {}", kApplicationId).c_str());
   database.Execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());
   transaction.Commit();
 }
 
-void CheckRecord(SqliteDatabase& database) {
+void CheckRecord(SqliteDatabase& database, const std::string& folder) {
   const std::string expected = "a record.sqlite made by twinbench";
   if (database.Ask("PRAGMA application_id") != fmt::format("{}", kApplicationId))
     throw InputError(database.path(), "this is a database of another program, or its making was interrupted",
                      expected);
-  BringUpToDate(database);
+  BringUpToDate(database, folder);
   const std::string version = database.Ask("PRAGMA user_version");
   if (version != fmt::format("{}", kVersion))
     throw InputError(database.path(), "the record has version " + version, fmt::format("version {}", kVersion));

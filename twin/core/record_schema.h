@@ -9,7 +9,8 @@ namespace twinbench {
 void MakeTables(SqliteDatabase& database, const Provenance& provenance);
 
 /// Brings a record of an earlier version up to date.
+/// @param folder  Of the record, where its scenario is.
 /// @throws InputError unless the file is a whole record of a version that we know.
-void CheckRecord(SqliteDatabase& database);
+void CheckRecord(SqliteDatabase& database, const std::string& folder);
 
 }  // namespace twinbench

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -12,12 +11,16 @@
 #include <utility>
 
 #include "twin/core/device_fault.h"
+#include "twin/core/digest.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
 #include "twin/core/readable_record.h"
+#include "twin/core/record_digests.h"
 #include "twin/core/record_rows.h"
 #include "twin/core/record_schema.h"
 #include "twin/core/sqlite_database.h"
+#include "twin/core/whole_file.h"
+#include "twin/core/writer_lock.h"
 
 namespace twinbench {
 namespace {
@@ -58,27 +61,6 @@ void SyncDirectory(const std::string& directory) {
 
 }  // namespace
 
-/// Says that a program writes this record. The system takes it away when the program ends, however it ends.
-class WriterLock {
- public:
-  explicit WriterLock(const std::string& directory) {
-    const std::string path = LockPath(directory);
-    handle_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (handle_ < 0) throw BenchError(path + ": cannot be made");
-    if (flock(handle_, LOCK_EX | LOCK_NB) == 0) return;
-    close(handle_);
-    throw InputError(directory, "another program is writing this record", "one program for one run");
-  }
-  ~WriterLock() {
-    if (handle_ >= 0) close(handle_);
-  }
-  WriterLock(WriterLock&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
-  WriterLock& operator=(WriterLock&&) = delete;
-
- private:
-  int handle_ = -1;
-};
-
 /// The open file, with the statements that every reading needs.
 struct RunRecord::Database : private ReadableRecord, SqliteDatabase {  // in this order: a copy outlives its reader
   Database(const std::string& path, int flags)
@@ -89,9 +71,14 @@ struct RunRecord::Database : private ReadableRecord, SqliteDatabase {  // in thi
     insert_block.emplace(*this, kInsertBlock);
     insert_call.emplace(*this, kInsertCall);
   }
+  /// Adds digests of rows of a table to the chain. Nobody can change a record in memory.
+  void Seal(const std::string& table, std::int64_t first, std::int64_t last) {
+    if (!folder.empty()) digests.Seal(table, first, last);
+  }
   void AppendReading(const Reading& reading) {
     BindReading(*insert_reading, reading);
     insert_reading->Run();
+    Seal("readings", reading.reading, reading.reading);
   }
   void AppendBlock(int reading, const Acquisition& taken) {
     largest_block_B = std::max<std::uint64_t>(largest_block_B, taken.raw.size() * sizeof(std::int16_t));
@@ -104,8 +91,10 @@ struct RunRecord::Database : private ReadableRecord, SqliteDatabase {  // in thi
       insert_block->Bind(column++, number);
     insert_block->Bind(column, std::int64_t{taken.saturated_mask});
     insert_block->Run();
+    Seal("raw_blocks", reading, reading);
   }
   void AppendCalls(int reading) {
+    std::int64_t first = 0;
     for (const DeviceCall& call : calls) {
       insert_call->Bind(0, std::int64_t{reading});
       insert_call->Bind(1, std::int64_t{call.time.time_since_epoch().count()});
@@ -113,11 +102,22 @@ struct RunRecord::Database : private ReadableRecord, SqliteDatabase {  // in thi
       insert_call->Bind(3, call.request);
       insert_call->Bind(4, call.answer);
       insert_call->Run();
+      if (first == 0) first = LastRow();
     }
+    if (!calls.empty()) Seal("calls", first, LastRow());
+  }
+  /// One row, in a transaction of its own.
+  void Insert(const std::string& table, SqliteStatement& insert) {
+    SqliteTransaction transaction(*this);
+    insert.Run();
+    Seal(table, LastRow(), LastRow());
+    transaction.Commit();
   }
   std::optional<SqliteStatement> insert_reading;  // as members they go before the base closes the file
   std::optional<SqliteStatement> insert_block, insert_call;
   std::optional<WriterLock> lock;
+  RecordDigests digests{*this};
+  std::string folder;             // of the record and the files beside it; empty: in memory
   std::vector<DeviceCall> calls;  // since the last reading
   std::uint64_t largest_block_B = 0;
 };
@@ -135,7 +135,7 @@ std::unique_ptr<RunRecord> RunRecord::Create(const std::string& directory, const
   if (error) throw BenchError(fmt::format("{}: the folder cannot be made: {}", directory, error.message()));
   if (std::filesystem::exists(path)) throw InputError(path, "there is a record already", "a folder without one");
   // Made beside its place and renamed when whole: a record that is there can be opened, whenever the power fails.
-  WriterLock making(directory);
+  WriterLock making(LockPath(directory), path);
   const std::string beside = path + ".part";
   for (const char* ending : {"", "-wal", "-shm"}) std::filesystem::remove(beside + ending, error);
   {
@@ -164,8 +164,10 @@ std::unique_ptr<RunRecord> RunRecord::Open(const std::string& directory) {
     throw InputError(directory, "there is no record.sqlite", "the folder of a run");
   try {
     auto database = std::make_unique<Database>(path, SQLITE_OPEN_READWRITE);
-    CheckRecord(*database);
+    database->folder = directory;
+    CheckRecord(*database, directory);
     MakeSafe(*database);
+    database->digests.Check(directory);
     database->Prepare();
     return std::unique_ptr<RunRecord>(new RunRecord(std::move(database)));
   } catch (const BenchError& failure) {  // SQLite's words, as bad input: nothing was run yet
@@ -177,7 +179,7 @@ std::unique_ptr<RunRecord> RunRecord::Continue(const std::string& directory) {
   auto record = Open(directory);
   if (record->database_->path() != RecordPath(directory))
     throw InputError(directory, "the record cannot be written", "a folder that can, to go on in");
-  record->database_->lock.emplace(directory);
+  record->database_->lock.emplace(LockPath(directory), RecordPath(directory));
   return record;
 }
 
@@ -221,7 +223,7 @@ void RunRecord::AttemptFailed(int reading, Time time, const std::string& fault, 
   insert.Bind(1, std::int64_t{time.time_since_epoch().count()});
   insert.Bind(2, fault);
   insert.Bind(3, text);
-  insert.Run();
+  database_->Insert("attempts", insert);
 }
 
 void RunRecord::RequireRoom() {
@@ -239,25 +241,31 @@ void RunRecord::AppendEvent(Time time, const std::string& device, const std::str
   insert.Bind(0, static_cast<std::int64_t>(time.time_since_epoch().count()));
   insert.Bind(1, device);
   insert.Bind(2, text);
-  insert.Run();
+  database_->Insert("events", insert);
+}
+
+void RunRecord::WriteBeside(const std::string& name, const std::string& text) {
+  SqliteStatement insert(*database_, "INSERT INTO files VALUES(NULL, ?, ?)");
+  insert.Bind(0, name);
+  insert.Bind(1, Sha256(text));
+  database_->Insert("files", insert);
+  WriteFileAtOnce(database_->folder + "/" + name, text);
 }
 
 void RunRecord::Finish() {
   database_->Execute("PRAGMA synchronous = FULL");  // this commit takes all before it to the disk
   SqliteTransaction transaction(*database_);
   database_->AppendCalls(-1);  // behind the last reading
-  database_->Execute("INSERT OR IGNORE INTO finished VALUES(1)");
+  if (!finished()) {
+    database_->Execute("INSERT INTO finished VALUES(1)");
+    database_->Seal("finished", 1, 1);
+  }
   transaction.Commit();
   database_->calls.clear();
 }
 
 bool RunRecord::HasWriter(const std::string& directory) {
-  const std::string path = LockPath(directory);
-  const int handle = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (handle < 0) return false;
-  const bool is_free = flock(handle, LOCK_SH | LOCK_NB) == 0;
-  close(handle);
-  return !is_free;
+  return WriterLock::IsHeld(LockPath(directory));
 }
 
 bool RunRecord::finished() const {

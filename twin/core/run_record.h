@@ -45,7 +45,8 @@ struct RecordedEvent {
 };
 
 /// The record of a run in DIR/record.sqlite: insert-only, one transaction a reading, WAL with synchronous FULL, so
-/// that it opens after kill -9 or power loss with every reading that Append returned for.
+/// that it opens after kill -9 or power loss with every reading that Append returned for. Digests of every row and of the files
+/// beside it (docs/record.md) are kept in the same transactions.
 class RunRecord : public ReadingSink, public RunLog {
  public:
   /// Makes DIR and an empty record in it.
@@ -55,7 +56,8 @@ class RunRecord : public ReadingSink, public RunLog {
   /// An empty record that is nowhere on a disk and goes with the object: for one run of thousands.
   static std::unique_ptr<RunRecord> CreateInMemory(const Provenance& provenance);
   /// Opens a record to be read, also one that another program is still writing, and one that may not be written.
-  /// @throws InputError if there is no record, it is not one of ours, or it is damaged.
+  /// @throws InputError if there is no record, it is not one of ours, it is damaged, or something of it or a file beside it is
+  ///         not as it was written.
   static std::unique_ptr<RunRecord> Open(const std::string& directory);
   /// Opens a record to be written on.
   /// @throws InputError as Open, and if another program is writing it.
@@ -79,6 +81,10 @@ class RunRecord : public ReadingSink, public RunLog {
   void AppendEvent(Time time, const std::string& device, const std::string& text) override;
   /// Room for kReserve_B and twice the largest block: the write-ahead log holds everything a second time.
   void RequireRoom() override;
+  /// Writes a file beside the record, at once, and keeps its digest: "scenario.toml", "truth.json", "results.json". Written again, it
+  /// has another one.
+  /// @throws BenchError if the disk refuses.
+  void WriteBeside(const std::string& name, const std::string& text);
   /// Marks the run complete; without it the run is known to be unfinished.
   void Finish();
 

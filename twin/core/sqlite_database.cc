@@ -2,12 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <cmath>
 
 #include "twin/core/device_fault.h"
 #include "twin/core/reading.h"
 
 namespace twinbench {
+namespace {
+
+/// Low byte first.
+void AppendWord(std::uint64_t word, std::string& bytes) {
+  for (int shift = 0; shift < 64; shift += 8) bytes += static_cast<char>(word >> shift & 0xff);
+}
+
+}  // namespace
 
 SqliteDatabase::SqliteDatabase(const std::string& path, int flags) : path_(path) {
   if (sqlite3_open_v2(path.c_str(), &handle_, flags, nullptr) == SQLITE_OK) {
@@ -76,6 +85,10 @@ bool SqliteStatement::Step() {
 
 void SqliteStatement::Run() {
   Step();
+  Reset();
+}
+
+void SqliteStatement::Reset() {
   Check(sqlite3_reset(handle_));
 }
 
@@ -97,8 +110,25 @@ std::span<const std::int16_t> SqliteStatement::Words(int column) const {
   return {words, static_cast<std::size_t>(sqlite3_column_bytes(handle_, column)) / sizeof(std::int16_t)};
 }
 
-SqliteTransaction::SqliteTransaction(SqliteDatabase& database) : database_(database) {
-  database_.Execute("BEGIN IMMEDIATE");
+std::string SqliteStatement::RowBytes() const {
+  std::string bytes;
+  for (int column = 0; column < sqlite3_column_count(handle_); ++column) {
+    const int type = sqlite3_column_type(handle_, column);
+    if (type == SQLITE_NULL) continue;
+    bytes += fmt::format("{}={}:", sqlite3_column_name(handle_, column), type);
+    if (type == SQLITE_INTEGER) AppendWord(static_cast<std::uint64_t>(sqlite3_column_int64(handle_, column)), bytes);
+    if (type == SQLITE_FLOAT) AppendWord(std::bit_cast<std::uint64_t>(sqlite3_column_double(handle_, column)), bytes);
+    if (type != SQLITE_TEXT && type != SQLITE_BLOB) continue;
+    const auto* value = static_cast<const char*>(sqlite3_column_blob(handle_, column));
+    const auto size = static_cast<std::size_t>(sqlite3_column_bytes(handle_, column));
+    AppendWord(size, bytes);
+    if (size > 0) bytes.append(value, size);
+  }
+  return bytes;
+}
+
+SqliteTransaction::SqliteTransaction(SqliteDatabase& database, const char* begin) : database_(database) {
+  database_.Execute(begin);
 }
 
 SqliteTransaction::~SqliteTransaction() {

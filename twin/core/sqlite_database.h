@@ -20,6 +20,8 @@ class SqliteDatabase {
   void Execute(const char* sql);
   /// The first column of the first row.
   std::string Ask(const char* sql);
+  /// The key of the row that was inserted last.
+  std::int64_t LastRow() const { return sqlite3_last_insert_rowid(handle_); }
 
   sqlite3* handle() const { return handle_; }
   const std::string& path() const { return path_; }
@@ -47,11 +49,16 @@ class SqliteStatement {
   bool Step();
   /// Carries out a statement without rows and makes it ready for the next values.
   void Run();
+  /// Makes a statement whose rows were taken ready for the next values.
+  void Reset();
 
   std::int64_t Integer(int column) const;
   double Real(int column) const;
   std::string Text(int column) const;
   std::span<const std::int16_t> Words(int column) const;  // until the next Step
+  /// The row as bytes that are the same on every machine: name, type and value of each column that is not NULL. A column that a
+  /// later version adds to an old row is NULL and changes nothing.
+  std::string RowBytes() const;
 
  private:
   void Check(int code) const;
@@ -63,7 +70,8 @@ class SqliteStatement {
 /// What is done until Commit is all done or not at all; undone at the end of its life without Commit.
 class SqliteTransaction {
  public:
-  explicit SqliteTransaction(SqliteDatabase& database);
+  /// @param begin  "BEGIN": to look only, at one moment of a record that another program is writing, which does not wait.
+  explicit SqliteTransaction(SqliteDatabase& database, const char* begin = "BEGIN IMMEDIATE");
   ~SqliteTransaction();
   SqliteTransaction(const SqliteTransaction&) = delete;
   SqliteTransaction& operator=(const SqliteTransaction&) = delete;

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
+#include <sstream>
 
 #include "twin/core/csv.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
 #include "twin/core/units.h"
+#include "twin/core/whole_file.h"
 
 namespace twinbench {
 namespace {
@@ -75,7 +76,7 @@ TableErrors ReadTableErrors(const std::string& path) {
 
 void WriteTableErrors(const TableErrors& errors, const std::string& path) {
   RequireEqualLengths(errors);
-  std::ofstream out(path);
+  std::ostringstream out;
   out << HeaderLine() << '\n';
   for (std::size_t i = 0; i < errors.position_rad.size(); ++i) {
     out << PrintInUnit(errors.position_rad[i], PositionColumn().to_SI);
@@ -85,7 +86,7 @@ void WriteTableErrors(const TableErrors& errors, const std::string& path) {
     }
     out << '\n';
   }
-  if (!out.flush()) throw BenchError(path + ": the file cannot be written");
+  WriteFileAtOnce(path, out.str());
 }
 
 }  // namespace twinbench

@@ -1,8 +1,8 @@
-#include "twin/report/page/digest.h"
+#include "twin/core/digest.h"
 
 #include <gtest/gtest.h>
 
-namespace twinbench::report {
+namespace twinbench {
 namespace {
 
 // FIPS 180-4 examples of NIST, and a message whose padding needs a block of its own.
@@ -15,4 +15,4 @@ TEST(Sha256, AgreesWithThePublishedExamples) {
 }
 
 }  // namespace
-}  // namespace twinbench::report
+}  // namespace twinbench
