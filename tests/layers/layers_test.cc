@@ -55,7 +55,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
       kFactories}},
     {"twin/benches",
      {"twin/core", "twin/model", "twin/procedure", "twin/separate", "twin/uncertainty", "twin/plan",
-      "twin/diagnose", "twin/report", kFormats, kProcedures, kEstimators, kFactories}},
+      "twin/diagnose", "twin/plausible", "twin/report", kFormats, kProcedures, kEstimators, kFactories}},
     {"hw_bridge", {"twin/core"}}};
 
 /// Third-party headers that only some rooms may see, by how their path begins.

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
@@ -22,7 +23,7 @@ struct CompensateOptions {
 
 separate::IndexErrors ErrorsOf(const std::string& source, const std::string& scenario,
                                const std::vector<std::string>& overrides) {
-  const RecordedRun run = LoadRecordedRun(source, scenario, overrides);
+  const RecordedRun run = LoadPlausibleRun(source, scenario, overrides);
   const Bench& bench = BenchOf(run.scenario);
   if (!bench.index_errors)
     throw InputError(source, "the bench " + run.scenario.bench + " has no table that could be compensated",

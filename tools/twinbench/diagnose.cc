@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/doubts.h"
 #include "tools/twinbench/follow.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
@@ -113,26 +114,18 @@ void MergeIntoResults(const RunFolder& folder, nlohmann::json diagnosis, const r
   record->WriteBeside(kResultsFile, JsonText(results));
 }
 
-/// What speaks against the readings themselves, where whoever reads the answer sees it first.
-void TellDoubts(const std::vector<plausible::Finding>& findings) {
-  fmt::print("{}", plausible::InLines(findings));
-}
-
 void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
   for (const std::string& output : {answer.to(), options.extended})
     RequireOutput(output, {options.source, options.scenario});
-  const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
+  const RecordedRun run = LoadPlausibleRun(options.source, options.scenario, options.overrides);
   CheckExcluded(options.excluded, run.scenario.bench);
-  const std::vector<plausible::Finding> findings = plausible::Check(run.readings, run.scenario);
-  TellDoubts(findings);
-  plausible::RefuseFatal(findings, options.source);
   diagnose::DiagnoseOptions how;
   how.model = EstimatorNamed(options.model);
   how.excluded = options.excluded;
   how.cache_folder = CacheFolder(options.cache);
   const diagnose::DiagnosisRun found = diagnose::Diagnose(run.readings, run.scenario, how);
   const diagnose::Disagreement disagreement = diagnose::DisagreementOf(found);
-  if (!disagreement.line.empty()) TellDoubts({{!disagreement.is_plausible, disagreement.line}});
+  if (!disagreement.line.empty()) fmt::print("{}", plausible::InLines({{!disagreement.is_plausible, disagreement.line}}));
   if (!options.extended.empty()) {
     WriteFileAtOnce(options.extended,
                     diagnose::ExtendedToml(run.scenario, found, Provenance(options.source, run.readings.size())));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "tools/twinbench/doubts.h"
 #include "twin/benches/evaluated.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
@@ -51,6 +52,7 @@ nlohmann::json RunJson(const RunFolder& folder, const Scenario& scenario, const 
 bool EvaluateRun(const Scenario& scenario, const std::string& folder, JsonAnswer& answer) {
   const auto record = RunRecord::Open(folder);
   const std::vector<Reading> readings = record->Readings();
+  TellDoubts(readings, scenario, folder);
   const EvaluatedRun run = EvaluatedWithBudget(scenario, readings);
   record->WriteBeside(kResultsFile, JsonText(run.evaluation.results));
   WriteTables(folder, run.evaluation.tables);

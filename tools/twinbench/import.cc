@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/doubts.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
@@ -16,7 +17,6 @@
 #include "twin/core/csv.h"
 #include "twin/core/errors.h"
 #include "twin/core/run_record.h"
-#include "twin/plausible/check.h"
 
 namespace twinbench::tools {
 namespace {
@@ -104,9 +104,8 @@ Taken TakeAnything(const ImportOptions& options) {
 }
 
 void Write(const Taken& taken, const ImportOptions& options, JsonAnswer& answer) {
-  const std::vector<plausible::Finding> findings = plausible::Check(taken.readings, taken.scenario);
-  fmt::print("{}{}", taken.story, plausible::InLines(findings));
-  plausible::RefuseFatal(findings, options.files.front());
+  fmt::print("{}", taken.story);
+  const std::vector<std::string> doubts = TellDoubts(taken.readings, taken.scenario, options.files.front());
   // Evaluated first: a file that cannot be evaluated leaves no folder behind.
   const EvaluatedRun run = EvaluatedWithBudget(taken.scenario, taken.readings);
   const RunFolder folder{options.folder};
@@ -122,8 +121,7 @@ void Write(const Taken& taken, const ImportOptions& options, JsonAnswer& answer)
   if (!taken.story.empty()) WriteFileAtOnce(folder.path + "/import.txt", taken.story);
   fmt::print("{}", run.text);
   nlohmann::json json = RunJson(folder, taken.scenario, taken.readings, run);
-  json["doubts"] = nlohmann::json::array();
-  for (const plausible::Finding& finding : findings) json["doubts"].push_back(finding.line);
+  json["doubts"] = doubts;
   if (!taken.story.empty()) json["story"] = taken.story;
   answer.Write(json);
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tools/twinbench/doubts.h"
 #include "tools/twinbench/light_pictures.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/campaign/campaign_page.h"
@@ -54,6 +55,7 @@ nlohmann::json ResultsOf(const RunFolder& folder) {
 report::Page OfRun(const RunFolder& folder, const std::string& score) {
   report::PageSource source = SourceOf(folder.path, {folder.scenario(), folder.record(), folder.results()});
   const auto record = RunRecord::Open(folder.path);
+  TellDoubts(record->Readings(), LoadScenario(folder.scenario()), folder.path, stderr);
   source.provenance = record->provenance();
   return report::RunPage(source, ResultsOf(folder), ScoreOf(folder, score), record->Readings(), LightPictures(folder.images()));
 }

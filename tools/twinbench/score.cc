@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/evaluated.h"
@@ -34,7 +35,7 @@ void PrintScore(const ScoreOptions& options, JsonAnswer& answer) {
     throw InputError(folder.truth(), "is not there",
                      "a run of the twin: what was measured or imported has no truth");
   const nlohmann::json truth = ReadJson(folder.truth());
-  const RecordedRun run = LoadRecordedRun(folder.path, "", {});
+  const RecordedRun run = LoadPlausibleRun(folder.path, "", {});
   const report::ScoredRun score =
       ScoreOf(run.scenario, run.readings, truth, EstimatorNamed(options.estimator));
   answer.Write(WithValues(score));

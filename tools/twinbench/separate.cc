@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/evaluated.h"
@@ -18,7 +19,7 @@ struct SeparateOptions {
 
 void Separate(const SeparateOptions& options, JsonAnswer& answer) {
   RequireOutput(answer.to(), {options.source, options.scenario});
-  const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
+  const RecordedRun run = LoadPlausibleRun(options.source, options.scenario, options.overrides);
   const report::Evaluation evaluation =
       EvaluationOf(run.scenario, run.readings, EstimatorNamed(options.estimator));
   if (!evaluation.Separated())

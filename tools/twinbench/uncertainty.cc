@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/evaluated.h"
@@ -44,7 +45,7 @@ std::vector<uncertainty::Joint> JointsOf(const RecordedRun& run, const std::stri
 
 void State(const UncertaintyOptions& options, JsonAnswer& answer) {
   RequireOutput(answer.to(), {options.source, options.scenario});
-  const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
+  const RecordedRun run = LoadPlausibleRun(options.source, options.scenario, options.overrides);
   const uncertainty::Evaluate evaluate = EvaluationOf(run, options.estimator);
   const std::vector<uncertainty::Budget> budgets = uncertainty::Budgets(run.scenario, evaluate);
   if (budgets.empty())

@@ -6,6 +6,7 @@
 #include "twin/core/bench_format.h"
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
+#include "twin/plausible/expected.h"
 
 /// Are these readings what they say they are? Asked before any statistics, of any bench, with nothing but the
 /// readings, the bench's columns and what the scenario says of its converters.
@@ -16,10 +17,11 @@ struct Finding {
   std::string line;    // what was seen and what it may mean
 };
 
-/// Too few readings; values that the converter cannot give; channels that are dead or stuck while others move;
-/// positions and directions that contradict the angles; times that stand still; readings that come in steps as
-/// large as their noise. Fatal ones first.
-std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario& scenario);
+/// Too few readings; values that the instrument cannot give; channels that are dead, or stuck while others move; positions and
+/// directions that contradict the angles; times that stand still; rows that repeat; axes that stood elsewhere; readings that come
+/// in steps as large as their noise; what is not as the scenario claims: of another size, order or sign. Fatal ones first.
+/// @param expected  What is claimed of the columns; of those that are left out nothing is.
+std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario& scenario, const std::vector<Expected>& expected = {});
 
 /// A line each, "cannot be: ..." or "doubtful: ...".
 std::string InLines(const std::vector<Finding>& findings);

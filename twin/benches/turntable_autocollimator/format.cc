@@ -11,6 +11,10 @@ TableSettings& TableOf(Scenario& s, bool of_reference) {
   return of_reference ? TurntableOf(s).multitooth_table : TurntableOf(s).turntable;
 }
 
+double RangeOf(const Scenario& s, const std::string& column) {
+  return column.starts_with("autocollimator_") ? TurntableOf(s).autocollimator.range_rad : 0.0;
+}
+
 }  // namespace
 
 const BenchFormat& Format() {
@@ -27,6 +31,7 @@ const BenchFormat& Format() {
     f.points = {"x", "y"};
     f.angles = {"turntable", "multitooth"};
     f.desired = Desired();
+    f.range_of = RangeOf;
     f.smallest_addition = Addition;
     f.effects = Effects();
     return f;

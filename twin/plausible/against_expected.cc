@@ -1,0 +1,211 @@
+#include "twin/plausible/against_expected.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "twin/core/units.h"
+
+namespace twinbench::plausible {
+namespace {
+
+constexpr double kTimes = 20.0;        // smaller or larger than claimed: no figure of a data sheet is so far off
+constexpr double kMuch = 20.0;         // of the noise: what differs by more is no noise
+constexpr double kSameWay = 0.5;       // of the way that a channel should go, by which it may be off
+constexpr double kAnotherSize = 3.0;   // times, either way
+constexpr double kAsAtRandom = 0.6;    // of what readings taken at random differ by
+constexpr double kAlone = 50.0;         // times its scatter: no noise has such tails
+constexpr double kStep = 0.1;          // of the way between neighbours, which counts as scatter of single values: at its ends it turns
+constexpr std::size_t kFewestPairs = 20, kMostPairs = 2000, kFarthest = 2000;
+
+std::vector<double> Sizes(std::vector<double> x) {
+  for (double& one : x) one = std::abs(one);
+  return x;
+}
+
+/// What a channel leaves of what it should show; itself where nothing is known.
+std::vector<double> LeftOf(const Channel& channel, const Expected& expected) {
+  if (!expected.nominal) return channel.value;
+  std::vector<double> left = channel.value;
+  for (std::size_t i = 0; i < channel.size(); ++i) {
+    const double nominal = expected.nominal(*channel.reading[i]);
+    if (!std::isfinite(nominal)) continue;
+    left[i] = expected.is_angle ? std::remainder(left[i] - nominal, units::turn) : left[i] - nominal;
+  }
+  return left;
+}
+
+/// Indices of the channel's values by set-up, where its nominal value is known.
+std::map<int, std::vector<std::size_t>> BySetup(const Channel& channel, const std::vector<double>& nominal) {
+  std::map<int, std::vector<std::size_t>> rows;
+  for (std::size_t i = 0; i < channel.size(); ++i) {
+    if (std::isfinite(nominal[i])) rows[channel.reading[i]->setup].push_back(i);
+  }
+  return rows;
+}
+
+/// Pairs of a set-up between which the nominal value goes half as far as it ever does; an angle an eighth of a turn at most,
+/// so that one that goes backwards is told.
+void AddFarPairs(const std::vector<std::size_t>& rows, const std::vector<double>& nominal, double least, bool is_angle,
+                 std::vector<Pair>& pairs) {
+  double low = INFINITY, high = -INFINITY;
+  for (const std::size_t i : rows) {
+    low = std::min(low, nominal[i]);
+    high = std::max(high, nominal[i]);
+  }
+  const double far = is_angle ? std::min((high - low) / 2.0, units::turn / 8.0) : (high - low) / 2.0;
+  if (!(far > least)) return;
+  const std::size_t stride = 1 + rows.size() / kMostPairs;
+  for (std::size_t a = 0; a < rows.size(); a += stride) {
+    for (std::size_t b = a + 1; b < std::min(rows.size(), a + kFarthest); ++b) {
+      if (std::abs(nominal[rows[b]] - nominal[rows[a]]) < far) continue;
+      pairs.emplace_back(rows[a], rows[b]);
+      break;
+    }
+  }
+}
+
+/// Upper bound of the white noise: the course of a channel and what repeats differ by are in it.
+double NoiseBound(const Channel& channel, const std::vector<double>& left) {
+  std::vector<double> bounds = {ScatterOf(left)};
+  std::vector<double> repeats = Between(Repeats(channel), left);
+  if (repeats.size() >= kFewestToJudge) {
+    const double middle = MiddleOf(repeats);
+    for (double& one : repeats) one -= middle;
+    bounds.push_back(1.4826 * MiddleOf(Sizes(std::move(repeats))) / std::sqrt(2.0));
+  }
+  return *std::ranges::min_element(bounds);
+}
+
+/// Of the values of a set-up against its mean, over all set-ups; what they should have beside it, over the same.
+struct Spread {
+  double shown = 0.0, expected = 0.0;
+};
+
+Spread SpreadOf(const Channel& channel, const Expected& expected) {
+  std::map<int, std::vector<double>> values;
+  std::map<int, double> wanted;
+  for (std::size_t i = 0; i < channel.size(); ++i) {
+    const Reading& reading = *channel.reading[i];
+    const double want = expected.spread(reading);
+    if (!(want > kMuch * expected.noise)) continue;
+    values[reading.setup].push_back(channel.value[i]);
+    wanted[reading.setup] = want;
+  }
+  Spread spread;
+  for (const auto& [setup, of_setup] : values) {
+    double sum = 0.0, squares = 0.0;
+    for (const double x : of_setup) sum += x;
+    for (const double x : of_setup) squares += std::pow(x - sum / static_cast<double>(of_setup.size()), 2);
+    spread.shown += squares;
+    spread.expected += std::pow(wanted[setup], 2) * static_cast<double>(of_setup.size());
+  }
+  return {std::sqrt(spread.shown), std::sqrt(spread.expected)};
+}
+
+void CheckFollows(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
+  if (!expected.nominal) return;
+  std::vector<double> nominal;
+  for (const Reading* reading : channel.reading) nominal.push_back(expected.nominal(*reading));
+  const double least = std::max(kMuch * expected.noise, expected.is_angle ? 0.1 * units::deg : 0.0);
+  std::vector<Pair> pairs;
+  for (const auto& [setup, rows] : BySetup(channel, nominal)) AddFarPairs(rows, nominal, least, expected.is_angle, pairs);
+  if (pairs.size() < kFewestToJudge) return;
+  const std::vector<double> should = Between(pairs, nominal), does = Between(pairs, channel.value);
+  std::vector<double> times;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const double way = expected.is_angle ? std::remainder(should[k], units::turn) : should[k];
+    if (std::abs(way) < 0.5 * least) continue;
+    const double off = expected.is_angle ? std::remainder(does[k] - should[k], units::turn) : does[k] - should[k];
+    times.push_back(1.0 + off / way);
+  }
+  const double usual = MiddleOf(times);
+  std::vector<double> off = times;
+  for (double& one : off) one = std::abs(one - usual);
+  const bool of_one_size = MiddleOf(std::move(off)) < kSameWay * std::abs(usual);
+  const std::string& name = channel.column->name;
+  const bool is_aliased = expected.is_angle && std::abs(usual) > 2.0;  // whole turns are lost
+  if (!of_one_size || is_aliased) {
+    findings.push_back({!expected.is_wired, fmt::format("{} does not go with the angles or places of its readings: are they in "
+                                                        "another order or unit?", name)});
+  } else if (std::abs(usual) < 1.0 / kAnotherSize || std::abs(usual) > kAnotherSize) {
+    findings.push_back({true, fmt::format("{} goes {:.3g} times as far as its readings' angles or places say: is it in another unit?",
+                                          name, usual)});
+  } else if (usual < 0.0) {
+    findings.push_back({!expected.is_wired, fmt::format("{} goes the other way than its readings' angles or places", name)});
+  }
+}
+
+void CheckSize(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
+  if (channel.size() < kFewestToJudge) return;
+  const std::string& name = channel.column->name;
+  const double noise = NoiseBound(channel, LeftOf(channel, expected));
+  const bool is_still = expected.noise > 0.0 && noise < expected.noise / kTimes && !(StepOf(channel) > noise);
+  const Spread spread = expected.spread ? SpreadOf(channel, expected) : Spread{};
+  const bool is_small = spread.shown < spread.expected / kTimes, is_large = spread.shown > spread.expected * kTimes;
+  if (spread.expected > 0.0 && (is_small || is_large))
+    findings.push_back({is_large || is_still,
+                        fmt::format("{} spreads {:.3g} times as far as the scenario says: is it in another unit?", name,
+                                    spread.shown / spread.expected)});
+  if (is_still)
+    findings.push_back({false, fmt::format("{} scatters {:.3g} times as much as the scenario says, at most: is it in another unit, or is "
+                                           "the noise that is stated not its own?", name, noise / expected.noise)});
+}
+
+void CheckOrdered(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
+  const std::vector<Pair> repeats = Repeats(channel), neighbours = Neighbours(channel);
+  if (!(expected.noise > 0.0) || expected.nominal || std::min(repeats.size(), neighbours.size()) < kFewestPairs) return;
+  std::vector<Pair> random;
+  constexpr std::size_t kFar = 7919;  // prime: every reading is somebody's second
+  for (std::size_t i = 0; i < channel.size(); ++i) {
+    const std::size_t other = (i * kFar + channel.size() / 2) % channel.size();
+    if (channel.reading[i]->setup == channel.reading[other]->setup) random.emplace_back(i, other);
+  }
+  const auto differ = [&](const std::vector<Pair>& pairs) { return MiddleOf(Sizes(Between(pairs, channel.value))); };
+  const double by_chance = differ(random);
+  if (!(by_chance > kMuch * expected.noise) || differ(repeats) < kAsAtRandom * by_chance ||
+      differ(neighbours) < kAsAtRandom * by_chance)
+    return;
+  findings.push_back({false, fmt::format("{} differs as much between readings of one place, and between neighbours, as between any two, "
+                                         "and {:.3g} times its noise: do the values belong to their rows?",
+                                         channel.column->name, by_chance / expected.noise)});
+}
+
+void CheckSingleValues(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
+  if (channel.size() < kFewestPairs) return;
+  const std::vector<double> left = LeftOf(channel, expected);
+  std::vector<double> off(channel.size(), 0.0);
+  for (std::size_t i = 1; i + 1 < channel.size(); ++i) {
+    const double course = std::abs(left[i + 1] - left[i - 1]), alone = std::abs(left[i] - 0.5 * (left[i + 1] + left[i - 1]));
+    if (2.0 * course < alone) off[i] = alone;  // neither a step nor a slope
+  }
+  std::vector<double> unlike(channel.size(), INFINITY);  // the repeat that is most alike
+  for (const auto& [first, second] : Repeats(channel)) {
+    const double apart = std::abs(left[second] - left[first]);
+    unlike[first] = std::min(unlike[first], apart);
+    unlike[second] = std::min(unlike[second], apart);
+  }
+  const double usual = std::max({ScatterOf(left), expected.noise, kStep * MiddleOf(Sizes(Between(Neighbours(channel), left)))});
+  std::size_t worst = 0;
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    off[i] = std::min(off[i], unlike[i]);
+    if (off[i] > off[worst]) worst = i;
+  }
+  if (!(usual > 0.0) || !(off[worst] > kAlone * usual)) return;
+  findings.push_back({false, fmt::format("{} of reading {} lies {:.3g} times its scatter from its neighbours and from readings of the "
+                                         "same place", Text(*channel.column, channel.value[worst]), channel.reading[worst]->reading,
+                                         off[worst] / usual)});
+}
+
+}  // namespace
+
+void CheckAgainst(const Expected& expected, const Channel& channel, std::vector<Finding>& findings) {
+  CheckFollows(channel, expected, findings);
+  CheckSize(channel, expected, findings);
+  CheckOrdered(channel, expected, findings);
+  CheckSingleValues(channel, expected, findings);
+}
+
+}  // namespace twinbench::plausible

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "twin/core/reading.h"
+
+namespace twinbench::plausible {
+
+/// What a scenario claims of a column that is shown, before anything is known of what is measured.
+struct Expected {
+  std::string column;
+  double noise = 0.0;  // of one reading, white, standard deviation [SI]; 0: not stated, or less than a step of the instrument
+  /// Standard deviation of its values within the reading's set-up, made on purpose: a tilt, a sweep [SI]; 0: not known.
+  std::function<double(const Reading&)> spread = {};
+  /// What it shows by the angles and places of the reading, but for a constant of each set-up [SI]; NaN: not known.
+  std::function<double(const Reading&)> nominal = {};
+  bool is_angle = false;    // nominal: whole turns apart
+  bool is_wired = false;    // to a terminal: changed wires and signs are causes that a diagnosis names
+};
+
+}  // namespace twinbench::plausible
