@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "hw_bridge/bench_lock.h"
 #include "hw_bridge/in_position.h"
 #include "hw_bridge/open_machine.h"
@@ -14,7 +16,10 @@
 #include "tools/twinbench/told_link.h"
 #include "tools/twinbench/told_stopped.h"
 #include "twin/benches/claims.h"
+#include "twin/benches/expected.h"
 #include "twin/benches/registry.h"
+#include "twin/core/bench_format.h"
+#include "twin/procedure/doubted_instruments.h"
 #include "twin/procedure/machine_options.h"
 #include "twin/procedure/machine_watch.h"
 
@@ -109,10 +114,25 @@ procedure::MachineOptions Carefully(const hw::MachineFile& file, const hw::OpenM
   return options;
 }
 
+/// What the scenario claims of what the instruments show.
+std::vector<procedure::ClaimedColumn> ClaimedColumns(const Scenario& scenario) {
+  const BenchFormat& format = FormatOf(scenario.bench);
+  std::vector<procedure::ClaimedColumn> claims;
+  for (const plausible::Expected& expected : ExpectedOf(scenario, {})) {
+    const auto column = std::ranges::find(format.columns, expected.column, &ReadingColumn::name);
+    claims.push_back({*column, scenario.noise_free ? 0.0 : expected.noise, format.range_of ? format.range_of(scenario, expected.column) : 0.0, expected.is_angle ? expected.nominal : nullptr});
+  }
+  return claims;
+}
+
 /// @param kind  Of the bench file: in a replay nothing moves that could be asked.
 void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& opened,
                procedure::MachineOptions options, const std::string& kind, LivePage& page) {
-  MachineBench bench = opened.Devices();
+  const MachineBench devices = opened.Devices();
+  procedure::DoubtedInstruments doubted(devices.instruments, ClaimedColumns(scenario));
+  // A simulated bench is read as often as its run asks, so that it is that run.
+  const bool is_real = kind == "hardware" && !devices.simulation;
+  MachineBench bench = {devices.clock, devices.machine, is_real ? doubted : devices.instruments, devices.fixture, devices.simulation, devices.indexer};
   ProgressLine line;
   options.log = &record;
   if (kind != "replay") options.hear_fault = TellFault;

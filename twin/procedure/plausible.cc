@@ -4,7 +4,10 @@
 
 #include <cmath>
 
+#include "twin/core/bench_format.h"
 #include "twin/core/device_fault.h"
+#include "twin/core/number_text.h"
+#include "twin/core/units.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -13,6 +16,13 @@ constexpr Duration kClockTolerance = std::chrono::milliseconds(100);  // of two 
 
 bool NeighboursOfOnePass(const Reading& a, const Reading& b) {
   return a.phase == b.phase && a.setup == b.setup && a.pass == b.pass && a.phase == Phase::kFullCircle;
+}
+
+/// Where the encoder of the axis said that it stood at the begin of a reading; nothing: it was not looked at.
+std::optional<double> EncoderOf(const Reading& reading) {
+  for (const auto& [name, text] : reading.extra)
+    if (name.ends_with("_encoder_before_deg")) return ParseInUnit(text, units::deg);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -32,6 +42,17 @@ void RequirePlausible(const Reading& reading, const Reading& before, const Optio
                                   "or the grating slip?",
                                   jump_V, options.jump_V));
   }
+}
+
+void RequireTogether(const Reading& reading, const Reading& before, const std::string& bench) {
+  constexpr double kLeastWay_rad = 0.01 * units::deg;  // less may be noise of the reference
+  const auto now = EncoderOf(reading), then = EncoderOf(before);
+  if (!FormatOf(bench).compared || reading.setup != before.setup || !now || !then) return;
+  const double way_rad = *now - *then, off_rad = std::remainder(reading.reference_rad - before.reference_rad - way_rad, units::turn);
+  if (!(std::abs(off_rad) > 0.5 * std::max(std::abs(way_rad), kLeastWay_rad))) return;
+  throw DeviceFault(FaultKind::kMoved, "reference",
+                    fmt::format("went {:.6f} deg to this reading, and the encoder of its axis {:.6f} deg: does either stand?",
+                                (way_rad + off_rad) / units::deg, way_rad / units::deg));
 }
 
 void RequireTimely(const Reading& sample, Time from, Time to) {

@@ -1,0 +1,125 @@
+#include "twin/procedure/doubted_instruments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/core/device_fault.h"
+
+namespace twinbench::procedure {
+namespace {
+
+constexpr int kAgain = 16;        // readings that are all the same: of steps so coarse that noise hides in them, one in many is another
+constexpr int kProveEvery = 16;
+constexpr int kProveFirst = 2;
+constexpr int kSamplesTheSame = 64;
+constexpr double kAgree = 10.0;   // times the noise of a difference
+constexpr double kFollows_rad = 1.0 * units::deg;  // more than the steps of any encoder
+
+double ValueOf(const ClaimedColumn& claim, const Reading& reading) {
+  Reading copy = reading;
+  return claim.column.number(copy);
+}
+
+/// Of readings of two places, or of one that noise moves: the same to the last digit, where it should be another.
+bool IsTheSame(const ClaimedColumn& claim, const Reading& a, const Reading& b) {
+  if (ValueOf(claim, a) != ValueOf(claim, b)) return false;
+  return claim.noise > 0.0 || (claim.follows && std::abs(claim.follows(b) - claim.follows(a)) > kFollows_rad);
+}
+
+bool IsShown(const ClaimedColumn& claim, const Reading& reading) {
+  return (claim.noise > 0.0 || claim.follows) && std::isfinite(ValueOf(claim, reading));
+}
+
+/// All that can be judged.
+bool AreTheSame(const std::vector<ClaimedColumn>& claims, const Reading& a, const Reading& b) {
+  const auto is_shown = [&](const ClaimedColumn& claim) { return IsShown(claim, b); };
+  return std::ranges::any_of(claims, is_shown) &&
+         std::ranges::all_of(claims, [&](const ClaimedColumn& claim) { return !is_shown(claim) || IsTheSame(claim, a, b); });
+}
+
+std::string Text(const ClaimedColumn& claim, const Reading& reading) {
+  return fmt::format("{} = {}", claim.column.name, claim.column.print(reading));
+}
+
+}  // namespace
+
+void DoubtedInstruments::Fail(const std::string& what) {
+  unproven_ = kProveFirst;
+  throw DeviceFault(FaultKind::kStuck, "instruments", what);
+}
+
+Reading DoubtedInstruments::Read() {
+  const Reading shown = inner_.Read();
+  if (shown.status != ReadingStatus::kOk) return shown;
+  RequireInRange(shown);
+  RequireAlive(shown);
+  if (is_late_ || unproven_ > 0 || ++read_ % kProveEvery == 0) RequireOfThisPlace(shown);
+  unproven_ = std::max(0, unproven_ - 1);
+  last_ = shown;
+  return shown;
+}
+
+void DoubtedInstruments::RequireInRange(const Reading& shown) {
+  for (const ClaimedColumn& claim : claims_) {
+    if (!(claim.range > 0.0) || !(std::abs(ValueOf(claim, shown)) > claim.range)) continue;
+    unproven_ = kProveFirst;
+    throw DeviceFault(FaultKind::kProtocol, "instruments", Text(claim, shown) + " is out of range");
+  }
+}
+
+void DoubtedInstruments::RequireAlive(const Reading& shown) {
+  bool says_nothing = false, says_anything = false;
+  for (const ClaimedColumn& claim : claims_) {
+    if (!(claim.noise > 0.0) || !IsShown(claim, shown)) continue;
+    (ValueOf(claim, shown) == 0.0 ? says_nothing : says_anything) = true;
+  }
+  if ((says_anything || !says_nothing) && !(last_ && AreTheSame(claims_, *last_, shown))) return;
+  for (int again = 0; again < kAgain; ++again) {
+    const Reading other = inner_.Read();
+    if (std::ranges::any_of(claims_, [&](const ClaimedColumn& claim) {
+          return IsShown(claim, shown) && ValueOf(claim, other) != ValueOf(claim, shown);
+        }))
+      return;
+  }
+  const auto shows = std::ranges::find_if(claims_, [&](const ClaimedColumn& claim) { return IsShown(claim, shown); });
+  Fail(fmt::format("show {} as before, and in {} readings more: they are dead or stuck", Text(*shows, shown), kAgain));
+}
+
+void DoubtedInstruments::RequireOfThisPlace(const Reading& shown) {
+  const Reading again = inner_.Read();
+  for (const ClaimedColumn& claim : claims_) {
+    if (!(claim.noise > 0.0) || !(std::abs(ValueOf(claim, again) - ValueOf(claim, shown)) > kAgree * std::sqrt(2.0) * claim.noise))
+      continue;
+    is_late_ = true;
+    Fail(fmt::format("show {} and then {} at one place, by more than noise: do they answer late by one, or move still?",
+                     Text(claim, shown), Text(claim, again)));
+  }
+}
+
+void DoubtedInstruments::Arm(int samples, int lines) {
+  last_.reset();
+  same_.assign(claims_.size(), 0);
+  inner_.Arm(samples, lines);
+}
+
+LatchedSamples DoubtedInstruments::Latched() {
+  LatchedSamples latched = inner_.Latched();
+  for (const Reading& sample : latched.samples) {
+    if (sample.status != ReadingStatus::kOk) continue;
+    RequireInRange(sample);
+    RequireMoving(sample);
+    last_ = sample;
+  }
+  return latched;
+}
+
+void DoubtedInstruments::RequireMoving(const Reading& sample) {
+  for (std::size_t k = 0; last_ && k < claims_.size(); ++k) {
+    same_[k] = ValueOf(claims_[k], *last_) == ValueOf(claims_[k], sample) && IsShown(claims_[k], sample) ? same_[k] + 1 : 0;
+    if (same_[k] >= kSamplesTheSame) Fail(fmt::format("show {} in {} samples: they are dead or stuck", Text(claims_[k], sample), same_[k]));
+  }
+}
+
+}  // namespace twinbench::procedure
