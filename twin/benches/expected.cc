@@ -27,7 +27,7 @@ double UnlessCoarse(double noise, double step) {
 Expected ShownBySpot(const RotarySettings& s, const PsdSettings& psd, const std::string& column) {
   const double sin_order = s.laser.wavelength_m * s.grating.lines_per_m;
   const double V_rad = -psd.sensitivity_V_m * psd.distance_m * (1.0 + 1.0 / std::sqrt(1.0 - sin_order * sin_order));
-  return {.column = column, .nominal = [V_rad](const Reading& r) { return V_rad * r.autocollimator_yaw_rad; }, .is_wired = true};
+  return {.column = column, .nominal = [V_rad](const Reading& r) { return V_rad * r.autocollimator_yaw_rad; }, .is_loose = true};
 }
 
 /// Of a mean over a block: as its samples scatter where the readings say so, else as the amplifier's noise is stated.
@@ -41,7 +41,7 @@ double BlockNoise_V(const RotarySettings& s, const std::vector<Reading>& reading
 std::vector<Expected> ShownByTables(const RotarySettings& s, const std::vector<Reading>& readings) {
   std::vector<Expected> all = {ShownBySpot(s, s.psd_a, "psd_a_x_V"), {.column = "psd_a_y_V"}, ShownBySpot(s, s.psd_b, "psd_b_x_V"), {.column = "psd_b_y_V"}};
   const double step_V = 2.0 * s.adc.range_V * std::pow(0.5, s.adc.bits);
-  for (std::size_t k = 0; k < all.size(); ++k) all[k].noise = UnlessCoarse(BlockNoise_V(s, readings, k), step_V);
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].noise = UnlessCoarse(BlockNoise_V(s, readings, k), step_V), all[k].step = step_V;
   return all;
 }
 
@@ -49,6 +49,7 @@ std::vector<Expected> ShownByDevice(const EncoderSettings& s) {
   const DeviceSettings device = DeviceOfMeans(s);
   return {{.column = "measured_deg",
            .noise = device.noise_known ? UnlessCoarse(device.noise_rad, device.resolution_rad) : 0.0,
+           .step = device.resolution_rad,
            .nominal = [](const Reading& r) { return r.reference_rad; },
            .is_angle = true}};
 }
@@ -65,16 +66,16 @@ std::vector<Expected> ShownByCollimator(const TurntableSettings& s) {
 
 std::vector<Expected> ShownByHob(const HobSettings& s) {
   return {{.column = "hob_encoder_deg",
+           .step = units::turn / s.hob_encoder.lines / s.hob_encoder.interpolation,
            .nominal = [times = s.transmission.HobOrder()](const Reading& r) { return times * r.measured_rad; },
-           .is_angle = true},
-          {.column = "interferometer_arcsec", .noise = s.interferometer.noise_rad}};
+           .is_angle = true}};
 }
 
 std::vector<Expected> ShownOfCircles(const CircularSettings& s) {
   using benches::circular::kCommandedX_m, benches::circular::kCommandedY_m;
   const auto angle = [](const Reading& r) { return std::atan2(kCommandedY_m(r), kCommandedX_m(r)); };
   return {{.column = "bar_um", .noise = UnlessCoarse(s.bar.noise_m, s.bar.resolution_m)},
-          {.column = "encoder_deg", .nominal = angle, .is_angle = true},
+          {.column = "encoder_deg", .step = units::turn / s.encoder.lines / s.encoder.interpolation, .nominal = angle, .is_angle = true},
           {.column = "grid_x_mm", .noise = s.grid.noise_m, .nominal = [](const Reading& r) { return kCommandedX_m(r); }},
           {.column = "grid_y_mm", .noise = s.grid.noise_m, .nominal = [](const Reading& r) { return kCommandedY_m(r); }}};
 }
@@ -87,9 +88,19 @@ std::function<double(const Reading&)> OfIdealMachine(const FreeformSettings& s, 
   };
 }
 
+/// How far mounting and machine may move the spot, against its size: of one moved further the voltages say only on which side it is.
+double SpotMoves(const FreeformSettings& s) {
+  const double radius_m = 0.5 * (s.artefact.vertex_radius_m[0] + s.artefact.vertex_radius_m[1]);
+  const double by_places = (s.artefact.mounting_m + s.machine.random_translation_m) / radius_m;
+  const double by_angles = s.artefact.mounting_rad + s.machine.random_rotation_rad + s.machine.random_squareness_rad;
+  return 2.0 * s.qpd.lens_m * (by_places + by_angles) / s.qpd.spot_radius_m;
+}
+
 std::vector<Expected> ShownByProbe(const FreeformSettings& s) {
-  return {{.column = "qpd_x_V", .noise = s.qpd.noise_V, .nominal = OfIdealMachine(s, 0)},
-          {.column = "qpd_y_V", .noise = s.qpd.noise_V, .nominal = OfIdealMachine(s, 1)},
+  constexpr double kMost = 0.25;
+  const bool is_known = SpotMoves(s) < kMost;
+  return {{.column = "qpd_x_V", .noise = s.qpd.noise_V, .nominal = is_known ? OfIdealMachine(s, 0) : nullptr, .is_loose = true},
+          {.column = "qpd_y_V", .noise = s.qpd.noise_V, .nominal = is_known ? OfIdealMachine(s, 1) : nullptr, .is_loose = true},
           {.column = "ccd_px", .noise = s.ccd.noise_px, .nominal = OfIdealMachine(s, 2)}};
 }
 

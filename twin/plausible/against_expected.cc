@@ -17,7 +17,6 @@ constexpr double kSameWay = 0.5;       // of the way that a channel should go, b
 constexpr double kAnotherSize = 3.0;   // times, either way
 constexpr double kAsAtRandom = 0.6;    // of what readings taken at random differ by
 constexpr double kAlone = 50.0;         // times its scatter: no noise has such tails
-constexpr double kStep = 0.1;          // of the way between neighbours, which counts as scatter of single values: at its ends it turns
 constexpr std::size_t kFewestPairs = 20, kMostPairs = 2000, kFarthest = 2000;
 
 std::vector<double> Sizes(std::vector<double> x) {
@@ -128,13 +127,14 @@ void CheckFollows(const Channel& channel, const Expected& expected, std::vector<
   const std::string& name = channel.column->name;
   const bool is_aliased = expected.is_angle && std::abs(usual) > 2.0;  // whole turns are lost
   if (!of_one_size || is_aliased) {
-    findings.push_back({!expected.is_wired, fmt::format("{} does not go with the angles or places of its readings: are they in "
+    findings.push_back({!expected.is_loose, fmt::format("{} does not go with the angles or places of its readings: are they in "
                                                         "another order or unit?", name)});
   } else if (std::abs(usual) < 1.0 / kAnotherSize || std::abs(usual) > kAnotherSize) {
-    findings.push_back({true, fmt::format("{} goes {:.3g} times as far as its readings' angles or places say: is it in another unit?",
+    const bool is_far = std::abs(usual) < 1.0 / kTimes || std::abs(usual) > kTimes;
+    findings.push_back({!expected.is_loose || is_far, fmt::format("{} goes {:.3g} times as far as its readings' angles or places say: is it in another unit?",
                                           name, usual)});
   } else if (usual < 0.0) {
-    findings.push_back({!expected.is_wired, fmt::format("{} goes the other way than its readings' angles or places", name)});
+    findings.push_back({!expected.is_loose, fmt::format("{} goes the other way than its readings' angles or places", name)});
   }
 }
 
@@ -173,30 +173,34 @@ void CheckOrdered(const Channel& channel, const Expected& expected, std::vector<
                                          channel.column->name, by_chance / expected.noise)});
 }
 
+/// How far the values about one lie from the next: what a course does by itself.
+double WayAbout(std::size_t i, const std::vector<double>& left) {
+  constexpr std::size_t kAbout = 8;
+  std::vector<double> way;
+  for (std::size_t k = std::max(i, kAbout) - kAbout; k + 1 < std::min(left.size(), i + kAbout + 1); ++k) way.push_back(std::abs(left[k + 1] - left[k]));
+  return MiddleOf(std::move(way));
+}
+
 void CheckSingleValues(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
   if (channel.size() < kFewestPairs) return;
   const std::vector<double> left = LeftOf(channel, expected);
-  std::vector<double> off(channel.size(), 0.0);
-  for (std::size_t i = 1; i + 1 < channel.size(); ++i) {
-    const double course = std::abs(left[i + 1] - left[i - 1]), alone = std::abs(left[i] - 0.5 * (left[i + 1] + left[i - 1]));
-    if (2.0 * course < alone) off[i] = alone;  // neither a step nor a slope
-  }
   std::vector<double> unlike(channel.size(), INFINITY);  // the repeat that is most alike
   for (const auto& [first, second] : Repeats(channel)) {
     const double apart = std::abs(left[second] - left[first]);
     unlike[first] = std::min(unlike[first], apart);
     unlike[second] = std::min(unlike[second], apart);
   }
-  const double usual = std::max({ScatterOf(left), expected.noise, kStep * MiddleOf(Sizes(Between(Neighbours(channel), left)))});
+  const double usual = std::max({ScatterOf(left), expected.noise, expected.step, StepOf(channel)});
   std::size_t worst = 0;
-  for (std::size_t i = 0; i < off.size(); ++i) {
-    off[i] = std::min(off[i], unlike[i]);
-    if (off[i] > off[worst]) worst = i;
+  double times = 0.0;
+  for (std::size_t i = 1; i + 1 < channel.size() && usual > 0.0; ++i) {
+    const double course = std::abs(left[i + 1] - left[i - 1]), alone = std::abs(left[i] - 0.5 * (left[i + 1] + left[i - 1]));
+    if (2.0 * course > alone || std::min(alone, unlike[i]) < kAlone * usual) continue;  // a step, a slope, or of its place
+    if (const double here = std::min(alone, unlike[i]) / std::max(usual, WayAbout(i, left)); here > times) times = here, worst = i;
   }
-  if (!(usual > 0.0) || !(off[worst] > kAlone * usual)) return;
+  if (!(times > kAlone)) return;
   findings.push_back({false, fmt::format("{} of reading {} lies {:.3g} times its scatter from its neighbours and from readings of the "
-                                         "same place", Text(*channel.column, channel.value[worst]), channel.reading[worst]->reading,
-                                         off[worst] / usual)});
+                                         "same place", Text(*channel.column, channel.value[worst]), channel.reading[worst]->reading, times)});
 }
 
 }  // namespace

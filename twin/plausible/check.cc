@@ -46,12 +46,18 @@ bool AnythingElseMoved(const Reading& before, const Reading& here, const Reading
   });
 }
 
+/// Whether a channel should stand where it does, to a step of its own.
+bool MayStand(const Reading& before, const Reading& here, const Expected& claim) {
+  return claim.nominal && std::abs(claim.nominal(here) - claim.nominal(before)) <= claim.step;
+}
+
 /// The very same value in a row while anything else moves.
-void CheckStuck(const Channel& channel, const BenchFormat& bench, std::vector<Finding>& findings) {
+void CheckStuck(const Channel& channel, const BenchFormat& bench, const Expected& claim, std::vector<Finding>& findings) {
   std::size_t longest = 1, run = 1, end = 0, equal = 0;
   for (std::size_t i = 1; i < channel.size(); ++i) {
-    const bool stands = channel.value[i] == channel.value[i - 1] &&
-                        AnythingElseMoved(*channel.reading[i - 1], *channel.reading[i], *channel.column, bench);
+    const Reading &before = *channel.reading[i - 1], &here = *channel.reading[i];
+    const bool stands = channel.value[i] == channel.value[i - 1] && !MayStand(before, here, claim) &&
+                        AnythingElseMoved(before, here, *channel.column, bench);
     equal += stands;
     run = stands ? run + 1 : 1;
     if (run > longest) {
@@ -69,9 +75,9 @@ void CheckStuck(const Channel& channel, const BenchFormat& bench, std::vector<Fi
 }
 
 /// @param moves  Noise of its own, or another channel that shows motion or noise: this one should, too.
-void CheckAlive(const Channel& channel, bool moves, const BenchFormat& bench, std::vector<Finding>& findings) {
+void CheckAlive(const Channel& channel, bool moves, const BenchFormat& bench, const Expected& claim, std::vector<Finding>& findings) {
   if (channel.size() < kFewestToJudge || !moves) return;
-  if (Moves(channel)) return CheckStuck(channel, bench, findings);
+  if (Moves(channel)) return CheckStuck(channel, bench, claim, findings);
   findings.push_back({true, fmt::format("{} in all {} readings: the channel is dead, or its column is another's",
                                         Text(*channel.column, channel.value[0]), channel.size())});
 }
@@ -116,6 +122,8 @@ std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario&
   std::vector<Finding> findings;
   const BenchFormat& bench = FormatOf(scenario.bench);
   const std::vector<Channel> channels = ShownChannels(readings, bench);
+  const auto says_why = [](const Reading& r) { return r.status != ReadingStatus::kOk && r.status != ReadingStatus::kMissing; };
+  if (channels.empty() && std::ranges::any_of(readings, says_why)) return findings;  // "no_light": it is a finding already
   if (readings.size() < kFewest || channels.empty()) {
     findings.push_back({true, fmt::format("there are {} readings, none of which says anything", readings.size())});
     if (!channels.empty()) findings[0].line = fmt::format("there are only {} readings", readings.size());
@@ -126,11 +134,11 @@ std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario&
     if (bench.range_of && column.number) CheckRange(ChannelOf(readings, column), bench.range_of(scenario, column.name), findings);
   }
   for (const Channel& channel : channels) {
-    const auto claim = std::ranges::find(expected, channel.column->name, &Expected::column);
-    const bool is_claimed = claim != expected.end() && !scenario.noise_free;
-    CheckAlive(channel, !scenario.noise_free && (others_move || (is_claimed && claim->noise > 0.0)), bench, findings);
+    const auto found = std::ranges::find(expected, channel.column->name, &Expected::column);
+    const Expected claim = found == expected.end() || scenario.noise_free ? Expected{} : *found;
+    CheckAlive(channel, !scenario.noise_free && (others_move || claim.noise > 0.0), bench, claim, findings);
     CheckSteps(channel, Beside(channel, readings, bench), findings);
-    if (is_claimed && Moves(channel)) CheckAgainst(*claim, channel, findings);
+    if (!claim.column.empty() && Moves(channel)) CheckAgainst(claim, channel, findings);
   }
   CheckLabels(readings, bench, findings);
   std::ranges::stable_sort(findings, {}, [](const Finding& f) { return !f.fatal; });
