@@ -28,6 +28,9 @@ TEST(Sound, AValueGoesWithItsUncertaintyAndAReasonStands) {
   Reading dark;
   dark.status = ReadingStatus::kNoLight;
   KeepSound({Reading{}, dark}, evaluation);
+  nlohmann::json budget = {{{"u", 1.0}, {"U", 2e9}}};
+  EXPECT_EQ(ClearNoNumbers(budget), 1);
+  EXPECT_TRUE(budget[0]["U"].is_null());
   const nlohmann::json expected = {
       {"a", {{"value", nullptr}, {"u", nullptr}, {"dof", 1e12}}}, {"x_um", {1.0, nullptr}}, {"u_x_um", {0.1, nullptr}}, {"b", 4.0},
       {"not_determined", "the readings of this run do not determine it (of 2 readings 1 no_light)"}};

@@ -31,6 +31,7 @@ EvaluatedRun EvaluatedWithBudget(const Scenario& scenario, const std::vector<Rea
   EvaluatedRun run = {EvaluationOf(scenario, readings, Estimator::kRigorous), {}};
   const std::vector<uncertainty::Budget> budgets = BudgetsOf(scenario, readings);
   run.evaluation.results["uncertainty_budget"] = report::BudgetsByList(budgets);
+  report::ClearNoNumbers(run.evaluation.results["uncertainty_budget"]);
   run.text = run.evaluation.summary;
   if (!scenario.uncertainties.empty()) run.text += "\n" + report::WithoutNoNumbers(report::BudgetText(budgets));
   return run;

@@ -77,7 +77,7 @@ StillWorking::StillWorking(std::chrono::milliseconds quiet)
     : thread_([this, quiet](const std::stop_token& stop) {
         const auto begin = Steady::now();
         std::unique_lock lock(mutex_);
-        while (!ends_.wait_for(lock, stop, quiet, [&stop] { return stop.stop_requested(); })) {
+        while (!ends_.wait_for(lock, stop, quiet / 4, [&stop] { return stop.stop_requested(); })) {
           const auto now = Steady::now();
           if (now - Steady::time_point(Steady::duration(last_said)) < quiet) continue;
           Say(fmt::format("still working, {}\n", Clock(std::chrono::duration<double>(now - begin).count())));

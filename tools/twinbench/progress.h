@@ -46,10 +46,10 @@ class TrialsLine {
   bool line_open_ = false;
 };
 
-/// Says on stderr every kQuiet that the work goes on, if nothing else was said meanwhile, as long as this lives.
+/// Says on stderr that the work goes on once nothing was said for kQuiet or a little longer, as long as this lives.
 class StillWorking {
  public:
-  static constexpr std::chrono::seconds kQuiet{15};
+  static constexpr std::chrono::seconds kQuiet{10};
   explicit StillWorking(std::chrono::milliseconds quiet = kQuiet);
 
  private:

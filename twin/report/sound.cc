@@ -93,17 +93,19 @@ bool MayBeLarge(const std::string& key) {
   return key == "dof" || key == "seed" || key.starts_with("chi2");
 }
 
-int ClearAbsurd(Json& node) {
+}  // namespace
+
+int ClearNoNumbers(nlohmann::json& node) {
   if (node.is_number_float() && !(std::abs(node.get<double>()) < kAbsurd)) {
     node = nullptr;
     return 1;
   }
   int cleared = 0;
   if (node.is_array()) {
-    for (Json& inner : node) cleared += ClearAbsurd(inner);
+    for (Json& inner : node) cleared += ClearNoNumbers(inner);
   } else if (node.is_object()) {
     const Json before = node;
-    for (auto& [key, inner] : node.items()) cleared += MayBeLarge(key) ? 0 : ClearAbsurd(inner);
+    for (auto& [key, inner] : node.items()) cleared += MayBeLarge(key) ? 0 : ClearNoNumbers(inner);
     if (cleared == 0) return 0;
     for (const auto& [key, u] : before.items()) {
       const std::string of = key == "u" ? "value" : key.starts_with("u_") ? key.substr(2) : "";
@@ -112,6 +114,8 @@ int ClearAbsurd(Json& node) {
   }
   return cleared;
 }
+
+namespace {
 
 void ClearUncertainties(Json& node) {
   if (!node.is_structured()) return;
@@ -168,7 +172,7 @@ std::string WithoutNoNumbers(const std::string& text, const std::string& absent)
 
 void KeepSound(const std::vector<Reading>& readings, Evaluation& evaluation) {
   if (const Misfit* worst = WorstOf(evaluation.misfits)) TakeUncertainty(*worst, evaluation);
-  const int absurd = ClearAbsurd(evaluation.results) + ClearAbsurd(evaluation.separation);
+  const int absurd = ClearNoNumbers(evaluation.results) + ClearNoNumbers(evaluation.separation);
   for (ResultTable& table : evaluation.tables) table.text = WithoutNoNumbers(table.text, "");
   const std::string sound = WithoutNoNumbers(evaluation.summary);
   if (absurd == 0 && sound == evaluation.summary) return;

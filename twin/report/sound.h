@@ -27,6 +27,10 @@ constexpr double kAbsurd = 1e9;
 /// The text with `absent` in the place of every nan, inf and absurd number, and of a value whose uncertainty is one.
 std::string WithoutNoNumbers(const std::string& text, const std::string& absent = "-");
 
+/// Nulls in the place of every nan, inf and absurd number, and of a value whose uncertainty is one; counts may be large.
+/// @return how many there were.
+int ClearNoNumbers(nlohmann::json& results);
+
 /// Takes from an evaluation what is no result: numbers that are none become null in JSON and `-` in text, with one
 /// line that says why; a fit beyond kMostMisfit loses its separation and every `u`, and `not_separated` says so.
 /// @param readings  Behind the evaluation.

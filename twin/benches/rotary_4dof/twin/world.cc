@@ -1,6 +1,7 @@
 #include "twin/benches/rotary_4dof/twin/world.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "twin/benches/rotary_4dof/settings.h"
@@ -98,8 +99,12 @@ BlockCourse::Voltages World::SignalOf(const Spots& spots, const Moment& moment) 
 Spots World::AddKnot(BlockCourse& course) {
   const mechanics::StackState axes = axes_.Look();
   const Moment moment = Look(axes);
-  const Spots spots = SpotsNow(moment, axes);
-  course.Add(SignalOf(spots, moment));
+  Spots spots = SpotsNow(moment, axes);
+  const BlockCourse::Voltages signal_V = SignalOf(spots, moment);
+  // Where light goes that is turned out of all measure no detector stands.
+  if (spots.status == ReadingStatus::kOk && !std::ranges::all_of(signal_V, [](double v) { return std::isfinite(v); }))
+    spots.status = ReadingStatus::kNoLight;
+  course.Add(signal_V);
   return spots;
 }
 
