@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/diagnose/found_causes.h"
+#include "tests/support/kept_text.h"
 #include "tests/support/small_scenario.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
+#include "twin/diagnose/aliased_orders.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -80,6 +82,51 @@ TEST(Extend, TakesACauseWithoutASignatureToo) {
   DiagnosisRun run = FoundGain(0.001);
   run.accepted.clear();  // as for swapped channels or outliers, which are no columns
   EXPECT_EQ(Extend(SmallNoiseFree(), run, "").effects.size(), 1u);
+}
+
+TEST(Extend, LeavesOutWhatHasNoFittedSizeAndWhatPredictsNothing) {
+  DiagnosisRun run = FoundGain(0.001);
+  run.diagnosis.gain.positive = false;
+  EXPECT_THAT(ExtendedToml(SmallNoiseFree(), run, ""), HasSubstr("# nothing was added"));
+  Cause decided;
+  decided.effect = "reclamp_frame";  // by evidence alone; there is no size of it
+  run.diagnosis.causes.push_back(decided);
+  EXPECT_THAT(ExtendedToml(SmallNoiseFree(), run, ""), HasSubstr("# added: effect reclamp_frame\n\n"));
+  run.diagnosis.gain.positive = true;
+  EXPECT_THAT(ExtendedToml(SmallNoiseFree(), run, ""), HasSubstr("# added: effect psd_gain at psd_a_x\n# added: effect reclamp_frame\n"));
+  for (Cause& cause : run.diagnosis.causes) cause.parameters.clear();
+  EXPECT_THAT(ExtendedToml(SmallNoiseFree(), run, ""), testing::Not(HasSubstr("psd_gain at")));
+}
+
+TEST(AliasesOf, AreOrdersThatEvenStopsDoNotTellApart) {
+  constexpr int kStops = 72;
+  Cause cause;
+  cause.effect = "periodic";
+  cause.rho = 50.0;
+  cause.parameters = {{"order", "1", 1.0, 13.0}};
+  LinearRun run;
+  run.bench = kEncoderBench;
+  const auto start_second_turn_at = [&run](double stop) {
+    Eigen::VectorXd turns = Eigen::VectorXd::LinSpaced(2 * kStops, 0.01, 2.01 - 1.0 / kStops);
+    turns.tail(kStops).array() += stop / kStops;
+    run.schedule.reference_rad = 2.0 * M_PI * turns;
+  };
+  start_second_turn_at(0.0);
+  EXPECT_THAT(AliasesOf(cause, run), testing::AllOf(testing::Contains(59), testing::Contains(85), testing::Contains(131), testing::SizeIs(27)));
+  Diagnosis told;
+  told.causes = {cause};
+  told.verdict = Verdict::kNamed;
+  told.gain.another_run = 1.0;
+  TellAliases(run, told);
+  EXPECT_TRUE(std::isnan(told.gain.another_run));
+  EXPECT_EQ(told.verdict, Verdict::kTie);
+  EXPECT_KEPT(told.causes[0].indistinguishable_from.at(0).where + "; " + told.causes[0].next_measurement + "; " + told.notes.at(0));
+  cause.parameters[0].value = 59.0;
+  EXPECT_THAT(AliasesOf(cause, run), testing::Contains(13));
+  start_second_turn_at(M_1_PI);  // another start angle; not of a grid that is finer by a whole number
+  EXPECT_THAT(AliasesOf(cause, run), testing::IsEmpty());
+  cause.effect = "eccentricity";  // has no order
+  EXPECT_THAT(AliasesOf(cause, run), testing::IsEmpty());
 }
 
 TEST(Extend, KeepsTheEffectsThatTheScenarioHad) {

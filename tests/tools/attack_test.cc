@@ -84,6 +84,30 @@ TEST_F(Attack, OnlyARunOfTheTwinIsMadeAgain) {
   ExpectRefused({"run", "scenario.toml", "-o", ".", "--force"});
 }
 
+TEST_F(Attack, WhatIsExchangedInARunIsSaidByEveryCommandThatReadsIt) {
+  MakeRun("run");
+  Succeed({"run", "small.toml", "-o", "other", "--seed", "6"});
+  for (const std::string file : {"scenario.toml", "truth.json", "results.json", "record.sqlite"}) {
+    const std::string mixed = "mixed_" + file;
+    std::filesystem::copy(At("run"), At(mixed), std::filesystem::copy_options::recursive);
+    std::filesystem::copy(At("other/" + file), At(mixed + "/" + file), std::filesystem::copy_options::overwrite_existing);
+    for (const char* command : {"separate", "score", "diagnose", "export", "uncertainty"})
+      EXPECT_THAT(Refusal({command, mixed}), HasSubstr("not as it was written")) << file;
+  }
+}
+
+TEST_F(Attack, AnOutputIsBehindTheLinkThatNamesItAndWholeOrNotThere) {
+  MakeRun("run");
+  Write("readings.csv", "");
+  std::filesystem::create_symlink("readings.csv", At("link.csv"));
+  Succeed({"export", "run", "--readings", "link.csv"});
+  EXPECT_TRUE(std::filesystem::is_symlink(At("link.csv")));
+  EXPECT_EQ(Read("readings.csv"), ReadingsOf("run"));
+  std::filesystem::create_directory(At("taken.csv.part"));
+  EXPECT_EQ(Call({"export", "run", "--readings", "taken.csv"}).exit_code, 1);
+  EXPECT_FALSE(Exists("taken.csv")) << "not written in place";
+}
+
 TEST_F(Attack, ADiskThatIsFullIsNoSuccess) {
   MakeRun("run");
   for (const char* command :

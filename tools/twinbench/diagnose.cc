@@ -31,6 +31,7 @@
 #include "twin/plausible/check.h"
 #include "twin/report/diagnosis_text.h"
 #include "twin/report/sound.h"
+#include "twin/report/verdict_line.h"
 
 namespace twinbench::tools {
 namespace {
@@ -114,6 +115,23 @@ void MergeIntoResults(const RunFolder& folder, nlohmann::json diagnosis, const r
   record->WriteBeside(kResultsFile, JsonText(results));
 }
 
+/// Writes the extended scenario, and diagnoses the same readings with it as it is read back: what it leaves is said in a note.
+void WriteExtended(const DiagnoseOptions& options, const RecordedRun& run, const diagnose::DiagnoseOptions& how,
+                   diagnose::DiagnosisRun& found) {
+  const std::string toml = diagnose::ExtendedToml(run.scenario, found, Provenance(options.source, run.readings.size()));
+  WriteFileAtOnce(options.extended, toml);
+  std::string left;
+  try {
+    const Scenario extended = ParseScenario(toml, options.extended, ".");
+    if (WriteScenario(extended) == WriteScenario(run.scenario)) return;
+    const diagnose::Diagnosis again = diagnose::Diagnose(run.readings, extended, how).diagnosis;
+    if (again.verdict != diagnose::Verdict::kNone) left = report::VerdictLine(again, options.source);
+  } catch (const InputError& refusal) {
+    left = refusal.what();
+  }
+  if (!left.empty()) found.diagnosis.notes.push_back("the written scenario does not leave these readings silent. A second diagnosis with it: " + left);
+}
+
 void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
   for (const std::string& output : {answer.to(), options.extended})
     RequireOutput(output, {options.source, options.scenario});
@@ -123,13 +141,10 @@ void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
   how.model = EstimatorNamed(options.model);
   how.excluded = options.excluded;
   how.cache_folder = CacheFolder(options.cache);
-  const diagnose::DiagnosisRun found = diagnose::Diagnose(run.readings, run.scenario, how);
+  diagnose::DiagnosisRun found = diagnose::Diagnose(run.readings, run.scenario, how);
   const diagnose::Disagreement disagreement = diagnose::DisagreementOf(found);
   if (!disagreement.line.empty()) fmt::print("{}", plausible::InLines({{!disagreement.is_plausible, disagreement.line}}));
-  if (!options.extended.empty()) {
-    WriteFileAtOnce(options.extended,
-                    diagnose::ExtendedToml(run.scenario, found, Provenance(options.source, run.readings.size())));
-  }
+  if (!options.extended.empty()) WriteExtended(options, run, how, found);
   const nlohmann::json json = DiagnosisJson(found, run.scenario, options.extended);
   answer.Write(json);
   const diagnose::Shown shown = diagnose::ShownBy(found);

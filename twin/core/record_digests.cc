@@ -108,12 +108,17 @@ void RecordDigests::CheckRows() {
 }
 
 /// A file may be any that was written under its name: it is written after its digest, and the power may fail between.
-void RecordDigests::CheckFile(const std::string& name, const std::string& bytes, const std::string& folder) {
-  SqliteStatement known(database_, "SELECT count(*) FROM files WHERE name = ? AND sha256 = ?");
-  known.Bind(0, name);
-  known.Bind(1, Sha256(bytes));
-  known.Step();
-  if (known.Integer(0) == 0) FailNotAsWritten(folder + "/" + name, "this file was altered or is of another run");
+void RecordDigests::CheckFiles(const std::map<std::string, std::string>& files) {
+  std::vector<std::string> others;
+  for (const auto& [name, bytes] : files) {
+    SqliteStatement known(database_, "SELECT count(*) FROM files WHERE name = ? AND sha256 = ?");
+    known.Bind(0, name);
+    known.Bind(1, Sha256(bytes));
+    known.Step();
+    if (known.Integer(0) == 0) others.push_back(name);
+  }
+  if (!others.empty())
+    FailNotAsWritten(database_.path(), fmt::format("altered, or of another run: {}", fmt::join(others, ", ")));
 }
 
 /// Of a scenario without a digest (an older version's, or one that came from elsewhere): whether it can be this run's.
@@ -141,7 +146,7 @@ void RecordDigests::Check(const std::string& folder) {
   }
   const SqliteTransaction one_moment(database_, "BEGIN");
   CheckRows();
-  for (const auto& [name, bytes] : files) CheckFile(name, bytes, folder);
+  CheckFiles(files);
   if (std::ranges::find(names, kScenario) == names.end()) CheckScenario(folder);
 }
 

@@ -35,7 +35,8 @@ class RecordDigests {
   Rows RowsOf(const std::string& table, std::int64_t first, std::int64_t last);
   std::vector<std::string> Names();
   void CheckRows();
-  void CheckFile(const std::string& name, const std::string& bytes, const std::string& folder);
+  /// @param files  Their bytes, by name.
+  void CheckFiles(const std::map<std::string, std::string>& files);
   void CheckScenario(const std::string& folder);
 
   SqliteDatabase& database_;

@@ -16,12 +16,27 @@ namespace {
 constexpr double kSmallest_SI = 1e-9;
 constexpr double kRounding_SI = 1e-11;
 
+bool IsAccepted(const Cause& cause, const DiagnosisRun& run) {
+  return std::ranges::any_of(run.accepted, [&](const Accepted& accepted) {
+    return accepted.family.effect == cause.effect && accepted.family.where == cause.where;
+  });
+}
+
 /// Causes of a verdict "named" are all at work. Of a tie or beside the unknown it is those that the search took in.
 bool IsAtWork(const Cause& cause, const DiagnosisRun& run) {
-  return run.diagnosis.verdict == Verdict::kNamed ||
-         std::any_of(run.accepted.begin(), run.accepted.end(), [&](const Accepted& accepted) {
-           return accepted.family.effect == cause.effect && accepted.family.where == cause.where;
-         });
+  return run.diagnosis.verdict == Verdict::kNamed || IsAccepted(cause, run);
+}
+
+/// What the search took in predicts readings that it was not fitted to, or nothing could be held out.
+bool IsProven(const DiagnosisRun& run) {
+  return run.diagnosis.gain.folds == 0 || run.diagnosis.gain.positive;
+}
+
+/// Without what the search took in.
+DiagnosisRun WithoutSearched(DiagnosisRun run) {
+  std::erase_if(run.diagnosis.causes, [&](const Cause& cause) { return IsAccepted(cause, run); });
+  run.accepted.clear();
+  return run;
 }
 
 /// What the cause says of itself where the catalogue has a word for it.
@@ -167,7 +182,7 @@ std::string What(const Scenario& scenario, const Scenario& extended) {
     const EmpiricalSettings& empirical = extended.empiricals[i];
     text += fmt::format("# added: empirical signal on {}: {}\n", empirical.channel, empirical.signature);
   }
-  return text.empty() ? "# nothing was added: the readings agree with the scenario\n" : text;
+  return text.empty() ? "# nothing was added\n" : text;
 }
 
 /// A comment must stay on its line.
@@ -200,10 +215,18 @@ bool IsRepeatedOnly(const Accepted& accepted, const LinearRun& run) {
   return !accepted.family.goes_by_time && IsTabulated(accepted, run);
 }
 
+bool HasFittedSize(const Cause& cause, const std::string& bench) {
+  const EffectEntry* const entry = FindEffect(cause.effect, bench);
+  if (entry == nullptr || entry->parameters.empty()) return true;
+  return std::ranges::any_of(cause.parameters, [&](const ParameterEstimate& estimate) {
+    return std::isfinite(estimate.value) && std::ranges::count(entry->parameters, estimate.name, &EffectParameter::name) > 0;
+  });
+}
+
 Scenario Extend(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance) {
   Scenario extended = scenario;
   for (const Cause& cause : run.diagnosis.causes) {
-    if (IsAtWork(cause, run)) extended.effects.push_back(EffectOf(cause, scenario.bench, provenance));
+    if (IsAtWork(cause, run) && HasFittedSize(cause, scenario.bench)) extended.effects.push_back(EffectOf(cause, scenario.bench, provenance));
   }
   for (const Accepted& accepted : run.accepted) {
     if (accepted.family.kind == Kind::kUnknown) AddUnnamed(accepted, run, provenance, extended);
@@ -212,7 +235,7 @@ Scenario Extend(const Scenario& scenario, const DiagnosisRun& run, const std::st
 }
 
 std::string ExtendedToml(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance) {
-  const Scenario extended = Extend(scenario, run, provenance);
+  const Scenario extended = Extend(scenario, IsProven(run) ? run : WithoutSearched(run), provenance);
   return fmt::format("# {}\n{}\n{}", OneLine(provenance), What(scenario, extended), WriteScenario(extended));
 }
 

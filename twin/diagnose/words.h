@@ -9,7 +9,7 @@ namespace twinbench::diagnose {
 
 /// Of causes that predict nothing.
 inline constexpr const char* kNoGainNote =
-    "the gain on held-out passes is not above zero at 95 %: the cause is a proposal, not part of the model";
+    "the gain on held-out passes is not above zero at 95 %: the cause is a proposal and is not written";
 
 /// "psd_gain at psd_a_x".
 std::string Place(const std::string& effect, const std::string& where);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "twin/core/errors.h"
+#include "twin/diagnose/aliased_orders.h"
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/file_fit.h"
 #include "twin/diagnose/gain.h"
@@ -90,6 +91,13 @@ void ProposeOnly(Diagnosis& d) {
   d.notes.push_back(kNoGainNote);
 }
 
+void TellUnsized(DiagnosisRun& result) {
+  for (const Cause& cause : result.diagnosis.causes) {
+    if (!HasFittedSize(cause, result.run.bench))
+      result.diagnosis.notes.push_back(fmt::format("{} is not written: no size of it was fitted", Place(cause.effect, cause.where)));
+  }
+}
+
 }  // namespace
 
 void JudgeByFile(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options,
@@ -114,6 +122,8 @@ void JudgeByFile(const std::vector<Reading>& readings, const Scenario& scenario,
   }
   Bound(d.gain);
   ProposeOnly(d);
+  TellUnsized(result);
+  TellAliases(result.run, d);
 }
 
 }  // namespace twinbench::diagnose

@@ -25,11 +25,19 @@ std::string NameOf(const Cause& cause) {
   return diagnose::Place(cause.effect, cause.where);
 }
 
+/// " or order 59": of a cause of which the same readings show other orders.
+std::string OtherOrder(const Cause& cause) {
+  const auto other = std::ranges::find_if(cause.indistinguishable_from, [&](const diagnose::Rival& rival) {
+    return rival.effect == cause.effect && rival.where != cause.where && rival.where.starts_with("order ");
+  });
+  return other == cause.indistinguishable_from.end() ? "" : " or " + other->where;
+}
+
 /// "backlash, width 0.0120 +- 0.0003 deg (97 %)".
 std::string Alone(const Cause& cause, bool with_size) {
   std::string size;
   if (with_size && !cause.parameters.empty() && std::isfinite(cause.parameters.front().value))
-    size = ", " + diagnose::NameAndSize(cause.parameters.front());
+    size = ", " + diagnose::NameAndSize(cause.parameters.front()) + OtherOrder(cause);
   return fmt::format("{}{} ({})", NameOf(cause), size, diagnose::Percent(cause.probability));
 }
 

@@ -1,0 +1,75 @@
+#include "twin/diagnose/aliased_orders.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "twin/core/effect_catalogue.h"
+#include "twin/diagnose/tuning.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr int kHighestAlias = 1000;  // finer structure of a turn is averaged by what reads it
+constexpr std::size_t kMostAliases = 3;
+constexpr int kAsLikely = 9;  // times the order: with nothing known of its scale, an alias below has more than a tenth of the probability
+
+/// Whole periods a turn; 0 if it has no such parameter.
+int OrderOf(const Cause& cause, const std::string& bench) {
+  const EffectEntry* const entry = FindEffect(cause.effect, bench);
+  if (entry == nullptr) return 0;
+  const auto known = std::ranges::find(entry->parameters, "order", &EffectParameter::name);
+  const auto fitted = std::ranges::find(cause.parameters, "order", &ParameterEstimate::name);
+  if (known == entry->parameters.end() || fitted == cause.parameters.end()) return 0;
+  const bool is_whole = fitted->value == std::round(fitted->value) && fitted->value <= kHighestAlias;
+  return is_whole && known->meaning.starts_with("periods a turn") ? static_cast<int>(fitted->value) : 0;
+}
+
+/// By how much a wave of this order is not the same at all readings, as a share of its size.
+double Unevenness(int order, const Eigen::VectorXd& angle_rad) {
+  std::complex<double> sum;
+  for (const double a : angle_rad) sum += std::polar(1.0, order * a);
+  return std::sqrt(std::max(0.0, 1.0 - std::norm(sum / static_cast<double>(angle_rad.size()))));
+}
+
+std::string Listed(const std::vector<int>& orders) {
+  std::string text;
+  for (std::size_t k = 0; k < std::min(kMostAliases, orders.size()); ++k) text += fmt::format("{}{}", k == 0 ? "" : ", ", orders[k]);
+  return text + (orders.size() > kMostAliases ? ", ..." : "");
+}
+
+}  // namespace
+
+std::vector<int> AliasesOf(const Cause& cause, const LinearRun& run) {
+  const int order = OrderOf(cause, run.bench);
+  const Eigen::VectorXd& angle_rad = run.schedule.reference_rad.allFinite() ? run.schedule.reference_rad : run.schedule.target_rad;
+  if (order == 0 || angle_rad.size() == 0 || !angle_rad.allFinite()) return {};
+  constexpr double kClearly = 0.2;  // whatever the size is thought to be
+  const double seen = std::isfinite(cause.rho) && cause.rho > 0.0 ? tuning::kBaarda / cause.rho : kClearly;
+  std::vector<bool> is_same(static_cast<std::size_t>(order + kHighestAlias + 1));
+  for (std::size_t k = 0; k < is_same.size(); ++k) is_same[k] = Unevenness(static_cast<int>(k), angle_rad) < std::min(seen, kClearly);
+  std::vector<int> aliases;
+  for (int other = 1; other <= kHighestAlias; ++other) {
+    if (other != order && (is_same[static_cast<std::size_t>(order + other)] || is_same[static_cast<std::size_t>(std::abs(order - other))]))
+      aliases.push_back(other);
+  }
+  return aliases;
+}
+
+void TellAliases(const LinearRun& run, Diagnosis& diagnosis) {
+  for (Cause& cause : diagnosis.causes) {
+    const std::vector<int> aliases = AliasesOf(cause, run);
+    if (aliases.empty()) continue;
+    for (std::size_t k = 0; k < std::min(kMostAliases, aliases.size()); ++k)
+      cause.indistinguishable_from.push_back({cause.effect, fmt::format("order {}", aliases[k]), 1.0});
+    const std::string orders = fmt::format("order {} or {}", OrderOf(cause, run.bench), Listed(aliases));
+    cause.next_measurement = fmt::format("the same stops from another start angle, a third of a step on, which tells {}", orders);
+    if (diagnosis.verdict == Verdict::kNamed && aliases.front() < kAsLikely * OrderOf(cause, run.bench)) diagnosis.verdict = Verdict::kTie;
+    diagnosis.gain.another_run = kNaN;
+    diagnosis.notes.push_back(fmt::format("{} is of {}: these stops do not tell, and what it improves is stated for them only", cause.effect, orders));
+  }
+}
+
+}  // namespace twinbench::diagnose
