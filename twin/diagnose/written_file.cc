@@ -91,9 +91,10 @@ void ProposeOnly(Diagnosis& d) {
   d.notes.push_back(kNoGainNote);
 }
 
+/// Of an answer that is open, members that were not fitted are not expected in the file.
 void TellUnsized(DiagnosisRun& result) {
   for (const Cause& cause : result.diagnosis.causes) {
-    if (!HasFittedSize(cause, result.run.bench))
+    if (result.diagnosis.verdict == Verdict::kNamed && !HasFittedSize(cause, result.run.bench))
       result.diagnosis.notes.push_back(fmt::format("{} is not written: no size of it was fitted", Place(cause.effect, cause.where)));
   }
 }
