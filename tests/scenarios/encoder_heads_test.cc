@@ -46,6 +46,17 @@ TEST(EncoderHeads, CalibrateAllOfItWithAFifthAtAnOddAngle) {
   EXPECT_NEAR(Figure(run.score, "/device/ez/mean_chi2"), 1.0, 0.45);
 }
 
+/// Rounded alike in every pass.
+TEST(EncoderHeads, KnowTheRingNoBetterThanInTheirSteps) {
+  for (const int bits : {15, 17, 18, 19, 22}) {
+    std::vector<std::string> heads = kFiveHeads;
+    heads.push_back(fmt::format("device.resolution_deg={:.17g}", 360.0 / (1 << bits)));
+    const double chi2 = Figure(HeadsRun(heads).score, "/device/ez/mean_chi2");
+    EXPECT_GT(chi2, 0.2) << bits;
+    EXPECT_LT(chi2, 4.0) << bits;
+  }
+}
+
 TEST(EncoderHeads, AreAsCertainInMotion) {
   std::vector<std::string> sweep = kFiveHeads;
   sweep.insert(sweep.end(), {"encoder_procedure.kind=sweep", "encoder_procedure.passes=[1]",

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/twin_run.h"
+#include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
 
 // The answer that scenarios/encoder_mountings.toml promises, and the same device in continuous motion.
@@ -71,6 +72,17 @@ TEST(EncoderMountings, OneOfThemShowsOnlyTheDifference) {
   // Noise 0.45 arcsec; the ring's error moves the encoder's curve by up to 72 arcsec x 0.02.
   EXPECT_NEAR(std::abs(first / arcsec - difference), 0.0, 2.0);
   EXPECT_TRUE(run.found.curves.reference.orders.empty());
+}
+
+/// What the mountings see alike of both is the device's, and is scored so.
+TEST(EncoderMountings, AreScoredByTheDifferenceThatTheySee) {
+  for (const char* mounting : {"encoder_procedure.mounting_deg=[35]", "encoder_procedure.mounting_deg=[20, 20]",
+                               "encoder_procedure.mounting_deg=[0, 180]"}) {
+    const Scenario scenario = LoadScenario(test::ScenarioPath("encoder_mountings.toml"), {mounting});
+    const auto score = benches::encoder::ScoreRun(scenario, test::RunEncoderTwin(scenario).readings,
+                                                  sim::EncoderTwin(scenario).Truth(), Estimator::kRigorous).json;
+    EXPECT_NEAR(score.at("device").at("ez").at("mean_chi2").get<double>(), 1.0, 0.6) << mounting;
+  }
 }
 
 }  // namespace

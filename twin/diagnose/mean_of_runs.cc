@@ -74,20 +74,6 @@ int RunsIn(const std::vector<Reading>& readings) {
   return std::isfinite(runs) ? static_cast<int>(runs) : 1;
 }
 
-double RepeatedByRounding(double noise) {
-  constexpr int kWaves = 100;
-  double sum = 0.0;
-  for (int k = 1; k <= kWaves; ++k)
-    sum += std::exp(-std::pow(2.0 * units::kPi * k * noise, 2)) / (2.0 * std::pow(units::kPi * k, 2));
-  return sum;
-}
-
-RoundingInMean RoundingOf(double step, double noise, double count) {
-  const double of_one = step * step / 12.0;
-  const double repeated = count > 1.0 && step > 0.0 ? step * step * RepeatedByRounding(noise / step) : of_one;
-  return {repeated, repeated + (of_one - repeated) / count};
-}
-
 void ScaleToMean(const std::vector<Reading>& used, LinearRun& run) {
   const int runs = RunsIn(used);
   if (runs == 1 || !run.sigma_stated) return;

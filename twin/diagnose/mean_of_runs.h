@@ -5,6 +5,7 @@
 
 #include "twin/core/bench_format.h"
 #include "twin/core/reading.h"
+#include "twin/core/rounding.h"
 #include "twin/diagnose/engine/linear_run.h"
 
 /// Runs of one plan as one run with less noise: what repeats is left, so that a diagnosis sees smaller causes in the
@@ -23,20 +24,6 @@ bool AreOfOnePlan(const std::vector<Reading>& a, const std::vector<Reading>& b);
 
 /// Of how many runs it is the mean; 1 unless MeanOfRuns made it.
 int RunsIn(const std::vector<Reading>& readings);
-
-/// Variance over all places of what rounding leaves in the mean of many readings, in squares of its step: 1/12
-/// without noise. Its error at a place is a saw-tooth, whose waves the noise dims: sum over k of (1 / pi k)^2 / 2
-/// exp(-(2 pi k noise)^2) (Widrow & Kollar, Quantization Noise, 2008, 5).
-/// @param noise  Standard deviation, in steps.
-double RepeatedByRounding(double noise);
-
-/// Variance by rounding in the mean of several readings of one place.
-struct RoundingInMean {
-  double repeated = 0.0;  // what is in each of them alike
-  double all = 0.0;       // that and what is left of the rest
-};
-/// @param noise  Standard deviation of one reading; like `step` in any unit, whose square the result has.
-RoundingInMean RoundingOf(double step, double noise, double count);
 
 /// Stated uncertainties become those of the mean. Where noise is smaller than the step of rounding, every run is
 /// rounded alike, and of the variance step^2 / 12 a part repeats and stays (RepeatedByRounding). Uncertainties that

@@ -13,6 +13,7 @@
 #include "twin/benches/encoder_comparison/uncertainty_parts.h"
 #include "twin/core/errors.h"
 #include "twin/core/written_number.h"
+#include "twin/report/curve_orders.h"
 #include "twin/report/json_units.h"
 #include "twin/report/uncertainty_parts.h"
 
@@ -35,8 +36,9 @@ std::vector<Reading> WithStatedHeads(const Scenario& scenario, std::vector<Readi
 
 SeveralHeads Calibrated(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const std::vector<Reading> stated = WithStatedHeads(scenario, readings);
-  return estimator == Estimator::kPublished ? separate::encoder::EqualDivision(stated)
-                                            : separate::encoder::SeparateHeads(stated);
+  const separate::encoder::HeadOptions options{.steps = StepsOf(EncoderOf(scenario))};
+  return estimator == Estimator::kPublished ? separate::encoder::EqualDivision(stated, options)
+                                            : separate::encoder::SeparateHeads(stated, options);
 }
 
 std::string OrdersText(const std::vector<int>& orders) {
@@ -89,7 +91,8 @@ nlohmann::json ReferenceJson(const SeveralHeads& heads) {
 }
 
 nlohmann::json HeadsSeparationJson(const SeveralHeads& heads, const DeviceSettings& settings) {
-  const double of_steps = StepShare(heads.residual_rms_rad, settings);
+  const double of_white = StepShare(heads.residual_rms_rad, settings);
+  const double of_steps = heads.rounding_share + (1.0 - heads.rounding_share) * of_white;
   nlohmann::json harmonics = {{"form", "sum of amplitude cos(order angle + phase)"},
                               {"highest_order", heads.Highest()},
                               {"device", OrdersJson(heads.ring, heads.ring_by_noise, of_steps)}};
@@ -133,25 +136,6 @@ std::string HeadsSummary(const SeveralHeads& heads, const AxisUnit& unit) {
   return text;
 }
 
-/// Takes orders out of a curve at even positions of a turn.
-/// @return root mean square of what was taken out.
-double TakeOut(const std::vector<int>& orders, nlohmann::json& curve) {
-  auto values = curve.at("ez_arcsec").get<std::vector<double>>();
-  const auto count = static_cast<double>(values.size());
-  double squares = 0.0;
-  for (const int order : orders) {
-    if (2 * order >= static_cast<int>(values.size())) continue;
-    std::complex<double> c = 0.0;
-    for (std::size_t i = 0; i < values.size(); ++i)
-      c += 2.0 / count * values[i] * std::polar(1.0, -order * units::turn * static_cast<double>(i) / count);
-    for (std::size_t i = 0; i < values.size(); ++i)
-      values[i] -= (c * std::polar(1.0, order * units::turn * static_cast<double>(i) / count)).real();
-    squares += 0.5 * std::norm(c);
-  }
-  curve["ez_arcsec"] = values;
-  return std::sqrt(squares);
-}
-
 }  // namespace
 
 report::Evaluation EvaluateHeads(const Scenario& scenario, const std::vector<Reading>& readings,
@@ -177,8 +161,8 @@ report::ScoredRun ScoreHeads(const Scenario& scenario, const std::vector<Reading
   if (!heads.not_separated.empty())
     throw InputError("the run", heads.not_separated, "a run with two heads or more over a whole turn");
   nlohmann::json device = truth.at("device"), reference = truth.at("reference");
-  const double lost_arcsec = TakeOut(heads.lost.orders, device);
-  TakeOut(heads.lost.orders, reference);
+  const double lost_arcsec = report::TakeOutOrders(heads.lost.orders, device);
+  report::TakeOutOrders(heads.lost.orders, reference);
   std::vector<report::CurveScore> curves = {ScoreOf("device", heads.ring, device)};
   if (!heads.reference.orders.empty()) curves.push_back(ScoreOf("reference", heads.reference, reference));
   nlohmann::json json = report::ToJson(curves);

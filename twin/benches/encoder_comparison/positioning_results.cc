@@ -76,9 +76,9 @@ void AppendVdi(int setup, const std::vector<TargetPositioning>& targets, const m
   results.text += VdiText(vdi, told);
 }
 
-void Append(int setup, const measure::PositioningStops& stops, const DeviceSettings& device,
+void Append(int setup, const measure::PositioningStops& stops, const DeviceSettings& device, const measure::RunRounding& rounding,
             PositioningResults& results) {
-  const AxisPositioning positioning = measure::EvaluatePositioning(stops.targets);
+  const AxisPositioning positioning = measure::EvaluatePositioning(stops.targets, {}, rounding);
   const double travel_rad = stops.targets.back().position - stops.targets.front().position;
   const AxisUnit coarse = CoarseUnit(device), fine = FineUnit(device);
   const measure::ToldIn told{coarse.name, coarse.to_SI, fine.name, fine.to_SI};
@@ -104,14 +104,17 @@ void Append(int setup, const measure::PositioningStops& stops, const DeviceSetti
 
 }  // namespace
 
-PositioningResults EvaluateStops(const std::vector<Reading>& readings, const DeviceSettings& device) {
+PositioningResults EvaluateStops(const std::vector<Reading>& readings, const DeviceSettings& device,
+                                 const separate::encoder::ScaleSteps& stated) {
+  const separate::encoder::ScaleSteps steps = separate::encoder::WithOwnStep(stated, readings);
   PositioningResults results;
   results.json = results.vdi = nlohmann::json::array();
   std::set<int> setups;
   for (const Reading& reading : readings) setups.insert(reading.setup);
   for (const int setup : setups) {
     const measure::PositioningStops stops = measure::PositioningOf(readings, setup);
-    if (!stops.targets.empty()) Append(setup, stops, device, results);
+    if (!stops.targets.empty())
+      Append(setup, stops, device, measure::RoundingOfTargets(stops.targets, steps.step_rad, steps.at_once), results);
   }
   return results;
 }

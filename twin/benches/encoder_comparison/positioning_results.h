@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/benches/encoder_comparison/estimators/scale_steps.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/core/reading.h"
 
@@ -17,6 +18,7 @@ struct PositioningResults {
   std::string text;     // for a person; of many targets the values of the axis only
 };
 
-PositioningResults EvaluateStops(const std::vector<Reading>& readings, const DeviceSettings& device);
+PositioningResults EvaluateStops(const std::vector<Reading>& readings, const DeviceSettings& device,
+                                 const separate::encoder::ScaleSteps& steps);
 
 }  // namespace twinbench::benches::encoder

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <utility>
 
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/coast_results.h"
@@ -16,6 +18,7 @@
 #include "twin/benches/encoder_comparison/uncertainty_parts.h"
 #include "twin/core/errors.h"
 #include "twin/core/written_number.h"
+#include "twin/report/curve_orders.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
 #include "twin/report/sound.h"
@@ -163,13 +166,27 @@ std::string SummaryOf(const DeviceError& e, const AxisUnit& unit) {
   return text;
 }
 
+/// True curves of device and reference; where the mountings see only the difference of both it is the device's.
+std::pair<nlohmann::json, nlohmann::json> TruthAsSeen(const DeviceError& e, const nlohmann::json& truth) {
+  nlohmann::json device = truth.at("device"), reference = truth.at("reference");
+  std::vector<int> lost = e.curves.lost;
+  if (e.curves.reference.orders.empty()) {
+    lost.resize(static_cast<std::size_t>(e.highest_order));
+    std::iota(lost.begin(), lost.end(), 1);
+  }
+  for (const int order : lost)  // at the device's angle
+    report::AddOrder(order, -report::OrderOf(reference, order) * std::polar(1.0, -order * e.mounting_rad.front()), device);
+  report::TakeOutOrders(lost, reference);
+  return {device, reference};
+}
+
 }  // namespace
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   if (separate::encoder::HaveHeads(readings)) return EvaluateHeads(scenario, readings, estimator);
   if (separate::encoder::HaveStamps(readings)) return EvaluateCoast(scenario, readings, estimator);
   const measure::AngleComparison comparison = measure::CompareAngles(readings);
-  const DeviceError device = separate::encoder::SeparateDevice(readings);
+  const DeviceError device = separate::encoder::SeparateDevice(readings, {.steps = StepsOf(EncoderOf(scenario))});
   const DeviceSettings device_settings = DeviceOfMeans(EncoderOf(scenario));
   report::Evaluation evaluation{
       ToJson(comparison), {}, device.not_separated, Summary(comparison, CoarseUnit(device_settings))};
@@ -182,7 +199,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
     evaluation.joints = [curves = device.curves] { return JointsOf(curves); };
   }
   if (EncoderOf(scenario).encoder_procedure.kind == "stops") {
-    const PositioningResults positioning = EvaluateStops(readings, device_settings);
+    const PositioningResults positioning = EvaluateStops(readings, device_settings, StepsOf(EncoderOf(scenario)));
     evaluation.results["iso230_2"] = positioning.json;
     evaluation.results["vdi3441"] = positioning.vdi;
     evaluation.summary += positioning.text;
@@ -194,11 +211,11 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
                            const nlohmann::json& truth, Estimator estimator) {
   if (separate::encoder::HaveHeads(readings)) return ScoreHeads(scenario, readings, truth, estimator);
   if (separate::encoder::HaveStamps(readings)) return ScoreCoast(readings, truth, estimator);
-  const DeviceError device = separate::encoder::SeparateDevice(readings);
+  const DeviceError device = separate::encoder::SeparateDevice(readings, {.steps = StepsOf(EncoderOf(scenario))});
   if (device.highest_order == 0) throw InputError("the run", device.not_separated, "a run with complete turns");
-  std::vector<report::CurveScore> curves = {ScoreOf("device", device.curves.device, truth.at("device"))};
-  if (!device.curves.reference.orders.empty())
-    curves.push_back(ScoreOf("reference", device.curves.reference, truth.at("reference")));
+  const auto [of_device, of_reference] = TruthAsSeen(device, truth);
+  std::vector<report::CurveScore> curves = {ScoreOf("device", device.curves.device, of_device)};
+  if (!device.curves.reference.orders.empty()) curves.push_back(ScoreOf("reference", device.curves.reference, of_reference));
   return {ToJson(curves),
           "against the truth; means are taken out of both\n" + report::ScoreTable(curves) + LostText(device),
           report::PositionTable(curves), report::ValuesOf(curves)};

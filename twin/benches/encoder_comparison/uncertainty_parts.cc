@@ -14,36 +14,46 @@ namespace {
 
 using separate::encoder::Curve;
 using separate::encoder::DeviceError;
-using separate::encoder::OfWhiteNoise;
+using separate::encoder::OfShare;
 using separate::harmonics::HarmonicSeries;
 
 double StepShareOf(const DeviceError& device, const DeviceSettings& settings) {
   return StepShare(device.residual_rms_rad, settings);
 }
 
-/// Where white noise makes this share of a variance.
-nlohmann::json WithWhiteShare(double white, double of_steps) {
-  return report::PartsJson(
-      {{"noise", (1.0 - of_steps) * white}, {"quantisation", of_steps * white}, {"repeatability", 1.0 - white}});
+/// Where white noise makes this share of a variance, and rounding that repeats another.
+nlohmann::json WithWhiteShare(double white, double of_steps, double rounding = 0.0) {
+  return report::PartsJson({{"noise", (1.0 - of_steps) * white},
+                            {"quantisation", of_steps * white + rounding},
+                            {"repeatability", 1.0 - white - rounding}});
 }
 
 std::vector<double> ListOf(const Eigen::ArrayXd& values) {
   return {values.begin(), values.end()};
 }
 
-/// Variance of a single reading beside the mean at its angle, all angles pooled.
-double PooledVariance_rad2(const separate::encoder::AngleMeans& means) {
-  double squares = 0.0, dof = 0.0;
+/// Variance of a single reading beside the mean at its angle, all angles pooled; and what rounding that repeats would
+/// be in it, to make the mean as uncertain as it does.
+struct Pooled {
+  double all_rad2 = 0.0, rounded_rad2 = 0.0;
+};
+Pooled PooledVariance(const separate::encoder::AngleMeans& means) {
+  double squares = 0.0, rounded = 0.0, dof = 0.0;
   for (std::size_t i = 0; i < means.count.size(); ++i) {
     if (means.count[i] < 2) continue;
     const double of_one = means.count[i] - 1.0;
     squares += of_one * means.count[i] * means.u_rad[i] * means.u_rad[i];
+    rounded += of_one * means.rounded_rad2 * std::min<double>(means.count[i], means.visits);
     dof += of_one;
   }
-  return squares / dof;
+  return {squares / dof, rounded / dof};
 }
 
 }  // namespace
+
+separate::encoder::ScaleSteps StepsOf(const EncoderSettings& settings) {
+  return {settings.device.resolution_rad, static_cast<double>(settings.encoder_procedure.ReadingsAtOnce())};
+}
 
 double StepShare(double reading_rad, const DeviceSettings& settings) {
   const double of_step = std::pow(settings.resolution_rad / reading_rad, 2) / 12.0;
@@ -54,10 +64,11 @@ nlohmann::json CurveParts(const separate::harmonics::HarmonicSeries& series, con
                           const DeviceSettings& settings, int points) {
   const double of_steps = StepShareOf(device, settings);
   const Eigen::ArrayXd u2 = Curve(series, points).u_rad.array().square(),
-                       white = Curve(OfWhiteNoise(series, device), points).u_rad.array().square();
+                       white = Curve(OfShare(series, device.white_share), points).u_rad.array().square(),
+                       rounding = Curve(OfShare(series, device.rounding_share), points).u_rad.array().square();
   return report::PartsJson(ListOf(u2), {{"noise", ListOf((1.0 - of_steps) * white)},
-                                      {"quantisation", ListOf(of_steps * white)},
-                                      {"repeatability", ListOf(u2 - white)}});
+                                      {"quantisation", ListOf(of_steps * white + rounding)},
+                                      {"repeatability", ListOf(u2 - white - rounding)}});
 }
 
 uncertainty::Joint CurveJoint(const std::string& name, const separate::harmonics::HarmonicSeries& series, int points) {
@@ -77,17 +88,20 @@ uncertainty::Joint CurveJoint(const std::string& name, const separate::harmonics
 }
 
 nlohmann::json OrderParts(int order, const DeviceError& device, const DeviceSettings& settings) {
-  return WithWhiteShare(device.white_share.at(static_cast<std::size_t>(order - 1)), StepShareOf(device, settings));
+  const auto at = static_cast<std::size_t>(order - 1);
+  return WithWhiteShare(device.white_share.at(at), StepShareOf(device, settings), device.rounding_share.at(at));
 }
 
 nlohmann::json ReversalParts(const DeviceError& device, const DeviceSettings& settings) {
-  return WithWhiteShare(device.reversal.white_share, StepShareOf(device, settings));
+  return WithWhiteShare(device.reversal.white_share, StepShareOf(device, settings), device.reversal.rounding_share);
 }
 
 nlohmann::json MeansParts(const separate::encoder::AngleMeans& means, const DeviceError& device, const DeviceSettings& settings) {
-  const double pooled_rad2 = PooledVariance_rad2(means);
-  if (!(pooled_rad2 > 0.0)) return nlohmann::json::object();
-  return WithWhiteShare(std::min(1.0, device.residual_rms_rad * device.residual_rms_rad / pooled_rad2), StepShareOf(device, settings));
+  const Pooled pooled = PooledVariance(means);
+  if (!(pooled.all_rad2 > 0.0)) return nlohmann::json::object();
+  const double rounding = pooled.rounded_rad2 / pooled.all_rad2;
+  const double white = std::min(1.0 - rounding, device.residual_rms_rad * device.residual_rms_rad / pooled.all_rad2);
+  return WithWhiteShare(white, StepShareOf(device, settings), rounding);
 }
 
 nlohmann::json PublishedCurveParts(const HarmonicSeries& series, const HarmonicSeries& by_noise, double of_steps, int points) {

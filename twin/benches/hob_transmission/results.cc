@@ -154,7 +154,7 @@ void AddInterferometer(const HobAnalysis& a, const HobSettings& settings, nlohma
   const auto parts_of = [&](const std::vector<PositionError>& positions, const HarmonicSeries& mean) {
     return WithStandard(
         PartsOf(UsedOf(positions, 0), StepVariance_rad2(settings, a.is_interferometer_at_rest), false), mean,
-        settings.interferometer.u_calibrator_rad);
+        settings.interferometer.u_calibrator_rad, a.encoder_rounding_rad2);
   };
   const nlohmann::json of_heads = json["separation"]["table_encoder"]["u_parts"],
                        of_all = parts_of(a.by_interferometer, a.encoder_by_interferometer);

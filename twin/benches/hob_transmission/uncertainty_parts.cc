@@ -101,14 +101,17 @@ nlohmann::json PartsOf(const separate::hob::OrderComparison& comparison, const C
   return shares;
 }
 
-nlohmann::json WithStandard(nlohmann::json parts, const HarmonicSeries& series, double u_standard_rad) {
+nlohmann::json WithStandard(nlohmann::json parts, const HarmonicSeries& series, double u_standard_rad,
+                            const std::vector<double>& rounding_rad2) {
   nlohmann::json standard = nlohmann::json::array();
   for (int order = 1; order <= series.Highest(); ++order) {
     const auto k = static_cast<std::size_t>(order - 1);
-    const double share = std::pow(u_standard_rad, 2) / Variance_rad2(series, order);
+    const double all_rad2 = Variance_rad2(series, order), share = std::pow(u_standard_rad, 2) / all_rad2,
+                 of_steps = k < rounding_rad2.size() ? rounding_rad2[k] / all_rad2 : 0.0;
     for (auto& part : parts) {
-      if (k < part.size() && part[k].is_number()) part[k] = (1.0 - share) * part[k].get<double>();
+      if (k < part.size() && part[k].is_number()) part[k] = (1.0 - share - of_steps) * part[k].get<double>();
     }
+    if (of_steps > 0.0) parts["quantisation"][k] = of_steps + (parts["quantisation"][k].is_number() ? parts["quantisation"][k].get<double>() : 0.0);
     standard.push_back(share);
   }
   if (u_standard_rad > 0.0) parts["standard"] = standard;

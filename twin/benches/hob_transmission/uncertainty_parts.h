@@ -19,8 +19,8 @@ nlohmann::json PartsOf(const std::vector<const separate::hob::PositionError*>& p
 
 /// The same of a series whose variance has that of a calibrator besides.
 /// @param parts  Without it.
-nlohmann::json WithStandard(nlohmann::json parts, const separate::hob::HarmonicSeries& series,
-                            double u_standard_rad);
+nlohmann::json WithStandard(nlohmann::json parts, const separate::hob::HarmonicSeries& series, double u_standard_rad,
+                            const std::vector<double>& rounding_rad2 = {});
 
 /// Of one order of two series that share nothing: of the difference of their amplitudes, or of their phases.
 struct ComparedParts {

@@ -111,45 +111,4 @@ double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residu
   return std::isfinite(estimate_rad) ? std::max(estimate_rad, least_rad) : std::max(range_rad, least_rad);
 }
 
-namespace {
-
-/// Distances of neighbours in size that are more than rounding.
-std::vector<double> GapsOf(std::vector<double> values, double rounding) {
-  std::ranges::sort(values);
-  std::vector<double> gaps;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    if (values[i] - values[i - 1] > rounding) gaps.push_back(values[i] - values[i - 1]);
-  }
-  return gaps;
-}
-
-/// Every reading one step further: the positions were chosen so, and nothing was rounded.
-bool IsEven(const Eigen::VectorXd& values, double step) {
-  constexpr double kMostOther = 0.05;  // of the readings
-  Eigen::Index other = 0;
-  for (Eigen::Index i = 1; i < values.size(); ++i)
-    other += std::abs(std::abs(values[i] - values[i - 1]) / step - 1.0) > 0.1 ? 1 : 0;
-  return static_cast<double>(other) < kMostOther * static_cast<double>(values.size());
-}
-
-}  // namespace
-
-double CommonStep(const Eigen::VectorXd& values) {
-  constexpr std::size_t kFewestGaps = 16;
-  const double rounding = 1e-11 * values.cwiseAbs().maxCoeff();
-  const std::vector<double> gaps = GapsOf({values.begin(), values.end()}, rounding);
-  if (gaps.size() < kFewestGaps) return 0.0;
-  double least = *std::ranges::min_element(gaps);
-  for (const double difference : GapsOf(gaps, 2.0 * rounding)) least = std::min(least, difference);
-  constexpr double kOff = 0.05, kMostOff = 0.01;  // of a step; of the gaps
-  for (const double parts : {1.0, 2.0, 3.0, 4.0}) {
-    const double step = least / parts;
-    const auto off = std::ranges::count_if(
-        gaps, [step](double gap) { return std::abs(gap / step - std::round(gap / step)) > kOff; });
-    if (static_cast<double>(off) <= kMostOff * static_cast<double>(gaps.size()))
-      return IsEven(values, step) ? 0.0 : step;
-  }
-  return 0.0;
-}
-
 }  // namespace twinbench::diagnose

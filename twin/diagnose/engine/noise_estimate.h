@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "twin/core/rounding.h"
 #include "twin/diagnose/engine/linear_run.h"
 
 namespace twinbench::diagnose {
@@ -18,9 +19,5 @@ namespace twinbench::diagnose {
 /// Standard uncertainty with n readings: about 1 / sqrt(n) of the value (600 readings: 4 %).
 double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residual_rad,
                          const Eigen::VectorXd& relative = {});
-
-/// The step of which all values are whole multiples apart; 0 if there is none that can be told. A few values off it
-/// do not count: those before a restart.
-double CommonStep(const Eigen::VectorXd& values);
 
 }  // namespace twinbench::diagnose

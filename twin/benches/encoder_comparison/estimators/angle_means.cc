@@ -17,10 +17,10 @@ struct Part {
     square_rad2 += value * value;
     ++count;
   }
-  double U_rad() const {
+  double U_rad(const AngleMeans& means) const {
     if (count < 2) return kNaN;
     const double mean = value_rad / count;
-    return std::sqrt(std::max(0.0, square_rad2 / count - mean * mean) / (count - 1.0));
+    return std::sqrt(std::max(0.0, square_rad2 / count - mean * mean) / (count - 1.0) + means.rounded_rad2 * std::min(1.0, means.visits / count));
   }
 };
 
@@ -46,11 +46,13 @@ AngleMeans MeansOf(const ComparisonFit& fitted, int direction, int parts) {
       Add(group, of > 0 ? fitted.curves.forward : fitted.curves.backward, sums);
   }
   AngleMeans means;
+  means.rounded_rad2 = fitted.rounding.place_rad2;
+  means.visits = fitted.rounding.visits * (direction == 0 ? 2.0 : 1.0);
   for (const Part& part : sums) {
     if (part.count == 0) continue;
     means.position_rad.push_back(part.angle_rad / part.count);
     means.value_rad.push_back(part.value_rad / part.count);
-    means.u_rad.push_back(part.U_rad());
+    means.u_rad.push_back(part.U_rad(means));
     means.count.push_back(part.count);
   }
   return means;

@@ -9,8 +9,9 @@ namespace twinbench::separate::encoder {
 struct AngleMeans {
   std::vector<double> position_rad;  // mean of the readings' angles, 0 to 2 pi, ascending
   std::vector<double> value_rad;
-  std::vector<double> u_rad;  // standard deviation / sqrt(count); NaN with one reading
+  std::vector<double> u_rad;  // standard deviation / sqrt(count), and what rounding repeats; NaN with one reading
   std::vector<int> count;
+  double rounded_rad2 = 0.0, visits = 1.0;  // of the squares of u, what rounding repeats at a place of so many readings
 };
 
 /// Unlike the curves they have all orders that the readings have: what they show beside the curves is above the

@@ -96,10 +96,11 @@ ComparisonFit FitComparison(const UsableGroups& groups, const DeviceOptions& opt
     }
     fitted.mounting_rad = MountingsOf(fitted.groups);
     fitted.noise = NoiseOf(fitted.groups, groups.highest, options.pooled_orders);
+    fitted.rounding = RoundingIn(fitted.groups, fitted.noise, groups.highest, options.steps);
     std::vector<harmonics::PositionError> seen;
     for (const FittedGroup& group : fitted.groups)
       seen.push_back(SeenBy(group, fitted.noise, fitted.mounting_rad.at(group.group->setup)));
-    fitted.curves = SeparateMountings(seen, options.max_noise_factor);
+    fitted.curves = SeparateMountings(seen, options.max_noise_factor, fitted.rounding);
   }
   return fitted;
 }

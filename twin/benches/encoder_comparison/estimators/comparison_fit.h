@@ -4,6 +4,7 @@
 
 #include "twin/benches/encoder_comparison/estimators/lap_scatter.h"
 #include "twin/benches/encoder_comparison/estimators/mountings.h"
+#include "twin/benches/encoder_comparison/estimators/scale_steps.h"
 
 namespace twinbench::separate::encoder {
 
@@ -12,6 +13,7 @@ struct DeviceOptions {
   double max_inflation = 4.0;      // HighestOrder
   double max_noise_factor = 10.0;  // SeparateMountings
   int pooled_orders = 4;           // NoiseOf
+  ScaleSteps steps = {};           // of the device
 };
 
 /// The groups that have turns, and the highest order that all of them determine. A group that allows less than half
@@ -25,6 +27,7 @@ UsableGroups PickUsable(const std::vector<PassGroup>& groups, const DeviceOption
 struct ComparisonFit {
   std::vector<FittedGroup> groups;  // they point to the groups handed in
   OrderNoise noise;
+  Rounding rounding;
   std::map<int, double> mounting_rad;  // by set-up: device angle where the reference shows 0
   SeparatedCurves curves;
 };

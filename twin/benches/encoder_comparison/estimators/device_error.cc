@@ -37,6 +37,21 @@ void FillLag(const ComparisonFit& fitted, DeviceError& result) {
   result.u_lag_s = std::sqrt(fitted.noise.white_rad2 / weight);
 }
 
+/// Of the groups together.
+void FillShares(const ComparisonFit& fitted, DeviceError& result) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(fitted.noise.variance_rad2.size()); ++k) {
+    const double scatter_rad2 = fitted.noise.variance_rad2[static_cast<Eigen::Index>(k)];
+    double scatter = 0.0, rounding = 0.0;
+    for (std::size_t g = 0; g < fitted.groups.size(); ++g) {
+      scatter += scatter_rad2 * fitted.groups[g].fit.cofactor[k].trace();
+      rounding += fitted.rounding.Between(g, g, static_cast<int>(k) + 1).trace();
+    }
+    const double share = rounding > 0.0 ? rounding / (scatter + rounding) : 0.0;
+    result.rounding_share.push_back(share);
+    result.white_share.push_back((1.0 - share) * std::min(1.0, fitted.noise.white_rad2 / scatter_rad2));
+  }
+}
+
 std::string List(const std::vector<int>& orders) {
   std::string text;
   for (const int order : orders) text += fmt::format("{}{}", text.empty() ? "" : ", ", order);
@@ -93,7 +108,9 @@ DeviceError SeparateDevice(const std::vector<Reading>& readings, const DeviceOpt
   const UsableGroups groups = PickUsable(sorted.groups, options);
   result.not_separated = Obstacle(sorted.groups, groups.highest);
   if (!result.not_separated.empty()) return result;
-  const ComparisonFit fitted = FitComparison(groups, options);
+  DeviceOptions with_steps = options;
+  with_steps.steps = WithOwnStep(options.steps, readings);
+  const ComparisonFit fitted = FitComparison(groups, with_steps);
   result.highest_order = groups.highest;
   result.curves = fitted.curves;
   for (const auto& [setup, mounting_rad] : fitted.mounting_rad) result.mounting_rad.push_back(mounting_rad);
@@ -105,17 +122,15 @@ DeviceError SeparateDevice(const std::vector<Reading>& readings, const DeviceOpt
   FillLag(fitted, result);
   result.residual_rms_rad = std::sqrt(fitted.noise.white_rad2);
   result.low_order_scatter = std::sqrt(fitted.noise.variance_rad2[0] / fitted.noise.white_rad2);
-  for (const double variance_rad2 : fitted.noise.variance_rad2)
-    result.white_share.push_back(std::min(1.0, fitted.noise.white_rad2 / variance_rad2));
+  FillShares(fitted, result);
   result.dof = 0.0;
   for (const FittedGroup& group : fitted.groups) result.dof += group.fit.dof;
   AddNotes(groups, fitted, result);
   return result;
 }
 
-harmonics::HarmonicSeries OfWhiteNoise(harmonics::HarmonicSeries series, const DeviceError& device) {
-  for (int k = 1; k <= series.Highest(); ++k)
-    series.At(k).cov *= device.white_share.at(static_cast<std::size_t>(k - 1));
+harmonics::HarmonicSeries OfShare(harmonics::HarmonicSeries series, const std::vector<double>& share) {
+  for (int k = 1; k <= series.Highest(); ++k) series.At(k).cov *= share.at(static_cast<std::size_t>(k - 1));
   return series;
 }
 

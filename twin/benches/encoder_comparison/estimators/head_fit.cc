@@ -38,6 +38,7 @@ harmonics::HarmonicSeries SeriesOf(const HeadSolution& solution, const OrdersToF
     const auto at = 2 * static_cast<Eigen::Index>(i);
     series.At(orders.orders[i]) = {{solution.x[at], solution.x[at + 1]},
                                    solution.Variance_rad2() * solution.cofactor.block<2, 2>(at, at)};
+    if (solution.rounding.size() > 0) series.At(orders.orders[i]).cov += solution.rounding.block<2, 2>(at, at);
   }
   return series;
 }
@@ -111,6 +112,10 @@ void EnterCurve(const HeadSolution& solution, const OrdersToFit& orders, Several
   result.ring = SeriesOf(solution, orders);
   result.dof = solution.dof;
   result.residual_rms_rad = std::sqrt(solution.Variance_rad2());
+  const auto curve = 2 * std::ssize(orders.orders);
+  const double rounding = solution.rounding.size() > 0 ? solution.rounding.topLeftCorner(curve, curve).trace() : 0.0;
+  if (rounding > 0.0)
+    result.rounding_share = rounding / (rounding + solution.Variance_rad2() * solution.cofactor.topLeftCorner(curve, curve).trace());
   result.lost.assumed_rad = AssumedSize_rad(result.ring, result.lost.orders);
 }
 
@@ -121,7 +126,10 @@ void EnterReference(const HeadReadings& sorted, const HeadSolution& solution, co
   HeadEquations equations(all);
   for (const HeadStop& stop : sorted.stops)
     equations.AddPoint(stop.reference_rad, stop.first_setup, ReferenceShowsMore_rad(stop, solution, orders));
-  const HeadSolution reference = equations.Solve();
+  HeadSolution reference = equations.Solve();
+  // The mean of the heads is rounded as any of them; here it counts as if each place were by itself.
+  if (solution.rounding.size() > 0)
+    reference.rounding = solution.place_rad2 * solution.visits / static_cast<double>(result.heads_rad.size()) * reference.cofactor;
   if (reference.dof < 1.0) {
     result.notes.push_back("too few stops for a curve of the reference");
     return;

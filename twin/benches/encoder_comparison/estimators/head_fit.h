@@ -23,8 +23,10 @@ struct OrdersToFit {
 struct HeadSolution {
   Eigen::VectorXd x;
   Eigen::MatrixXd cofactor;  // covariance by unit white noise of one row
+  Eigen::MatrixXd rounding;  // covariance by steps that repeat; empty: none
   double rest_rad2 = kNaN;   // sum of squares that the fit leaves
   double dof = 0.0;
+  double place_rad2 = 0.0, visits = 1.0;  // of what repeats at one place and the reference sees; readings of a place
 
   double Variance_rad2() const { return rest_rad2 / dof; }
 };
@@ -60,6 +62,13 @@ class HeadEquations {
 SeveralHeads BeginHeads(const HeadReadings& sorted, const HeadOptions& options);
 
 OrdersToFit OrdersOf(const HeadReadings& sorted, int highest, const std::vector<int>& lost);
+
+/// What of a stop went into the equations: AddStop's rows, or AddFirstAgainstMean's.
+enum class StopRows { kAllHeads, kFirstAgainstMean };
+
+/// Enters what the heads' steps round alike whenever a place is passed (RoundingIn).
+void AddRounding(const HeadReadings& sorted, const OrdersToFit& orders, StopRows which, const ScaleSteps& steps,
+                 HeadSolution& solution);
 
 /// The ring's curve with its covariance, and what its lost orders may be.
 void EnterCurve(const HeadSolution& solution, const OrdersToFit& orders, SeveralHeads& result);

@@ -6,6 +6,7 @@
 
 #include "twin/benches/encoder_comparison/estimators/positioning_scatter.h"
 #include "twin/core/errors.h"
+#include "twin/core/rounding.h"
 
 namespace twinbench::measure {
 namespace {
@@ -48,8 +49,9 @@ ArrayXd Characteristics(const Side& f, const Side& b) {
   return values;
 }
 
-ApproachPositioning Summarise(const std::vector<double>& runs) {
+ApproachPositioning Summarise(const std::vector<double>& runs, const RunRounding& rounding) {
   ApproachPositioning a;
+  a.rounding = rounding.repeated;
   a.runs = static_cast<int>(runs.size());
   if (runs.empty()) return a;
   const Eigen::Map<const ArrayXd> x(runs.data(), std::ssize(runs));
@@ -58,16 +60,16 @@ ApproachPositioning Summarise(const std::vector<double>& runs) {
   if (a.runs < 2) return a;
   const double freedom = a.runs - 1.0;
   a.deviation = std::sqrt((x - a.mean).square().sum() / freedom);
-  a.u_mean = a.deviation / std::sqrt(a.runs);
-  a.u_deviation = a.deviation / std::sqrt(2.0 * freedom);
+  a.u_mean = std::hypot(std::max(a.deviation, rounding.scattered) / std::sqrt(a.runs), rounding.repeated);
+  a.u_deviation = std::hypot(a.deviation, rounding.repeated) / std::sqrt(2.0 * freedom);
   return a;
 }
 
-TargetPositioning Summarise(const PositioningTarget& target) {
+TargetPositioning Summarise(const PositioningTarget& target, const RunRounding& rounding) {
   TargetPositioning t;
   t.position = target.position;
-  t.forward = Summarise(target.forward);
-  t.backward = Summarise(target.backward);
+  t.forward = Summarise(target.forward, rounding);
+  t.backward = Summarise(target.backward, rounding);
   t.mean = 0.5 * (t.forward.mean + t.backward.mean);
   t.reversal = t.forward.mean - t.backward.mean;
   t.u_reversal = std::hypot(t.forward.u_mean, t.backward.u_mean);
@@ -75,13 +77,33 @@ TargetPositioning Summarise(const PositioningTarget& target) {
   return t;
 }
 
+/// Deviations of runs about their means, from one side of a target.
+void AddScatter(const std::vector<double>& runs, double& squares, double& dof) {
+  if (runs.size() < 2) return;
+  const Eigen::Map<const ArrayXd> x(runs.data(), std::ssize(runs));
+  squares += (x - x.mean()).square().sum();
+  dof += static_cast<double>(runs.size()) - 1.0;
+}
+
 }  // namespace
 
+RunRounding RoundingOfTargets(const std::vector<PositioningTarget>& targets, double step, double at_once) {
+  if (!(step > 0.0)) return {};
+  double squares = 0.0, dof = 0.0;
+  for (const PositioningTarget& target : targets) {
+    AddScatter(target.forward, squares, dof);
+    AddScatter(target.backward, squares, dof);
+  }
+  const double noise = dof > 0.0 ? NoiseBehindRounding(step, std::sqrt(at_once * squares / dof)) : 0.0;
+  const double repeated = RoundingOf(step, noise, INFINITY).repeated;
+  return {std::sqrt(repeated), std::sqrt(std::max(0.0, step * step / 12.0 - repeated) / at_once)};
+}
+
 AxisPositioning EvaluatePositioning(const std::vector<PositioningTarget>& targets,
-                                    const PositioningBootstrap& bootstrap) {
+                                    const PositioningBootstrap& bootstrap, const RunRounding& rounding) {
   AxisPositioning result;
   if (targets.empty()) return result;
-  for (const PositioningTarget& target : targets) result.targets.push_back(Summarise(target));
+  for (const PositioningTarget& target : targets) result.targets.push_back(Summarise(target, rounding));
   const std::vector<ScatteredValue> values = WithScatter(result.targets, Characteristics, bootstrap, "iso230_2.bootstrap");
   std::copy_n(values.begin(), kAxisValues, result.axis.begin());
   for (std::size_t i = 0; i < targets.size(); ++i) result.targets[i].repeatability = values[kAxisValues + i];

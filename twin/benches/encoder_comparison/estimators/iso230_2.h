@@ -27,9 +27,10 @@ struct PositioningTarget {
 struct ApproachPositioning {
   int runs = 0;               // n
   double mean = kNaN;         // of the deviations
-  double u_mean = kNaN;       // s / sqrt(n)
+  double u_mean = kNaN;       // s / sqrt(n), and rounding
   double deviation = kNaN;    // s, standard deviation of one run
-  double u_deviation = kNaN;  // s / sqrt(2 (n - 1)), of normal scatter
+  double rounding = 0.0;      // of it, what steps round alike in all runs
+  double u_deviation = kNaN;  // s / sqrt(2 (n - 1)), of normal scatter; rounding is no scatter, but hides as much
 
   double Repeatability() const { return 4.0 * deviation; }  // R_i+ or R_i-
 };
@@ -85,9 +86,18 @@ struct PositioningBootstrap {
   std::uint64_t seed = 1;
 };
 
+/// How much a target is out because the device shows steps: alike in all its runs, other at the next target.
+/// @param at_once  Readings whose mean a deviation is; `step` is that of one.
+struct RunRounding {
+  double repeated = 0.0;   // standard uncertainty by what all runs repeat
+  double scattered = 0.0;  // and of one run, by what they do not: no less, even if a few runs agree by chance
+};
+RunRounding RoundingOfTargets(const std::vector<PositioningTarget>& targets, double step, double at_once);
+
 /// Evaluates a test of the axis.
 ///
-/// @param targets  Deviations (actual - commanded position) in one unit, any order, all finite.
+/// @param targets   Deviations (actual - commanded position) in one unit, any order, all finite.
+/// @param rounding  By steps of the device (RoundingOfTargets).
 /// @return every value that the runs give; NaN what needs a direction that some target lacks, or two runs where
 ///         some target has one.
 /// @throws std::logic_error if a deviation is not finite.
@@ -101,7 +111,7 @@ struct PositioningBootstrap {
 /// ISO/TR 230-9); runs that drift as a whole, as every target scatters on its own here; that s itself is poorly
 /// known from a few runs.
 AxisPositioning EvaluatePositioning(const std::vector<PositioningTarget>& targets,
-                                    const PositioningBootstrap& bootstrap = {});
+                                    const PositioningBootstrap& bootstrap = {}, const RunRounding& rounding = {});
 
 /// The stops of one set-up of an angle comparison.
 struct PositioningStops {

@@ -40,8 +40,8 @@ struct SolvedOrder {
 
 class Separation {
  public:
-  Separation(harmonics::Positions seen, double max_noise_factor)
-      : seen_(std::move(seen)), directions_(DirectionsOf(seen_)), max_noise_factor_(max_noise_factor) {}
+  Separation(harmonics::Positions seen, double max_noise_factor, const Rounding& rounding)
+      : seen_(std::move(seen)), directions_(DirectionsOf(seen_)), max_noise_factor_(max_noise_factor), rounding_(rounding) {}
 
   SeparatedCurves Run() {
     for (const harmonics::PositionError* position : seen_)
@@ -56,13 +56,17 @@ class Separation {
 
  private:
   void Add(int order) {
-    const harmonics::OrderModel model =
+    harmonics::OrderModel model =
         harmonics::ModelOrder(order, seen_, directions_, std::vector<double>(seen_.size(), kFloor_rad));
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      const auto at = 2 * static_cast<Eigen::Index>(i);
+      model.cov.block<2, 2>(at, at) += rounding_.Between(i, i, order);
+    }
     const bool separated = harmonics::NoiseFactorOf(model.x) <= max_noise_factor_;
     const Eigen::MatrixXcd x = separated ? model.x : Eigen::MatrixXcd(model.x.leftCols(model.x.cols() - 1));
     const harmonics::OrderSolution solution = harmonics::SolveOrder(x, model);
-    const SolvedOrder solved{solution.x, Widening(order, solution) * solution.from_readings * model.cov *
-                                             solution.from_readings.transpose()};
+    const Eigen::MatrixXd cov = Widening(order, solution) * model.cov + InCommon(order);
+    const SolvedOrder solved{solution.x, solution.from_readings * cov * solution.from_readings.transpose()};
     if (!separated) curves_.lost.push_back(order);
     AddDevice(solved);
     std::vector<double> minus_last(directions_.size() + 1, 0.0);
@@ -81,6 +85,18 @@ class Separation {
     }
   }
 
+  /// What is common to two positions counts in the result, not in the weights.
+  Eigen::MatrixXd InCommon(int order) const {
+    const auto rows = std::ssize(seen_);
+    Eigen::MatrixXd common = Eigen::MatrixXd::Zero(2 * rows, 2 * rows);
+    for (Eigen::Index a = 0; a < rows; ++a) {
+      for (Eigen::Index b = 0; b < rows; ++b) {
+        if (a != b) common.block<2, 2>(2 * a, 2 * b) = rounding_.Between(static_cast<std::size_t>(a), static_cast<std::size_t>(b), order);
+      }
+    }
+    return common;
+  }
+
   double Widening(int order, const harmonics::OrderSolution& solution) {
     if (order > 1 && solution.dof > 0 && std::isfinite(solution.chi2)) {
       curves_.chi2 += solution.chi2;
@@ -95,16 +111,18 @@ class Separation {
   harmonics::Positions seen_;
   std::vector<int> directions_;
   double max_noise_factor_;
+  const Rounding& rounding_;
   int highest_ = 1 << 20;
   SeparatedCurves curves_;
 };
 
 }  // namespace
 
-SeparatedCurves SeparateMountings(const std::vector<harmonics::PositionError>& seen, double max_noise_factor) {
+SeparatedCurves SeparateMountings(const std::vector<harmonics::PositionError>& seen, double max_noise_factor,
+                                  const Rounding& rounding) {
   harmonics::Positions pointers;
   for (const harmonics::PositionError& position : seen) pointers.push_back(&position);
-  return Separation(pointers, max_noise_factor).Run();
+  return Separation(pointers, max_noise_factor, rounding).Run();
 }
 
 }  // namespace twinbench::separate::encoder

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "twin/benches/encoder_comparison/estimators/scale_steps.h"
 #include "twin/separate/position_error.h"
 
 namespace twinbench::separate::encoder {
@@ -23,8 +24,10 @@ struct SeparatedCurves {
 /// Mountings that contradict each other in an order (p < 0.001 for the whole spectrum) have an error that changed
 /// with the mounting, as an eccentricity does: its covariance is multiplied by chi2 / dof.
 ///
+/// @param rounding  Of the same positions, besides their covariances; weights take it for independent of each other.
 /// @param seen  Of all mountings, each with the device's angle where the reference shows 0 as its `head_rad`.
 /// Reference: docs/theory.md 2, where mountings are shifts.
-SeparatedCurves SeparateMountings(const std::vector<harmonics::PositionError>& seen, double max_noise_factor);
+SeparatedCurves SeparateMountings(const std::vector<harmonics::PositionError>& seen, double max_noise_factor,
+                                  const Rounding& rounding = {});
 
 }  // namespace twinbench::separate::encoder

@@ -11,24 +11,26 @@ using Eigen::ArrayXd;
 
 Side SideOf(const std::vector<TargetPositioning>& targets, ApproachPositioning TargetPositioning::*approach) {
   const Eigen::Index size = std::ssize(targets);
-  Side side{ArrayXd(size), ArrayXd(size), ArrayXd(size)};
+  Side side{ArrayXd(size), ArrayXd(size), ArrayXd(size), ArrayXd(size)};
   for (Eigen::Index i = 0; i < size; ++i) {
     const ApproachPositioning& a = targets[static_cast<std::size_t>(i)].*approach;
     side.runs[i] = a.runs;
     side.mean[i] = a.mean;
     side.deviation[i] = a.deviation;
+    side.rounding[i] = a.rounding;
   }
   return side;
 }
 
-/// What the same number of runs could have given: mean normal, variance chi-squared.
+/// What the same number of runs could have given: mean normal, variance chi-squared. What rounding hides is scattered too.
 Side Again(const Side& side, Stream& stream) {
   Side again = side;
   for (Eigen::Index i = 0; i < side.mean.size(); ++i) {
     const double freedom = side.runs[i] - 1.0;
     const double chi_squared = freedom > 0.0 ? stream.ChiSquared(freedom) : kNaN;
-    again.mean[i] += side.deviation[i] / std::sqrt(side.runs[i]) * stream.Normal();
-    again.deviation[i] *= std::sqrt(chi_squared / freedom);
+    again.mean[i] += std::hypot(side.deviation[i] / std::sqrt(side.runs[i]), side.rounding[i]) * stream.Normal();
+    const double hidden = std::hypot(side.deviation[i], side.rounding[i]) - side.deviation[i];
+    again.deviation[i] = std::abs((side.deviation[i] + hidden) * std::sqrt(chi_squared / freedom) - hidden);
   }
   return again;
 }

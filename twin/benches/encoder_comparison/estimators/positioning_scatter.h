@@ -12,7 +12,7 @@ namespace twinbench::measure {
 
 /// All targets from one side, one entry a target; NaN where runs are too few.
 struct Side {
-  Eigen::ArrayXd runs, mean, deviation;
+  Eigen::ArrayXd runs, mean, deviation, rounding;
 
   Eigen::ArrayXd Low() const { return mean - 2.0 * deviation; }
   Eigen::ArrayXd High() const { return mean + 2.0 * deviation; }

@@ -22,19 +22,21 @@ double ConstantVariance(const ComparisonFit& fitted) {
 
 struct SetUpReversal {
   double forward_rad = kNaN, backward_rad = kNaN;
-  double variance = 0.0, white = 0.0;  // all of it, and what white noise makes
+  double variance = 0.0, white = 0.0, rounding = 0.0;  // all of it; what white noise makes, what steps repeat
 };
 
 std::map<int, SetUpReversal> ReversalsOf(const ComparisonFit& fitted) {
   const double variance = ConstantVariance(fitted);
   std::map<int, SetUpReversal> reversals;
-  for (const FittedGroup& group : fitted.groups) {
+  for (std::size_t g = 0; g < fitted.groups.size(); ++g) {
+    const FittedGroup& group = fitted.groups[g];
     Mean constant;
     for (const PassTerm& pass : group.fit.passes) constant.Add(pass.constant_rad);
     SetUpReversal& reversal = reversals[group.group->setup];
     (group.group->direction > 0 ? reversal.forward_rad : reversal.backward_rad) = constant.Value();
     const double white = fitted.noise.white_rad2 * group.fit.constant_cofactor;
-    reversal.variance += std::max(variance / constant.count, white);
+    reversal.rounding += fitted.rounding.groups[g].mean_rad2;
+    reversal.variance += std::max(variance / constant.count, white) + fitted.rounding.groups[g].mean_rad2;
     reversal.white += white;
   }
   return reversals;
@@ -44,16 +46,17 @@ std::map<int, SetUpReversal> ReversalsOf(const ComparisonFit& fitted) {
 
 MeanReversal ReversalOf(const ComparisonFit& fitted) {
   Mean reversal;
-  double variance = 0.0, white = 0.0;
+  double variance = 0.0, white = 0.0, rounding = 0.0;
   for (const auto& [setup, r] : ReversalsOf(fitted)) {
     const double difference_rad = r.forward_rad - r.backward_rad;
     if (!std::isfinite(difference_rad)) continue;
     reversal.Add(difference_rad);
     variance += r.variance;
     white += r.white;
+    rounding += r.rounding;
   }
   if (reversal.count == 0) return {};
-  return {reversal.Value(), std::sqrt(variance) / reversal.count, white / variance};
+  return {reversal.Value(), std::sqrt(variance) / reversal.count, white / variance, rounding / variance};
 }
 
 }  // namespace twinbench::separate::encoder

@@ -30,7 +30,8 @@ SeveralHeads SeparateHeads(const std::vector<Reading>& readings, const HeadOptio
   const OrdersToFit orders = OrdersOf(sorted, result.Highest(), result.lost.orders);
   HeadEquations equations(orders);
   for (const HeadStop& stop : sorted.stops) equations.AddStop(stop);
-  const HeadSolution solution = equations.Solve();
+  HeadSolution solution = equations.Solve();
+  AddRounding(sorted, orders, StopRows::kAllHeads, WithOwnStep(options.steps, readings), solution);
   EnterCurve(solution, orders, result);
   EnterReference(sorted, solution, orders, result);
   result.ring_by_noise = result.ring;
@@ -49,11 +50,12 @@ SeveralHeads EqualDivision(const std::vector<Reading>& readings, const HeadOptio
   for (const HeadStop& stop : sorted.stops) {
     if (std::ssize(stop.values) == heads) equations.AddFirstAgainstMean(stop);
   }
-  const HeadSolution solution = equations.Solve();
+  HeadSolution solution = equations.Solve();
   if (solution.dof < 1.0) {
     result.not_separated = "too few instants at which all heads were read";
     return result;
   }
+  AddRounding(sorted, orders, StopRows::kFirstAgainstMean, WithOwnStep(options.steps, readings), solution);
   EnterCurve(solution, orders, result);
   result.residual_rms_rad *= std::sqrt(heads / (heads - 1.0));  // of the difference: one head less 1 / N of itself
   EnterReference(sorted, WithMeanOfHeads(solution), orders, result);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "twin/benches/encoder_comparison/estimators/head_readings.h"
+#include "twin/benches/encoder_comparison/estimators/scale_steps.h"
 #include "twin/separate/series.h"
 
 /// A ring calibrated by its own heads.
@@ -12,6 +13,7 @@ namespace twinbench::separate::encoder {
 struct HeadOptions {
   int max_order = 64;              // fewer where the stops do not determine as many
   double max_noise_factor = 10.0;  // an order that would be noisier than so many times the best heads' is lost
+  ScaleSteps steps = {};           // of the ring as every head shows it
 };
 
 /// Orders that no difference of these heads shows are not guessed; what they may be is said, as an assumption.
@@ -29,6 +31,7 @@ struct SeveralHeads {
   LostOrders lost;
   std::vector<double> heads_rad;
   int stops = 0, left_out = 0;
+  double rounding_share = 0.0;      // of the variance of the curve, what steps make that repeats
   double residual_rms_rad = kNaN;   // of one head's reading about the fit
   double reference_rms_rad = kNaN;  // of one instant of the reference beside its curve, noise of the heads apart
   double dof = kNaN;
@@ -44,7 +47,7 @@ double Likeness(const std::vector<double>& heads_rad, int order);
 /// All orders of the ring and of the reference by least squares over the readings of all heads, the angle of the
 /// shaft free at each instant. The heads may stand anywhere and fail now and then.
 ///
-/// Uncertainty: white noise of the heads, from the residuals. Not included: what all heads have in common at each
+/// Uncertainty: white noise of the heads, from the residuals, and steps that round every visit of a place alike. Not included: what all heads have in common at each
 /// place of the ring (lost orders), motion of the shaft across its axis, orders above the highest.
 /// Reference: docs/theory.md 12.1. For even stops the variance is formula (V) of section 2 there with the heads for
 /// shifts.

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "twin/benches/hob_transmission/settings.h"
+#include "twin/core/rounding.h"
 
 namespace twinbench::separate::hob {
 namespace {
@@ -61,6 +63,31 @@ HarmonicSeries WithCalibrator(HarmonicSeries series, double u_calibrator_rad) {
   return series;
 }
 
+/// Adds what the table encoder's steps repeat whenever a stop is read: the stops are the same in every turn.
+void AddRounding(const std::vector<HobSample>& at_rest, const RingEncoderSettings& ring, HobAnalysis& analysis) {
+  HarmonicSeries& series = analysis.encoder_by_interferometer;
+  std::vector<double> seen_rad;
+  for (const HobSample& s : at_rest) {
+    if (!std::isfinite(s.interferometer_rad)) continue;
+    double shown_rad = s.interferometer_rad;  // and what the ring errs there, as its heads have told
+    for (int k = 1; k <= analysis.encoder.Highest(); ++k) {
+      const Complex c = analysis.encoder.At(k).value;
+      if (std::isfinite(c.real())) shown_rad += (c * std::polar(1.0, k * (s.interferometer_rad - s.head_rad))).real();
+    }
+    seen_rad.push_back(shown_rad);
+  }
+  const Eigen::Map<const Eigen::VectorXd> place_rad(seen_rad.data(), std::ssize(seen_rad));
+  const Eigen::MatrixXd waves = RoundingWaves(place_rad, units::turn / ring.lines / ring.interpolation, 0.0);
+  for (int k = 1; k <= series.Highest(); ++k) {
+    const Eigen::VectorXcd order = (std::complex<double>(0.0, -k) * place_rad.array()).exp() * 2.0 / static_cast<double>(place_rad.size());
+    const Eigen::RowVectorXcd sums = order.transpose() * waves;
+    Eigen::Matrix<double, 2, Eigen::Dynamic> parts(2, waves.cols());
+    parts << sums.real(), sums.imag();
+    series.At(k).cov += parts * parts.transpose();
+    analysis.encoder_rounding_rad2.push_back(0.5 * parts.squaredNorm());
+  }
+}
+
 void AddDirections(const std::vector<HobSample>& samples, const TransmissionOptions& options,
                    const std::vector<int>& orders, HobAnalysis& analysis) {
   std::vector<PositionError>& seen = analysis.transmission_by_interferometer;
@@ -78,10 +105,12 @@ void AddDirections(const std::vector<HobSample>& samples, const TransmissionOpti
 }
 
 void AddEncoder(const std::vector<HobSample>& samples, const TransmissionOptions& options,
-                const std::vector<int>& orders, double u_calibrator_rad, HobAnalysis& analysis) {
+                const std::vector<int>& orders, const HobSettings& own, HobAnalysis& analysis) {
   if (!HasInterferometer(samples)) return;
+  const double u_calibrator_rad = own.interferometer.u_calibrator_rad;
   std::vector<PositionError> seen = MeasurePositions(samples, options, Signal::kEncodersMinusInterferometer);
   analysis.encoder_by_interferometer = WithCalibrator(EncoderByInterferometer(seen), u_calibrator_rad);
+  if (analysis.is_interferometer_at_rest) AddRounding(samples, own.table_encoder, analysis);
   analysis.by_interferometer = seen;
   analysis.encoder_against_interferometer =
       CompareEncoder(*analysis.separation, analysis.encoder_by_interferometer, orders);
@@ -138,7 +167,7 @@ HobAnalysis AnalyseHob(const std::vector<Reading>& readings, const Scenario& sce
   const InterferometerSettings& interferometer = HobOf(scenario).interferometer;
   AddEncoder(analysis.is_interferometer_at_rest ? at_rest : samples,
              analysis.is_interferometer_at_rest ? OptionsAtRest(options, interferometer) : options, orders,
-             interferometer.u_calibrator_rad, analysis);
+             HobOf(scenario), analysis);
   return analysis;
 }
 

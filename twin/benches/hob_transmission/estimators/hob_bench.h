@@ -33,6 +33,7 @@ struct HobAnalysis {
   std::vector<DirectionResult> directions;
   HarmonicSeries encoder;                        // psi in the encoder's own angle; orders not seen are NaN
   HarmonicSeries encoder_by_interferometer;      // empty without one
+  std::vector<double> encoder_rounding_rad2;  // [k - 1]: of its variance (mean of both parts), what steps repeat at stops
   std::vector<PositionError> by_interferometer;  // what that is a mean of
   std::vector<PositionError> transmission_by_interferometer;  // empty without one, and where it is read at rest
   std::vector<OrderComparison> encoder_against_interferometer;

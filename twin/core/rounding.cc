@@ -1,0 +1,100 @@
+#include "twin/core/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "twin/core/units.h"
+
+namespace twinbench {
+namespace {
+
+/// Of the wave k of a saw-tooth of steps of 1 in the mean of noisy readings: half the square of its amplitude.
+double WavePower(int k, double noise) {
+  return std::exp(-std::pow(2.0 * units::kPi * k * noise, 2)) / (2.0 * std::pow(units::kPi * k, 2));
+}
+
+}  // namespace
+
+namespace {
+
+/// Distances of neighbours in size that are more than rounding.
+std::vector<double> GapsOf(std::vector<double> values, double rounding) {
+  std::ranges::sort(values);
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] - values[i - 1] > rounding) gaps.push_back(values[i] - values[i - 1]);
+  }
+  return gaps;
+}
+
+/// Every reading one step further: the positions were chosen so, and nothing was rounded.
+bool IsEven(const Eigen::VectorXd& values, double step) {
+  constexpr double kMostOther = 0.05;  // of the readings
+  Eigen::Index other = 0;
+  for (Eigen::Index i = 1; i < values.size(); ++i)
+    other += std::abs(std::abs(values[i] - values[i - 1]) / step - 1.0) > 0.1 ? 1 : 0;
+  return static_cast<double>(other) < kMostOther * static_cast<double>(values.size());
+}
+
+}  // namespace
+
+double CommonStep(const Eigen::VectorXd& values) {
+  constexpr std::size_t kFewestGaps = 16;
+  const double rounding = 1e-11 * values.cwiseAbs().maxCoeff();
+  const std::vector<double> gaps = GapsOf({values.begin(), values.end()}, rounding);
+  if (gaps.size() < kFewestGaps) return 0.0;
+  double least = *std::ranges::min_element(gaps);
+  for (const double difference : GapsOf(gaps, 2.0 * rounding)) least = std::min(least, difference);
+  constexpr double kOff = 0.05, kMostOff = 0.01;  // of a step; of the gaps
+  for (const double parts : {1.0, 2.0, 3.0, 4.0}) {
+    const double step = least / parts;
+    const auto off = std::ranges::count_if(
+        gaps, [step](double gap) { return std::abs(gap / step - std::round(gap / step)) > kOff; });
+    if (static_cast<double>(off) <= kMostOff * static_cast<double>(gaps.size()))
+      return IsEven(values, step) ? 0.0 : step;
+  }
+  return 0.0;
+}
+
+double RepeatedByRounding(double noise) {
+  constexpr int kWaves = 100;
+  double sum = 0.0;
+  for (int k = 1; k <= kWaves; ++k) sum += WavePower(k, noise);
+  return sum;
+}
+
+RoundingInMean RoundingOf(double step, double noise, double count) {
+  const double of_one = step * step / 12.0;
+  const double repeated = count > 1.0 && step > 0.0 ? step * step * RepeatedByRounding(noise / step) : of_one;
+  return {repeated, repeated + (of_one - repeated) / count};
+}
+
+double NoiseBehindRounding(double step, double scatter) {
+  if (!(step > 0.0)) return scatter;
+  const double seen = std::pow(scatter / step, 2);
+  const auto shown = [](double noise) { return noise * noise + 1.0 / 12.0 - RepeatedByRounding(noise); };
+  double low = 0.0, high = scatter / step;
+  constexpr int kHalvings = 40;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    (shown(middle) < seen ? low : high) = middle;
+  }
+  return low * step;
+}
+
+Eigen::MatrixXd RoundingWaves(const Eigen::VectorXd& values, double step, double noise) {
+  constexpr int kWaves = 12;  // 95 % of a saw-tooth
+  Eigen::MatrixXd waves(values.size(), 2 * kWaves);
+  double power = 0.0;
+  for (int k = 1; k <= kWaves; ++k) {
+    const Eigen::ArrayXd phase_rad = units::turn * k * (values.array() / step - (values.array() / step).round());
+    const double size = std::sqrt(WavePower(k, noise / step));
+    waves.col(2 * k - 2) = size * phase_rad.cos();
+    waves.col(2 * k - 1) = size * phase_rad.sin();
+    power += size * size;
+  }
+  return power > 0.0 ? Eigen::MatrixXd(step * std::sqrt(RepeatedByRounding(noise / step) / power) * waves) : waves;
+}
+
+}  // namespace twinbench
