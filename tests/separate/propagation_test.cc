@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/bench.h"
+#include "tests/support/night.h"
 #include "tests/separate/shift_formulas.h"
 #include "twin/benches/rotary_4dof/estimators/harmonic_u.h"
 #include "twin/core/linear_algebra.h"
@@ -186,6 +187,39 @@ TEST(Separate, TakesTheResidualScatterWhenNoNoiseIsStated) {
   for (const Component c : found.target.components) {
     // More than 90 degrees of freedom a motion: 8 % standard deviation, three of them.
     EXPECT_NEAR(found.target.u[c][3] / stated.target.u[c][3], 1.0, 0.25);
+  }
+}
+
+struct ChangedTable {
+  int n, passes, highest;  // orders by which the table's ez differs from set-up to set-up; 0: from stop to stop
+  double times_noise;
+};
+
+TEST(Separate, ScalesByWhatAllPassesOfASetUpRepeat) {
+  const int seeds = test::ByNight(60, 12);
+  const double noise_rad = std::sqrt(ReadingCovariance()(0, 0));
+  for (const ChangedTable& c : {ChangedTable{12, 2, 0, 3.0}, {24, 4, 3, 2.0}, {24, 4, 0, 0.5}, {36, 8, 5, 1.0}, {24, 4, 0, 0.0}}) {
+    double chi2 = 0.0;
+    for (int seed = 0; seed < seeds; ++seed) {
+      Stream stream(static_cast<std::uint64_t>(seed), "test.noise");
+      auto motions = EmptyMotions(c.n, {0, 1, 5, 7}, c.passes, ReadingCovariance());
+      AddNoise(motions, ReadingCovariance(), stream);
+      for (int setup = 0; setup < 4; ++setup) {
+        Eigen::VectorXd change = Eigen::VectorXd::Zero(c.n);
+        for (int i = 0; i < c.n && c.highest == 0; ++i) change[i] = stream.Normal();
+        for (int k = 1; k <= c.highest; ++k) {
+          const double cosine = stream.Normal() / std::sqrt(c.highest), sine = stream.Normal() / std::sqrt(c.highest);
+          for (int i = 0; i < c.n; ++i)
+            change[i] += cosine * std::cos(units::turn * k * i / c.n) + sine * std::sin(units::turn * k * i / c.n);
+        }
+        for (Motion& m : motions) m.ez_rad += m.setup == setup ? c.times_noise * noise_rad * change[m.position] : 0.0;
+      }
+      const Separation found = Separate(motions, Bench(), Options(c.n, Clamping::kReseat));
+      for (std::size_t i = 0; i < static_cast<std::size_t>(c.n); ++i)
+        chi2 += std::pow(found.target.value[Component::kEz][i] / found.target.u[Component::kEz][i], 2) / (c.n * seeds);
+    }
+    EXPECT_GT(chi2, 0.5) << c.n << ", " << c.passes << ", " << c.highest;
+    EXPECT_LT(chi2, 2.0) << c.n << ", " << c.passes << ", " << c.highest;
   }
 }
 

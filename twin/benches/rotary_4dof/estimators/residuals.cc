@@ -1,5 +1,7 @@
 #include "twin/benches/rotary_4dof/estimators/residuals.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "twin/core/distributions.h"
@@ -20,8 +22,17 @@ Vector4 LeftOver(const Weights& weights, const std::vector<Vector4>& fitted) {
   return dof;
 }
 
-double BirgeRatio(const Separation& result, int dof) {
-  return std::sqrt(result.chi2[dof] / result.dof_of[dof]);
+struct ChiSquared {
+  double sum, dof;
+
+  double BirgeRatio() const { return std::sqrt(sum / dof); }
+  bool TooUnlikely() const { return dof >= kLeastDof && ChiSquaredExceedance(sum, dof) < kTooUnlikely; }
+};
+
+/// Of all residuals, and of the means of the passes at each stop of a set-up: what all passes repeat there is small beside
+/// what they scatter by, but no more passes make it less.
+std::array<ChiSquared, 2> TestsOf(const Separation& result, int motion) {
+  return {{{result.chi2[motion], result.dof_of[motion]}, {result.chi2_of_stops[motion], result.dof_of_stops[motion]}}};
 }
 
 }  // namespace
@@ -47,6 +58,7 @@ void AddResiduals(const std::vector<Motion>& motions, const Layout& layout, cons
   result.residuals.assign(motions.size(), Vector4::Constant(kNaN));
   Vector4 squares = Vector4::Zero();
   result.chi2.setZero();
+  std::vector<Vector4> weight(weights.cells.size(), Vector4::Zero()), weighted = weight;
   for (std::size_t k = 0; k < layout.samples.size(); ++k) {
     const std::size_t i = layout.samples[k].motion;
     const auto cell = static_cast<Eigen::Index>(weights.cell_of[k]);
@@ -54,19 +66,25 @@ void AddResiduals(const std::vector<Motion>& motions, const Layout& layout, cons
     result.residuals[i] = r.cwiseQuotient(UnitScale());
     squares += result.residuals[i].cwiseAbs2();
     result.chi2 += r.cwiseAbs2().cwiseQuotient(weights.sample_cov[k].diagonal());
+    weight[weights.cell_of[k]] += weights.sample_cov[k].diagonal().cwiseInverse();
+    weighted[weights.cell_of[k]] += r.cwiseQuotient(weights.sample_cov[k].diagonal());
   }
+  result.chi2_of_stops.setZero();
+  for (std::size_t c = 0; c < weight.size(); ++c) result.chi2_of_stops += weighted[c].cwiseAbs2().cwiseQuotient(weight[c]);
   result.readings = static_cast<int>(layout.samples.size());
   result.residual_rms = (squares / result.readings).cwiseSqrt();
   result.dof_of = dof_of;
+  const double repeats = static_cast<double>(layout.samples.size()) - static_cast<double>(weights.cells.size());
+  result.dof_of_stops = dof_of - Vector4::Constant(repeats);
   result.dof = static_cast<int>(std::lround(dof_of.sum()));
 }
 
 Vector4 StatedNoiseScale(const Separation& result) {
   Vector4 scale = Vector4::Ones();
   for (int d = 0; d < measure::kDofs; ++d) {
-    if (result.dof_of[d] < kLeastDof) continue;
-    const bool unlikely = ChiSquaredExceedance(result.chi2[d], result.dof_of[d]) < kTooUnlikely;
-    if (unlikely) scale[d] = BirgeRatio(result, d);
+    for (const ChiSquared& test : TestsOf(result, d)) {
+      if (test.TooUnlikely()) scale[d] = std::max(scale[d], test.BirgeRatio());
+    }
   }
   return scale;
 }
@@ -76,7 +94,11 @@ Vector4 AssumedNoiseScale(const Separation& result, const BenchGeometry& geometr
   Vector4 scale =
       result.second_order.cwiseQuotient(AssumedCovariance(geometry).diagonal().cwiseSqrt()).cwiseMax(kLeastScale);
   for (int d = 0; d < measure::kDofs; ++d) {
-    if (result.dof_of[d] >= kLeastDof) scale[d] = std::max(scale[d], BirgeRatio(result, d));
+    const auto [all, stops] = TestsOf(result, d);
+    if (all.dof < kLeastDof) continue;
+    scale[d] = std::max(scale[d], all.BirgeRatio());
+    const double beside = stops.sum / std::pow(all.BirgeRatio(), 2);  // against the noise that all residuals say
+    if (ChiSquared{beside, stops.dof}.TooUnlikely()) scale[d] = std::max(scale[d], stops.BirgeRatio());
   }
   return scale.cwiseMax(kBand * scale.maxCoeff());
 }

@@ -18,7 +18,8 @@ Vector4 DegreesOfFreedom(const Weights& weights, const std::vector<StopModel>& m
 void AddResiduals(const std::vector<Motion>& motions, const Layout& layout, const Weights& weights,
                   const Eigen::VectorXd& predicted, const Vector4& dof_of, Separation& result);
 
-/// Factors on the stated uncertainties that the residuals ask for: 1 unless they are too unlikely (Birge).
+/// Factors on the stated uncertainties that the residuals ask for: 1 unless they are too unlikely (Birge), all of them
+/// or the means of the passes at a stop of a set-up.
 Vector4 StatedNoiseScale(const Separation& result);
 
 /// Factors on AssumedCovariance when no noise is stated: from the residuals, but no less than the model's second

@@ -60,6 +60,7 @@ struct Separation {
   Vector4 residual_rms = Vector4::Constant(kNaN);
   Vector4 chi2 = Vector4::Constant(kNaN);          // against the stated covariances
   Vector4 dof_of = Vector4::Constant(kNaN);        // degrees of freedom of each; they sum up to dof
+  Vector4 chi2_of_stops = Vector4::Constant(kNaN), dof_of_stops = Vector4::Constant(kNaN);  // of the passes' means
   Vector4 scale = Vector4::Ones();                 // applied to the readings' standard uncertainties
   Vector4 second_order = Vector4::Constant(kNaN);  // what the model may miss of a motion (UnreadSecondOrder)
   int dof = 0;                                     // readings - rank

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -10,6 +11,7 @@
 #include "twin/benches/turntable_autocollimator/estimators/lost_harmonics.h"
 #include "twin/core/distributions.h"
 #include "twin/core/units.h"
+#include "twin/separate/mean.h"
 
 namespace twinbench::separate::turntable {
 namespace {
@@ -21,18 +23,47 @@ double Variance(const AutocollimatorNoise& noise, double gamma_rad) {
   return std::pow(std::cos(gamma_rad) * noise.u_x_rad, 2) + std::pow(std::sin(gamma_rad) * noise.u_y_rad, 2);
 }
 
+/// Of all residuals, or of the means of the passes at a stop of a set-up.
+struct Squares {
+  double sum_rad2 = 0.0, dof = 0.0;
+
+  /// Of residual on noise (Birge) where it is beyond chance, else 1.
+  double Scale(double variance_rad2) const {
+    const double chi2 = sum_rad2 / variance_rad2;
+    return dof > kLeastDof && ChiSquaredExceedance(chi2, dof) < kTooUnlikely ? std::sqrt(chi2 / dof) : 1.0;
+  }
+};
+
+/// What all passes repeat, their scatter would thin out.
+Squares SquaresOfMeans(const Eigen::VectorXd& residual_rad, const StopGrid& grid, double dof) {
+  std::map<std::pair<int, int>, Mean> means;
+  for (Eigen::Index i = 0; i < residual_rad.size(); ++i) {
+    const GridStop& stop = grid.stops[static_cast<std::size_t>(i)];
+    if (std::isfinite(residual_rad[i])) means[{stop.setup, stop.position}].Add(residual_rad[i]);
+  }
+  Squares squares{0.0, dof};
+  for (const auto& [where, mean] : means) {
+    squares.sum_rad2 += mean.count * mean.Value() * mean.Value();
+    squares.dof -= mean.count - 1.0;
+  }
+  return squares;
+}
+
 /// Compares the residuals with the noise: scales it, or takes it from them if there is none.
-void JudgeNoise(const Eigen::VectorXd& residual_rad, double gamma_rad, IndexingSeparation& result) {
+void JudgeNoise(const Eigen::VectorXd& residual_rad, const StopGrid& grid, double gamma_rad, IndexingSeparation& result) {
   result.residual_rms_rad = std::sqrt(residual_rad.squaredNorm() / static_cast<double>(residual_rad.size()));
   if (!(result.dof > kLeastDof)) return;
-  if (!std::isfinite(result.noise.u_x_rad)) {
-    const double u_rad = std::sqrt(residual_rad.squaredNorm() / result.dof);
+  const Squares of_all{residual_rad.squaredNorm(), result.dof}, of_means = SquaresOfMeans(residual_rad, grid, result.dof);
+  if (std::isfinite(result.noise.u_x_rad)) {
+    const double variance_rad2 = Variance(result.noise, gamma_rad);
+    result.chi2 = of_all.sum_rad2 / variance_rad2;
+    result.scale = std::max(of_all.Scale(variance_rad2), of_means.Scale(variance_rad2));
+  } else {
+    const double u_rad = std::sqrt(of_all.sum_rad2 / of_all.dof);
     result.noise = {u_rad, u_rad, static_cast<int>(std::lround(result.dof))};
-    return;
+    result.scale = of_means.Scale(u_rad * u_rad);
   }
-  result.chi2 = residual_rad.squaredNorm() / Variance(result.noise, gamma_rad);
-  if (!(ChiSquaredExceedance(result.chi2, result.dof) < kTooUnlikely)) return;
-  result.scale = std::sqrt(result.chi2 / result.dof);
+  if (result.scale == 1.0) return;
   if (result.roll.status == RollStatus::kOk) result.roll.u_gamma_rad *= result.scale;
   result.notes.push_back(fmt::format(
       "the residuals are {:.2f} times what the noise explains: uncertainties are scaled", result.scale));
@@ -175,7 +206,7 @@ IndexingSeparation SeparateIndexing(const std::vector<TurntableStop>& stops, con
   const Eigen::VectorXd x_rad = c * readings.x_rad - s * readings.y_rad;
   const Eigen::VectorXd d_roll = fit.Solve(-s * readings.x_rad - c * readings.y_rad);
   const Eigen::VectorXd residual_rad = fit.Residuals(x_rad);
-  JudgeNoise(residual_rad, gamma_rad, result);
+  JudgeNoise(residual_rad, grid, gamma_rad, result);
   result.residual_rad = ByStop(residual_rad, grid, std::ssize(stops));
   FillTables(grid, fit, fit.Solve(x_rad), SourcesOf(d_roll, gamma_rad, result), options.u_multitooth_rad, result);
   AddNotes(d_roll, grid.n, result);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -196,8 +197,17 @@ ReadingNoise NoiseOfNulledFaces(const std::vector<FaceReading>& readings) {
 ReadingNoise JudgedNoise(ReadingNoise noise, double squares_rad2, double dof) {
   if (!(dof > kLeastDof)) return noise;
   if (!noise.is_of_repeats) return {std::sqrt(squares_rad2 / dof), dof, false, 1.0};
+  // Repeats that steps of the encoder have made all alike say nothing of noise.
+  if (noise.u_rad == 0.0) {
+    const double of_means = std::max(1.0, dof - noise.dof);
+    return {std::sqrt(squares_rad2 / of_means), of_means, false, 1.0};
+  }
   const double chi2 = squares_rad2 / (noise.u_rad * noise.u_rad);
   if (ChiSquaredExceedance(chi2, dof) < kUnlikelyScatter) noise.scale = std::sqrt(chi2 / dof);
+  // What all repeats of a face in a clamping have in common is thinned out by what they scatter; means are not.
+  const double chi2_of_means = std::max(0.0, chi2 - noise.dof), dof_of_means = dof - noise.dof;
+  if (dof_of_means > kLeastDof && ChiSquaredExceedance(chi2_of_means, dof_of_means) < kUnlikelyScatter)
+    noise.scale = std::max(noise.scale, std::sqrt(chi2_of_means / dof_of_means));
   return noise;
 }
 
