@@ -6,6 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "twin/benches/hob_transmission/bench.h"
+#include "twin/benches/turntable_autocollimator/bench.h"
+
 // The answers that the scenarios of the turntable and the hobbing machine promise.
 namespace twinbench {
 namespace {
@@ -101,6 +104,16 @@ TEST(TurntableShifts, SeparateTurntableAndTeethWithinTheirUncertainties) {
   EXPECT_NEAR(MeanChi2(a.separation->multitooth, run.truth.at("multitooth")), 1.0, 0.95);
 }
 
+TEST(TurntableShifts, AreScoredByWhatTheyTellApart) {
+  for (const char* shifts : {"[0, 60, 120, 300]", "[0, 180, 0, 180]", "[0, 5, 65, 60]", "[0, 120, 240, 0]"}) {
+    const test::BenchRun run = test::RunTurntable(LoadScenario(
+        test::ScenarioPath("turntable_shifts.toml"), {std::string("turntable_procedure.shifts_teeth=") + shifts, "mechanics.fidelity=kinematic"}));
+    const auto score = benches::turntable::ScoreRun(run.scenario, run.readings, run.truth, Estimator::kRigorous).json;
+    for (const char* table : {"turntable", "multitooth"})
+      EXPECT_LT(score.at(table).at("ez").at("mean_chi2").get<double>(), 4.0) << table << " " << shifts;
+  }
+}
+
 // --- hobbing machine ---
 
 test::BenchRun Machine(const std::string& file, const std::vector<std::string>& overrides = {}) {
@@ -137,6 +150,17 @@ TEST(HobTransmission, AgreesAtRestToTheNoiseWithAPerfectCalibrator) {
     const auto& first = a.encoder_against_interferometer.front();
     EXPECT_LT(std::abs(first.difference.value) / arcsec, 0.2) << seed;  // 0.3 in 72 stops: 0.05 either part
     EXPECT_LT(first.normalised_error, 2.0) << seed;                     // 1 is two standard uncertainties
+  }
+}
+
+/// Steps of the ring that are alike at every visit of a stop.
+TEST(HobTransmission, KnowsItsEncoderAtRestNoBetterThanInItsSteps) {
+  for (const char* steps : {"table_encoder.interpolation=7", "table_encoder.interpolation=50"}) {
+    const test::BenchRun run = Machine("hob_transmission.toml", {steps, "mechanics.fidelity=kinematic"});
+    const auto scored = benches::hob::ScoreRun(run.scenario, run.readings, run.truth, Estimator::kRigorous).json;
+    const double chi2 = scored.at("interferometer at rest").at("amplitude").at("mean_chi2").get<double>();
+    EXPECT_LT(chi2, 4.0) << steps;
+    EXPECT_GT(chi2, 0.05) << steps;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/angle_benches.h"
+#include "tests/support/night.h"
 #include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/benches/turntable_autocollimator/estimators/polygon_analysis.h"
 #include "twin/diagnose/diagnosis.h"
@@ -60,6 +61,40 @@ TEST(TurntablePolygon, KnowsTheEncodersCurveToFourThousandthsOfAnArcsecond) {
   // 10 and 23 degrees of freedom a run: deviations sqrt(2 / 160) and sqrt(2 / 368), three of each.
   EXPECT_NEAR(encoder, 1.0, 0.34);
   EXPECT_NEAR(faces, 1.0, 0.23);
+}
+
+struct LeaningPolygon {
+  double tilt_arcsec, azimuth_deg;
+  int faces;
+};
+
+TEST(TurntablePolygon, MayLeanByHundredsOfArcseconds) {
+  const int seeds = test::ByNight(10, 2);
+  for (const LeaningPolygon& p : {LeaningPolygon{60, 0, 24}, {100, 70, 24}, {200, 0, 24}, {150, 200, 18}, {400, 310, 36}}) {
+    double encoder = 0.0;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      const test::BenchRun run = test::RunTurntable(PolygonScenario(
+          {fmt::format("seed={}", seed), fmt::format("turntable_procedure.tilts_arcsec=[{}]", p.tilt_arcsec),
+           fmt::format("turntable_procedure.tilt_azimuths_deg=[{}]", p.azimuth_deg), fmt::format("polygon.faces={}", p.faces),
+           fmt::format("turntable_procedure.positions={}", p.faces)}));
+      encoder += MeanSquaredScore(run, "turntable") / seeds;
+    }
+    // 10 degrees of freedom a run.
+    EXPECT_GT(encoder, 0.2) << p.tilt_arcsec;
+    EXPECT_LT(encoder, 4.0) << p.tilt_arcsec;
+  }
+}
+
+TEST(TurntablePolygon, IsScoredByWhatItsClampingsSee) {
+  const std::string orders = "turntable.harmonics=[{order=1,amplitude_arcsec=1},{order=5,amplitude_arcsec=0.7,phase_deg=20},"
+                             "{order=12,amplitude_arcsec=0.9},{order=24,amplitude_arcsec=0.3,phase_deg=50}]";
+  for (const char* highest : {"turntable_procedure.highest_order=5", "turntable_procedure.highest_order=12"}) {
+    // Twelve faces: orders 12 and 24 are in the constants. Five clampings: order 5 is the faces'.
+    const test::BenchRun run = test::RunTurntable(PolygonScenario({"polygon.faces=12", "turntable_procedure.positions=12", orders, highest,
+                                                                   "turntable_procedure.polygon_offsets_deg=[3, 75, 147, 219, 291]"}));
+    EXPECT_LT(MeanSquaredScore(run, "turntable"), 4.0) << highest;
+    EXPECT_LT(MeanSquaredScore(run, "polygon"), 4.0) << highest;
+  }
 }
 
 /// What faces that are not flat make of the eccentricity is order 1 of the encoder in every clamping.

@@ -2,10 +2,13 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
+
 #include "tests/core/input_error.h"
 #include "tests/separate/nulled_polygon.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/turntable_autocollimator/estimators/polygon_means.h"
+#include "twin/benches/turntable_autocollimator/estimators/tilt_squared.h"
 
 namespace twinbench::separate::turntable {
 namespace {
@@ -193,6 +196,43 @@ TEST(ClosePolygonByMeans, GivesFacesTheMeanOfTheEncodersWavesOverUnevenClampings
       expected_rad += polygon.Encoder_rad((offset_deg + 30.0 * means.face[i]) * units::deg) / 3.0;
     EXPECT_NEAR(means.polygon.value_rad[static_cast<Eigen::Index>(i)] / arcsec, expected_rad / arcsec, 1e-9);
   }
+}
+
+/// Turn about the vertical and pitch of a mirror on an axis that leans, by rotations, as the turntable stands at th.
+Eigen::Vector2d TurnAndPitch(double th_rad, double lean_rad, double azimuth_rad, double pitch_rad) {
+  const Eigen::Vector3d towards(std::cos(azimuth_rad), std::sin(azimuth_rad), 0.0);
+  const double faces_rad = 0.5 * units::kPi - th_rad;
+  const Eigen::Vector3d normal(std::cos(faces_rad) * std::cos(pitch_rad), std::sin(faces_rad) * std::cos(pitch_rad), std::sin(pitch_rad));
+  const Eigen::Vector3d leans = Eigen::AngleAxisd(lean_rad, Eigen::Vector3d::UnitZ().cross(towards)) * normal;
+  const Eigen::Vector3d seen = Eigen::AngleAxisd(th_rad, Eigen::Vector3d::UnitZ()) * leans;
+  return {-std::atan2(seen.x(), seen.y()), std::asin(seen.z())};
+}
+
+TEST(TiltSquared, IsWhatRotationsMakeOfAnAxisThatLeans) {
+  std::vector<TiltReading> readings;
+  std::vector<double> turned_rad;
+  const auto add = [&](int setup, int face, double th_rad, double lean_rad, double azimuth_rad, double sign) {
+    const double pitch_rad = 20.0 * arcsec * std::sin(2.4 * face);
+    const Eigen::Vector2d seen = TurnAndPitch(th_rad, lean_rad, azimuth_rad, pitch_rad);
+    readings.push_back({setup, face, th_rad, sign * seen[1] + 7e-5});
+    turned_rad.push_back(seen[0]);
+  };
+  for (const double sign : {1.0, -1.0}) {  // of y
+    readings.clear();
+    turned_rad.clear();
+    for (int k = 0; k < 36; ++k) {
+      add(0, k, units::turn * k / 36, 600 * arcsec, 0.7, sign);
+      add(1, k, units::turn * k / 36 + 0.3, 150 * arcsec, 4.0, sign);
+    }
+    const Eigen::VectorXd shown_rad = TiltSquared_rad(readings);
+    EXPECT_NEAR(shown_rad.maxCoeff() / arcsec, 0.436 + 600 * 20 * arcsec * 0.9, 0.05) << "0.44 at 600 arcsec, and the pitch";
+    for (Eigen::Index i = 0; i < shown_rad.size(); ++i)
+      EXPECT_NEAR(shown_rad[i] / arcsec, turned_rad[static_cast<std::size_t>(i)] / arcsec, 0.004) << "2 % of a pitch is in the lean";
+  }
+  readings.resize(3);
+  EXPECT_TRUE(TiltSquared_rad(readings).allFinite());
+  readings[0].y_rad = kNaN;
+  EXPECT_TRUE(TiltSquared_rad(readings).isZero(0.0)) << "two readings tell no lean";
 }
 
 }  // namespace

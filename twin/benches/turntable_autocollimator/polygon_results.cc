@@ -8,8 +8,10 @@
 
 #include "twin/benches/turntable_autocollimator/estimators/polygon_analysis.h"
 #include "twin/benches/turntable_autocollimator/series_json.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
+#include "twin/report/curve_orders.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
 #include "twin/report/sound.h"
@@ -170,6 +172,26 @@ std::string PolygonSummary(const PolygonAnalysis& a) {
   return text;
 }
 
+/// True curves of turntable and polygon without what the clampings' constants have, and with the polygon as it looks:
+/// an order of the turntable that is the same in all clampings is in its faces. Multiples of the number of faces are in
+/// the constants, however many orders are fitted.
+std::pair<nlohmann::json, nlohmann::json> TruthAsSeen(const PolygonClosure& c, const TurntableSettings& own,
+                                                      const nlohmann::json& truth) {
+  nlohmann::json turntable = truth.at("turntable"), polygon = truth.at("polygon");
+  std::vector<int> lost;
+  for (const HiddenOrder& h : c.hidden) {
+    if (h.by != OrderHidden::kByLowerOrders) lost.push_back(h.order);
+    if (h.by != OrderHidden::kByPolygon) continue;
+    const std::complex<double> wave = report::OrderOf(turntable, h.order);  // face f stands at offset + f steps, by its own angle at - f
+    report::AddOrder(-h.order, wave * std::polar(1.0, h.order * own.FaceAngle_rad(0, 0)), polygon);
+  }
+  const int first = own.polygon.faces * (c.encoder.highest_order / own.polygon.faces + 1);
+  const int most = static_cast<int>(turntable.at("ez_arcsec").size()) / 2;
+  for (int order = first; order < most; order += own.polygon.faces) lost.push_back(order);
+  report::TakeOutOrders(lost, turntable);
+  return {turntable, polygon};
+}
+
 }  // namespace
 
 report::Evaluation EvaluatePolygon(const Scenario& scenario, const std::vector<Reading>& readings,
@@ -186,8 +208,9 @@ report::ScoredRun ScorePolygon(const Scenario& scenario, const std::vector<Readi
   const PolygonAnalysis a = separate::turntable::AnalysePolygon(readings, scenario, estimator);
   if (!a.closure)
     throw InputError("the run", a.not_separated, "a run in which encoder and polygon can be told apart");
-  const std::vector<report::CurveScore> curves = {CurveOf("turntable", a.closure->turntable, truth.at("turntable")),
-                                                  CurveOf("polygon", a.closure->polygon, truth.at("polygon"))};
+  const auto [turntable, polygon] = TruthAsSeen(*a.closure, TurntableOf(scenario), truth);
+  const std::vector<report::CurveScore> curves = {CurveOf("turntable", a.closure->turntable, turntable),
+                                                  CurveOf("polygon", a.closure->polygon, polygon)};
   return {report::ToJson(curves), "against the truth; means are taken out of both\n" + report::ScoreTable(curves),
           report::PositionTable(curves), report::ValuesOf(curves)};
 }

@@ -296,8 +296,10 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
   std::vector<report::CurveScore> curves = {
       WithDof(CurveOf("turntable", analysis.separation->turntable, turntable), dof)};
   const AngleSeries& multitooth = analysis.separation->multitooth;
-  if (!multitooth.position_rad.empty())
+  if (!multitooth.position_rad.empty()) {
     curves.push_back(WithDof(CurveOf("multitooth", multitooth, truth.at("multitooth")), dof));
+    TakeOutLost(analysis.separation->lost_harmonics, TurntableOf(scenario).turntable_procedure.positions, curves.back());
+  }
   if (!analysis.pointwise.empty()) curves.push_back(CurveOf(analysis.pointwise, dof, turntable));
   if (analysis.model && analysis.check) curves.push_back(CurveOf(*analysis.model, *analysis.check, turntable));
   return {ToJson(curves), "against the truth; means are taken out of both\n" + report::ScoreTable(curves),

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <map>
 
 #include "twin/core/units.h"
 #include "twin/core/written_number.h"
@@ -75,6 +77,26 @@ report::CurveScore CurveOf(const std::string& name, const separate::turntable::A
   }
   curve.truth = TruthAt(table, series.position_rad);
   return curve;
+}
+
+void TakeOutLost(const std::vector<int>& orders, int positions, report::CurveScore& curve) {
+  std::map<long, std::vector<std::size_t>> rows;  // by the place within a step
+  const double step_deg = 360.0 / positions;
+  for (std::size_t i = 0; i < curve.position.size(); ++i) {
+    const double steps = curve.position[i] / step_deg;
+    rows[std::lround((steps - std::floor(steps + 1e-6)) * 1e4)].push_back(i);
+  }
+  for (const auto& [place, row] : rows) {
+    const auto wave = [&](int order, std::size_t i) { return std::polar(1.0, order * curve.position[i] * units::deg); };
+    const auto take_out = [&](int order) {
+      std::complex<double> sum = 0.0;
+      for (const std::size_t i : row) sum += curve.truth[i] * std::conj(wave(order, i));
+      sum *= (order == 0 || 2 * order == positions ? 1.0 : 2.0) / static_cast<double>(row.size());
+      for (const std::size_t i : row) curve.truth[i] -= (sum * wave(order, i)).real();
+    };
+    take_out(0);
+    std::ranges::for_each(orders, take_out);
+  }
 }
 
 }  // namespace twinbench::benches::turntable

@@ -19,4 +19,8 @@ std::vector<double> TruthAt(const nlohmann::json& table, const std::vector<doubl
 report::CurveScore CurveOf(const std::string& name, const separate::turntable::AngleSeries& series,
                            const nlohmann::json& table);
 
+/// The teeth as the shifts see them: of each row of teeth, which stand at even positions, its mean and these orders are
+/// taken out of the true curve.
+void TakeOutLost(const std::vector<int>& orders, int positions, report::CurveScore& curve);
+
 }  // namespace twinbench::benches::turntable

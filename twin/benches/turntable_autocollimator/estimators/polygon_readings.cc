@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "twin/benches/turntable_autocollimator/estimators/collimator_scale.h"
+#include "twin/benches/turntable_autocollimator/estimators/tilt_squared.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/errors.h"
 
@@ -25,6 +27,12 @@ double BeamWalk_rad(const TurntableSettings& own, int setup, double turntable_ra
   return -8.0 * own.mirror.flatness_m * aside_m / (own.mirror.width_m * own.mirror.width_m);
 }
 
+/// The mirror's yaw and tilt without scale and roll of the autocollimator.
+Eigen::Vector2d Levelled_rad(const Reading& r, const Scenario& scenario) {
+  const Eigen::Vector2d mirror_rad = MirrorAngles_rad({r.autocollimator_yaw_rad, r.autocollimator_tilt_rad}, scenario);
+  return Eigen::Rotation2Dd(TurntableOf(scenario).collimator.roll_rad) * mirror_rad;
+}
+
 FaceReading FaceReadingOf(const Reading& r, const Scenario& scenario) {
   const TurntableSettings& own = TurntableOf(scenario);
   const std::string where = fmt::format("reading {}", r.reading);
@@ -37,10 +45,7 @@ FaceReading FaceReadingOf(const Reading& r, const Scenario& scenario) {
   if (!(std::abs(aside_rad) < 0.5 * own.Pitch_rad()))
     throw InputError(where, fmt::format("the encoder shows {:.4f} deg", r.target_rad / units::deg),
                      fmt::format("face {} near {:.4f} deg", face, nominal_rad / units::deg));
-  const Eigen::Vector2d mirror_rad =
-      MirrorAngles_rad({r.autocollimator_yaw_rad, r.autocollimator_tilt_rad}, scenario);
-  const double roll_rad = own.collimator.roll_rad;
-  const double x_rad = std::cos(roll_rad) * mirror_rad.x() - std::sin(roll_rad) * mirror_rad.y();
+  const double x_rad = Levelled_rad(r, scenario).x();
   return {r.setup, face, r.direction, nominal_rad, x_rad - BeamWalk_rad(own, r.setup, nominal_rad) - aside_rad};
 }
 
@@ -48,10 +53,14 @@ FaceReading FaceReadingOf(const Reading& r, const Scenario& scenario) {
 
 std::vector<FaceReading> FaceReadings(const std::vector<Reading>& readings, const Scenario& scenario) {
   std::vector<FaceReading> faces;
+  std::vector<TiltReading> tilts;
   for (const Reading& r : readings) {
-    if (r.phase == Phase::kFullCircle && r.status == ReadingStatus::kOk)
-      faces.push_back(FaceReadingOf(r, scenario));
+    if (r.phase != Phase::kFullCircle || r.status != ReadingStatus::kOk) continue;
+    const FaceReading& face = faces.emplace_back(FaceReadingOf(r, scenario));
+    tilts.push_back({face.clamping, face.face, face.angle_rad, Levelled_rad(r, scenario).y()});
   }
+  const Eigen::VectorXd of_tilt_rad = TiltSquared_rad(tilts);
+  for (std::size_t i = 0; i < faces.size(); ++i) faces[i].value_rad -= of_tilt_rad[static_cast<Eigen::Index>(i)];
   return faces;
 }
 

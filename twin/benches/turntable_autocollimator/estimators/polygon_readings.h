@@ -18,7 +18,8 @@ struct FaceReading {
 };
 
 /// value = x - (encoder - nominal angle), x as the autocollimator shows it without its stated scale and roll and
-/// without what the stated flatness of the faces makes of the stated eccentricity (docs/theory.md 5.3, 5.4).
+/// without what the stated flatness of the faces makes of the stated eccentricity, and the polygon's tilt, as y shows
+/// it, in second order (docs/theory.md 5.3 to 5.5).
 ///
 /// Readings without numbers are left out.
 /// @throws InputError if a set-up has no offset in the scenario, or the encoder shows another face than the reading

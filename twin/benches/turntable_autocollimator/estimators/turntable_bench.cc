@@ -8,6 +8,7 @@
 #include <set>
 
 #include "twin/benches/turntable_autocollimator/estimators/collimator_scale.h"
+#include "twin/benches/turntable_autocollimator/estimators/tilt_squared.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 
 namespace twinbench::separate::turntable {
@@ -105,9 +106,14 @@ void AddCheck(const std::vector<Reading>& readings, const Scenario& scenario, Tu
 
 std::vector<TurntableStop> StopsOf(const std::vector<Reading>& readings, const Scenario& scenario, Phase phase) {
   std::vector<TurntableStop> stops;
+  std::vector<TiltReading> tilts;
   for (const Reading& reading : readings) {
-    if (reading.phase == phase && reading.status == ReadingStatus::kOk) stops.push_back(StopOf(reading, scenario));
+    if (reading.phase != phase || reading.status != ReadingStatus::kOk) continue;
+    const TurntableStop& stop = stops.emplace_back(StopOf(reading, scenario));
+    tilts.push_back({stop.setup, 0, stop.turntable_rad, stop.y_rad});
   }
+  const Eigen::VectorXd of_tilt_rad = TiltSquared_rad(tilts);
+  for (std::size_t i = 0; i < stops.size(); ++i) stops[i].x_rad -= of_tilt_rad[static_cast<Eigen::Index>(i)];
   return stops;
 }
 
