@@ -296,5 +296,22 @@ TEST(Map, EveryReadyOneCanBeRead) {
   EXPECT_THAT(DescribeMaps(), HasSubstr("TwinCAT"));
 }
 
+// The largest radius less the smallest is a result there, which means in blocks would make smaller.
+TEST_F(Importing, KeepsEveryRowOfACircleUnlessMeansAreAskedFor) {
+  constexpr int kRows = 7000;
+  std::string text = "x,y,actual_x,actual_y\n";
+  for (int i = 0; i < kRows; ++i) {
+    const double angle_rad = 2.0 * units::turn * i / kRows, spike_mm = i == 3210 ? 0.02 : 0.0;
+    const double x = 50.0 * std::cos(angle_rad), y = 50.0 * std::sin(angle_rad);
+    text += fmt::format("{:.6f},{:.6f},{:.6f},{:.6f}\n", x, y, x + spike_mm, y);
+  }
+  const std::string map = "bench = \"circular_motion\"\n[columns]\ncommanded_x_mm = \"x\"\ncommanded_y_mm = \"y\"\n"
+                          "grid_x_mm = \"actual_x\"\ngrid_y_mm = \"actual_y\"\nfeed_mm_min = \"3000 / 3600000\"\nsetup = \"0\"\n";
+  EXPECT_EQ(Take(text, map).readings.size(), static_cast<std::size_t>(kRows));
+  const Imported means = Take(text, map + "[average]\nmost_readings = 1000\n");
+  EXPECT_LT(means.readings.size(), 4500u);
+  EXPECT_THAT(means.story, HasSubstr("largest and smallest values of single rows are lost"));
+}
+
 }  // namespace
 }  // namespace twinbench::imports

@@ -336,7 +336,7 @@ std::string StoryOf(const std::vector<Recording>& recordings, const Joined& join
   if (tally.widest > 0.0)
     text += fmt::format(
         "averaged in blocks of up to {} rows, never across a reversal, a rest or a gap: orders up to {} keep 99 "
-        "%\n",
+        "%, largest and smallest values of single rows are lost\n",
         tally.usual_rows, HighestOrderKept(tally.widest));
   for (const auto* list : {&joined.left_out, &tally.left_out}) {
     for (const LeftOut& left_out : *list) text += fmt::format("left out: {} {}\n", left_out.count, left_out.why);
@@ -378,6 +378,13 @@ bool Gives(const Map& map, const std::string& column) {
   return std::ranges::any_of(map.columns, [&column](const MappedColumn& c) { return c.column == column; });
 }
 
+/// Means in blocks lower a largest value and raise a smallest one, which are results of a circle: who wants them says so.
+std::size_t MostReadings(const BenchFormat& bench, const Map& map) {
+  constexpr std::size_t kCompared = 5000;
+  if (map.average.most_readings > 0) return static_cast<std::size_t>(map.average.most_readings);
+  return bench.compared ? kCompared : std::numeric_limits<std::size_t>::max();
+}
+
 Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
   const BenchFormat& bench = BenchFor(recordings, map);
   std::vector<std::string> guessed;
@@ -387,7 +394,7 @@ Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
   Imported imported;
   imported.bench = bench.name;
   Maker maker(bench, map, joined.linear);
-  const std::size_t most = static_cast<std::size_t>(map.average.most_readings) / joined.sessions.size();
+  const std::size_t most = MostReadings(bench, map) / joined.sessions.size();
   for (const Session& session : joined.sessions) {
     const Session whole = Rows(session, bench).Whole(maker.tally.left_out);
     maker.Take(whole, std::max<std::size_t>(most, kFewest), imported);

@@ -96,7 +96,7 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
   course.Add("clock_offset", kSecond, Within(1e10), &map.course.clock_offset_s, "added to the second file's clock");
   Table average(keys, "average");
   average.Add("most_readings", kPure, {12, 1000000}, &map.average.most_readings,
-              "longer recordings are averaged in blocks");
+              "longer recordings are averaged in blocks (5000 where two quantities are compared, else all rows are kept)");
   Table scenario(keys, "scenario");
   scenario.Add("set", kPure, {}, &map.set, "keys of the scenario, as --set has them: \"device.teeth=144\"");
   Table columns_table(keys, "columns");

@@ -29,7 +29,7 @@ struct CourseSettings {
 };
 
 struct AverageSettings {
-  int most_readings = 5000;  // longer recordings are averaged in blocks
+  int most_readings = 0;  // longer recordings are averaged in blocks; 0: 5000 where two quantities are compared, else none is
 };
 
 struct Map {
