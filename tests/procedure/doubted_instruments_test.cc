@@ -49,7 +49,7 @@ std::string Measured(const Shows::Fault& fault, double noise = kNoise) {
     shows.place = 1e-4 * std::sin(1.0 + place);
     for (int attempt = 0; attempt < 3; ++attempt) {
       try {
-        if (std::abs(doubted.Read().autocollimator_yaw_rad - shows.place) > 2.0 * kNoise) ++wrong;
+        if (std::abs(doubted.Read().autocollimator_yaw_rad - shows.place) > 3.0 * kNoise) ++wrong;
         break;
       } catch (const DeviceFault& caught) {
         ++faults;

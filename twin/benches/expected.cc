@@ -92,12 +92,14 @@ std::function<double(const Reading&)> OfIdealMachine(const FreeformSettings& s, 
 double SpotMoves(const FreeformSettings& s) {
   const double radius_m = 0.5 * (s.artefact.vertex_radius_m[0] + s.artefact.vertex_radius_m[1]);
   const double by_places = (s.artefact.mounting_m + s.machine.random_translation_m) / radius_m;
-  const double by_angles = s.artefact.mounting_rad + s.machine.random_rotation_rad + s.machine.random_squareness_rad;
+  constexpr double kAxes = 3.0;  // root of their number, of nine angles that turn the probe about its pivot
+  const double by_axes = kAxes * s.machine.random_rotation_rad * (1.0 + s.machine.pivot_m / radius_m);
+  const double by_angles = s.artefact.mounting_rad + s.machine.random_squareness_rad + by_axes;
   return 2.0 * s.qpd.lens_m * (by_places + by_angles) / s.qpd.spot_radius_m;
 }
 
 std::vector<Expected> ShownByProbe(const FreeformSettings& s) {
-  constexpr double kMost = 0.25;
+  constexpr double kMost = 0.3;
   const bool is_known = SpotMoves(s) < kMost;
   return {{.column = "qpd_x_V", .noise = s.qpd.noise_V, .nominal = is_known ? OfIdealMachine(s, 0) : nullptr, .is_loose = true},
           {.column = "qpd_y_V", .noise = s.qpd.noise_V, .nominal = is_known ? OfIdealMachine(s, 1) : nullptr, .is_loose = true},

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kTimes = 20.0;        // smaller or larger than claimed: no figure of a data sheet is so far off
 constexpr double kMuch = 20.0;         // of the noise: what differs by more is no noise
+constexpr double kNoNoise = 100.0;     // of the noise: nor one that was stated wrong
 constexpr double kSameWay = 0.5;       // of the way that a channel should go, by which it may be off
 constexpr double kAnotherSize = 3.0;   // times, either way
 constexpr double kAsAtRandom = 0.6;    // of what readings taken at random differ by
@@ -168,7 +169,7 @@ void CheckOrdered(const Channel& channel, const Expected& expected, std::vector<
   if (!(by_chance > kMuch * expected.noise) || differ(repeats) < kAsAtRandom * by_chance ||
       differ(neighbours) < kAsAtRandom * by_chance)
     return;
-  findings.push_back({false, fmt::format("{} differs as much between readings of one place, and between neighbours, as between any two, "
+  findings.push_back({by_chance > kNoNoise * expected.noise, fmt::format("{} differs as much between readings of one place, and between neighbours, as between any two, "
                                          "and {:.3g} times its noise: do the values belong to their rows?",
                                          channel.column->name, by_chance / expected.noise)});
 }
