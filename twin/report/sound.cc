@@ -154,7 +154,8 @@ void TakeUncertainty(const Misfit& worst, Evaluation& evaluation) {
   evaluation.joints = {};
   ClearUncertainties(evaluation.results);
   evaluation.results["not_described"] = evaluation.not_separated;
-  evaluation.summary = evaluation.summary.substr(0, evaluation.summary.find('\n') + 1) + "no result: " + evaluation.not_separated + "\n";
+  evaluation.summary = evaluation.summary.substr(0, evaluation.summary.find('\n') + 1) +
+                       "no result: " + evaluation.not_separated + "\n";
 }
 
 }  // namespace

@@ -195,7 +195,8 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   if (device.highest_order > 0) {
     evaluation.separation = SeparationJson(device, device_settings);
     if (device.curves.dof > 0)
-      evaluation.misfits = {report::WidenedMisfit("the separation of device and reference", std::sqrt(device.curves.chi2 / device.curves.dof))};
+      evaluation.misfits = {report::WidenedMisfit("the separation of device and reference",
+                                                  std::sqrt(device.curves.chi2 / device.curves.dof))};
     evaluation.joints = [curves = device.curves] { return JointsOf(curves); };
   }
   if (EncoderOf(scenario).encoder_procedure.kind == "stops") {

@@ -39,7 +39,8 @@ std::vector<report::Misfit> MisfitsOf(const separate::Separation& s) {
   std::vector<report::Misfit> misfits;
   for (int d = 0; d < 4; ++d)
     if (s.dof_of[d] >= 1.0)
-      misfits.push_back(report::WidenedMisfit(std::array{"ez", "ex", "ey", "dy"}[static_cast<std::size_t>(d)], std::sqrt(s.chi2[d] / s.dof_of[d])));
+      misfits.push_back(report::WidenedMisfit(std::array{"ez", "ex", "ey", "dy"}[static_cast<std::size_t>(d)],
+                                              std::sqrt(s.chi2[d] / s.dof_of[d])));
   return misfits;
 }
 
