@@ -17,8 +17,11 @@ const std::vector<Scenario>& Benches() {
   static const std::vector<Scenario> scenarios = [] {
     std::vector<Scenario> all;
     const std::pair<const char*, std::vector<std::string>> benches[] = {
-        {"rotary_4dof", {"mechanics.fidelity=\"kinematic\"", "mechanics.vibration=\"none\""}}, {"turntable_autocollimator", {}},
-        {"encoder_comparison", {}}, {"hob_transmission", {"hob_procedure.samples_per_turn=180"}}, {"circular_motion", {"circular_procedure.points=60"}},
+        {"rotary_4dof", {"mechanics.fidelity=\"kinematic\"", "mechanics.vibration=\"none\""}},
+        {"turntable_autocollimator", {}},
+        {"encoder_comparison", {}},
+        {"hob_transmission", {"hob_procedure.samples_per_turn=180"}},
+        {"circular_motion", {"circular_procedure.points=60"}},
         {"freeform_five_axis", {"freeform_procedure.poses=30"}}};
     for (const auto& [name, set] : benches) all.push_back(LoadScenario(test::ScenarioPath(std::string(name) + ".toml"), set));
     return all;
@@ -36,8 +39,10 @@ const Rows& Good(std::size_t bench) {
 std::vector<const ReadingColumn*> Values(const Scenario& scenario) {
   std::vector<const ReadingColumn*> columns;
   for (const ReadingColumn& column : FormatOf(scenario.bench).columns) {
-    const bool is_same_clock = column.name == "table_encoder_deg" || column.name.starts_with("grid_") || column.name.starts_with("interfero");
-    if (column.IsShown() && column.number && !column.name.ends_with("_std_V") && column.name != "qpd_sum_V" && !is_same_clock) columns.push_back(&column);
+    const bool is_same_clock =
+        column.name == "table_encoder_deg" || column.name.starts_with("grid_") || column.name.starts_with("interfero");
+    if (column.IsShown() && column.number && !column.name.ends_with("_std_V") && column.name != "qpd_sum_V" && !is_same_clock)
+      columns.push_back(&column);
   }
   return columns;
 }
@@ -50,7 +55,8 @@ Rows EachValue(Rows readings, const Scenario& scenario, const std::function<doub
 
 Rows EachAngle(Rows readings, const Scenario& scenario, double times) {
   for (const ReadingColumn& column : FormatOf(scenario.bench).columns) {
-    if (column.role != ColumnRole::kRequired || !column.number || !column.name.ends_with("_deg") || column.name == "head_deg") continue;
+    if (column.role != ColumnRole::kRequired || !column.number || !column.name.ends_with("_deg") || column.name == "head_deg")
+      continue;
     for (Reading& r : readings) column.number(r) *= times, r.extra.clear();
   }
   return readings;
@@ -61,7 +67,8 @@ Rows Shuffled(const Rows& readings, const Scenario& scenario) {
   Stream stream(1, "test.shuffle");
   for (std::size_t i = readings.size(); i-- > 1;)
     for (const ReadingColumn* column : Values(scenario))
-      std::swap(column->number(shuffled[i]), column->number(shuffled[static_cast<std::size_t>(stream.Uniform() * static_cast<double>(i))]));
+      std::swap(column->number(shuffled[i]),
+                column->number(shuffled[static_cast<std::size_t>(stream.Uniform() * static_cast<double>(i))]));
   return shuffled;
 }
 
@@ -83,7 +90,9 @@ Rows Stuck(Rows readings, const Scenario& scenario) {
 
 /// The axis stands at its third stop, and its controller counts on.
 Rows Standing(Rows readings) {
-  for (std::size_t i = 3; i < readings.size(); ++i) readings[i].reference_rad = readings[3].reference_rad, readings[i].measured_rad = readings[3].measured_rad + 1e-6 * static_cast<double>(i % 5);
+  for (std::size_t i = 3; i < readings.size(); ++i)
+    readings[i].reference_rad = readings[3].reference_rad,
+    readings[i].measured_rad = readings[3].measured_rad + 1e-6 * static_cast<double>(i % 5);
   return readings;
 }
 
@@ -101,7 +110,9 @@ TEST(Mangled, ReadingsOfAnyBenchAreRefusedOrSaidAndGoodOnesAreNot) {
       {"a thousandth", [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return 1e-3 * x; }); }},
       {"a thousand times", [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return 1e3 * x; }); }},
       {"negative", [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return -x; }); }},
-      {"stuck", Stuck}, {"shuffled", Shuffled}, {"twice", [](const Rows& r, const Scenario&) { return Twice(r); }},
+      {"stuck", Stuck},
+      {"shuffled", Shuffled},
+      {"twice", [](const Rows& r, const Scenario&) { return Twice(r); }},
       {"angles in mdeg", [](const Rows& r, const Scenario& s) { return EachAngle(r, s, 1e3); }},
       {"angles in rad", [](const Rows& r, const Scenario& s) { return EachAngle(r, s, units::deg); }}};
   for (const auto& [what, change] : changes) {

@@ -67,13 +67,13 @@ std::string Measured(const Shows::Fault& fault, double noise = kNoise) {
 
 TEST(DoubtedInstruments, KeepNothingOfDeadStuckLateAndRangelessOnesAndAllOfGoodOnes) {
   const std::pair<Shows::Fault, double> cases[] = {
-      {[](const auto& all) { return all.back(); }, kNoise},                                    // good
-      {[](const auto& all) { return std::round(all.back() / 3e-7) * 3e-7; }, kNoise},          // shown in steps of three times its noise
-      {[](const auto&) { return 0.0; }, kNoise},                                               // dead
+      {[](const auto& all) { return all.back(); }, kNoise},                            // good
+      {[](const auto& all) { return std::round(all.back() / 3e-7) * 3e-7; }, kNoise},  // shown in steps of three times its noise
+      {[](const auto&) { return 0.0; }, kNoise},                                       // dead
       {[](const auto& all) { return all[std::min<std::size_t>(all.size() - 1, 5)]; }, kNoise},  // stuck from the sixth on
-      {[](const auto& all) { return all[all.size() < 2 ? 0 : all.size() - 2]; }, kNoise},      // late by one
-      {[](const auto& all) { return 1e3 * all.back(); }, kNoise},                              // in another unit
-      {[](const auto&) { return 0.0; }, 0.0}};                                                 // of one that claims nothing nothing is asked
+      {[](const auto& all) { return all[all.size() < 2 ? 0 : all.size() - 2]; }, kNoise},       // late by one
+      {[](const auto& all) { return 1e3 * all.back(); }, kNoise},                               // in another unit
+      {[](const auto&) { return 0.0; }, 0.0}};  // of one that claims nothing nothing is asked
   for (const auto& [fault, noise] : cases) EXPECT_KEPT(Measured(fault, noise));
 }
 

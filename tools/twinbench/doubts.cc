@@ -16,7 +16,8 @@ std::vector<std::string> TellDoubts(const std::vector<Reading>& readings, const 
   return lines;
 }
 
-RecordedRun LoadPlausibleRun(const std::string& source, const std::string& scenario_path, const std::vector<std::string>& overrides) {
+RecordedRun LoadPlausibleRun(const std::string& source, const std::string& scenario_path,
+                             const std::vector<std::string>& overrides) {
   RecordedRun run = LoadRecordedRun(source, scenario_path, overrides);
   TellDoubts(run.readings, run.scenario, source);
   return run;

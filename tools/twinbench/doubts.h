@@ -16,6 +16,7 @@ std::vector<std::string> TellDoubts(const std::vector<Reading>& readings, const 
                                     std::FILE* to = stdout);
 
 /// LoadRecordedRun, and TellDoubts: how every command that makes results of readings takes them.
-RecordedRun LoadPlausibleRun(const std::string& source, const std::string& scenario_path, const std::vector<std::string>& overrides);
+RecordedRun LoadPlausibleRun(const std::string& source, const std::string& scenario_path,
+                             const std::vector<std::string>& overrides);
 
 }  // namespace twinbench::tools

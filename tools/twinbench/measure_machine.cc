@@ -120,7 +120,8 @@ std::vector<procedure::ClaimedColumn> ClaimedColumns(const Scenario& scenario) {
   std::vector<procedure::ClaimedColumn> claims;
   for (const plausible::Expected& expected : ExpectedOf(scenario, {})) {
     const auto column = std::ranges::find(format.columns, expected.column, &ReadingColumn::name);
-    claims.push_back({*column, scenario.noise_free ? 0.0 : expected.noise, format.range_of ? format.range_of(scenario, expected.column) : 0.0, expected.is_angle ? expected.nominal : nullptr});
+    const double range = format.range_of ? format.range_of(scenario, expected.column) : 0.0;
+    claims.push_back({*column, scenario.noise_free ? 0.0 : expected.noise, range, expected.is_angle ? expected.nominal : nullptr});
   }
   return claims;
 }
@@ -132,7 +133,8 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
   procedure::DoubtedInstruments doubted(devices.instruments, ClaimedColumns(scenario));
   // A simulated bench is read as often as its run asks, so that it is that run.
   const bool is_real = kind == "hardware" && !devices.simulation;
-  MachineBench bench = {devices.clock, devices.machine, is_real ? doubted : devices.instruments, devices.fixture, devices.simulation, devices.indexer};
+  InstrumentSet& instruments = is_real ? doubted : devices.instruments;
+  MachineBench bench = {devices.clock, devices.machine, instruments, devices.fixture, devices.simulation, devices.indexer};
   ProgressLine line;
   options.log = &record;
   if (kind != "replay") options.hear_fault = TellFault;

@@ -39,9 +39,11 @@ double BlockNoise_V(const RotarySettings& s, const std::vector<Reading>& reading
 }
 
 std::vector<Expected> ShownByTables(const RotarySettings& s, const std::vector<Reading>& readings) {
-  std::vector<Expected> all = {ShownBySpot(s, s.psd_a, "psd_a_x_V"), {.column = "psd_a_y_V"}, ShownBySpot(s, s.psd_b, "psd_b_x_V"), {.column = "psd_b_y_V"}};
+  std::vector<Expected> all = {
+      ShownBySpot(s, s.psd_a, "psd_a_x_V"), {.column = "psd_a_y_V"}, ShownBySpot(s, s.psd_b, "psd_b_x_V"), {.column = "psd_b_y_V"}};
   const double step_V = 2.0 * s.adc.range_V * std::pow(0.5, s.adc.bits);
-  for (std::size_t k = 0; k < all.size(); ++k) all[k].noise = UnlessCoarse(BlockNoise_V(s, readings, k), step_V), all[k].step = step_V;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    all[k].noise = UnlessCoarse(BlockNoise_V(s, readings, k), step_V), all[k].step = step_V;
   return all;
 }
 
@@ -75,7 +77,10 @@ std::vector<Expected> ShownOfCircles(const CircularSettings& s) {
   using benches::circular::kCommandedX_m, benches::circular::kCommandedY_m;
   const auto angle = [](const Reading& r) { return std::atan2(kCommandedY_m(r), kCommandedX_m(r)); };
   return {{.column = "bar_um", .noise = UnlessCoarse(s.bar.noise_m, s.bar.resolution_m)},
-          {.column = "encoder_deg", .step = units::turn / s.encoder.lines / s.encoder.interpolation, .nominal = angle, .is_angle = true},
+          {.column = "encoder_deg",
+           .step = units::turn / s.encoder.lines / s.encoder.interpolation,
+           .nominal = angle,
+           .is_angle = true},
           {.column = "grid_x_mm", .noise = s.grid.noise_m, .nominal = [](const Reading& r) { return kCommandedX_m(r); }},
           {.column = "grid_y_mm", .noise = s.grid.noise_m, .nominal = [](const Reading& r) { return kCommandedY_m(r); }}};
 }
@@ -84,11 +89,14 @@ std::vector<Expected> ShownOfCircles(const CircularSettings& s) {
 std::function<double(const Reading&)> OfIdealMachine(const FreeformSettings& s, int channel) {
   return [s, channel](const Reading& r) {
     const auto poses = benches::freeform::estimators::PosesOf({r}, s);
-    return poses.empty() ? kNaN : benches::freeform::estimators::Predicted(s, poses[0], benches::freeform::estimators::Inputs::Zero())[channel];
+    return poses.empty()
+               ? kNaN
+               : benches::freeform::estimators::Predicted(s, poses[0], benches::freeform::estimators::Inputs::Zero())[channel];
   };
 }
 
-/// How far mounting and machine may move the spot, against its size: of one moved further the voltages say only on which side it is.
+/// How far mounting and machine may move the spot, against its size: of one moved further the voltages say only on which side it
+/// is.
 double SpotMoves(const FreeformSettings& s) {
   const double radius_m = 0.5 * (s.artefact.vertex_radius_m[0] + s.artefact.vertex_radius_m[1]);
   const double by_places = (s.artefact.mounting_m + s.machine.random_translation_m) / radius_m;

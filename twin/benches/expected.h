@@ -9,7 +9,8 @@
 namespace twinbench {
 
 /// What the scenario of a bench claims of its columns, from the noise and the steps of its instruments and from what is made to
-/// differ on purpose; noise that the readings bring themselves goes before what is stated. Numbers of an instrument that is only as good as its steps are left out: steps repeat themselves.
+/// differ on purpose; noise that the readings bring themselves goes before what is stated. Numbers of an instrument that is only as
+/// good as its steps are left out: steps repeat themselves.
 ///
 /// rotary_4dof: in calibration a yaw e moves a spot by l (1 + 1/cos theta) e (grating equation at normal incidence, l its distance,
 /// theta the angle of the order). encoder_comparison: the device shows the reference's angle. hob_transmission: the hob turns teeth

@@ -11,13 +11,13 @@
 namespace twinbench::plausible {
 namespace {
 
-constexpr double kTimes = 20.0;        // smaller or larger than claimed: no figure of a data sheet is so far off
-constexpr double kMuch = 20.0;         // of the noise: what differs by more is no noise
-constexpr double kNoNoise = 100.0;     // of the noise: nor one that was stated wrong
-constexpr double kSameWay = 0.5;       // of the way that a channel should go, by which it may be off
-constexpr double kAnotherSize = 3.0;   // times, either way
-constexpr double kAsAtRandom = 0.6;    // of what readings taken at random differ by
-constexpr double kAlone = 50.0;         // times its scatter: no noise has such tails
+constexpr double kTimes = 20.0;       // smaller or larger than claimed: no figure of a data sheet is so far off
+constexpr double kMuch = 20.0;        // of the noise: what differs by more is no noise
+constexpr double kNoNoise = 100.0;    // of the noise: nor one that was stated wrong
+constexpr double kSameWay = 0.5;      // of the way that a channel should go, by which it may be off
+constexpr double kAnotherSize = 3.0;  // times, either way
+constexpr double kAsAtRandom = 0.6;   // of what readings taken at random differ by
+constexpr double kAlone = 50.0;       // times its scatter: no noise has such tails
 constexpr std::size_t kFewestPairs = 20, kMostPairs = 2000, kFarthest = 2000;
 
 std::vector<double> Sizes(std::vector<double> x) {
@@ -129,11 +129,13 @@ void CheckFollows(const Channel& channel, const Expected& expected, std::vector<
   const bool is_aliased = expected.is_angle && std::abs(usual) > 2.0;  // whole turns are lost
   if (!of_one_size || is_aliased) {
     findings.push_back({!expected.is_loose, fmt::format("{} does not go with the angles or places of its readings: are they in "
-                                                        "another order or unit?", name)});
+                                                        "another order or unit?",
+                                                        name)});
   } else if (std::abs(usual) < 1.0 / kAnotherSize || std::abs(usual) > kAnotherSize) {
     const bool is_far = std::abs(usual) < 1.0 / kTimes || std::abs(usual) > kTimes;
-    findings.push_back({!expected.is_loose || is_far, fmt::format("{} goes {:.3g} times as far as its readings' angles or places say: is it in another unit?",
-                                          name, usual)});
+    findings.push_back(
+        {!expected.is_loose || is_far,
+         fmt::format("{} goes {:.3g} times as far as its readings' angles or places say: is it in another unit?", name, usual)});
   } else if (usual < 0.0) {
     findings.push_back({!expected.is_loose, fmt::format("{} goes the other way than its readings' angles or places", name)});
   }
@@ -145,14 +147,16 @@ void CheckSize(const Channel& channel, const Expected& expected, std::vector<Fin
   const double noise = NoiseBound(channel, LeftOf(channel, expected));
   const bool is_still = expected.noise > 0.0 && noise < expected.noise / kTimes && !(StepOf(channel) > noise);
   const Spread spread = expected.spread ? SpreadOf(channel, expected) : Spread{};
-  const bool is_small = spread.shown < spread.expected / kTimes, is_large = spread.shown > spread.expected * kTimes;
+  const bool is_small = spread.shown<spread.expected / kTimes, is_large = spread.shown> spread.expected * kTimes;
   if (spread.expected > 0.0 && (is_small || is_large))
-    findings.push_back({is_large || is_still,
-                        fmt::format("{} spreads {:.3g} times as far as the scenario says: is it in another unit?", name,
-                                    spread.shown / spread.expected)});
+    findings.push_back(
+        {is_large || is_still, fmt::format("{} spreads {:.3g} times as far as the scenario says: is it in another unit?", name,
+                                           spread.shown / spread.expected)});
   if (is_still)
-    findings.push_back({false, fmt::format("{} scatters {:.3g} times as much as the scenario says, at most: is it in another unit, or is "
-                                           "the noise that is stated not its own?", name, noise / expected.noise)});
+    findings.push_back(
+        {false, fmt::format("{} scatters {:.3g} times as much as the scenario says, at most: is it in another unit, or is "
+                            "the noise that is stated not its own?",
+                            name, noise / expected.noise)});
 }
 
 void CheckOrdered(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
@@ -169,16 +173,18 @@ void CheckOrdered(const Channel& channel, const Expected& expected, std::vector<
   if (!(by_chance > kMuch * expected.noise) || differ(repeats) < kAsAtRandom * by_chance ||
       differ(neighbours) < kAsAtRandom * by_chance)
     return;
-  findings.push_back({by_chance > kNoNoise * expected.noise, fmt::format("{} differs as much between readings of one place, and between neighbours, as between any two, "
-                                         "and {:.3g} times its noise: do the values belong to their rows?",
-                                         channel.column->name, by_chance / expected.noise)});
+  findings.push_back({by_chance > kNoNoise * expected.noise,
+                      fmt::format("{} differs as much between readings of one place, and between neighbours, as between any two, "
+                                  "and {:.3g} times its noise: do the values belong to their rows?",
+                                  channel.column->name, by_chance / expected.noise)});
 }
 
 /// How far the values about one lie from the next: what a course does by itself.
 double WayAbout(std::size_t i, const std::vector<double>& left) {
   constexpr std::size_t kAbout = 8;
   std::vector<double> way;
-  for (std::size_t k = std::max(i, kAbout) - kAbout; k + 1 < std::min(left.size(), i + kAbout + 1); ++k) way.push_back(std::abs(left[k + 1] - left[k]));
+  for (std::size_t k = std::max(i, kAbout) - kAbout; k + 1 < std::min(left.size(), i + kAbout + 1); ++k)
+    way.push_back(std::abs(left[k + 1] - left[k]));
   return MiddleOf(std::move(way));
 }
 
@@ -200,8 +206,10 @@ void CheckSingleValues(const Channel& channel, const Expected& expected, std::ve
     if (const double here = std::min(alone, unlike[i]) / std::max(usual, WayAbout(i, left)); here > times) times = here, worst = i;
   }
   if (!(times > kAlone)) return;
-  findings.push_back({false, fmt::format("{} of reading {} lies {:.3g} times its scatter from its neighbours and from readings of the "
-                                         "same place", Text(*channel.column, channel.value[worst]), channel.reading[worst]->reading, times)});
+  findings.push_back(
+      {false, fmt::format("{} of reading {} lies {:.3g} times its scatter from its neighbours and from readings of the "
+                          "same place",
+                          Text(*channel.column, channel.value[worst]), channel.reading[worst]->reading, times)});
 }
 
 }  // namespace

@@ -49,8 +49,7 @@ double StepOf(const Channel& channel) {
   const std::set<double> different(channel.value.begin(), channel.value.end());
   if (different.size() < 2) return 0.0;
   double step = INFINITY;
-  for (auto at = std::next(different.begin()); at != different.end(); ++at)
-    step = std::min(step, *at - *std::prev(at));
+  for (auto at = std::next(different.begin()); at != different.end(); ++at) step = std::min(step, *at - *std::prev(at));
   const auto off = std::ranges::count_if(different, [&](double x) {
     const double multiples = (x - *different.begin()) / step;
     return std::abs(multiples - std::round(multiples)) > 0.02;

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kFewest = 4;   // readings from which anything can be said
 constexpr double kStuckShare = 0.1;  // of the readings in a row with the very same value
 constexpr std::size_t kShortestStuck = 10;
-constexpr double kCoarse = 0.2;  // of the readings elsewhere that are the same as the one before: ten in a row are no chance
+constexpr double kCoarse = 0.2;     // of the readings elsewhere that are the same as the one before: ten in a row are no chance
 constexpr double kFarBeyond = 3.0;  // times the range of an instrument or an axis, which is stated with some reserve
 
 void CheckRange(const Channel& channel, double range, std::vector<Finding>& findings) {
@@ -32,10 +32,11 @@ void CheckRange(const Channel& channel, double range, std::vector<Finding>& find
   const double ratio = std::abs(channel.value[worst]) / range;
   const bool is_converter = channel.column->name.ends_with("_V");
   const char* hint = ratio > 10.0 && ratio < 1100.0 && 2 * outside > channel.size()
-                         ? (is_converter ? "; is it in mV?" : "; is it in another unit?") : "";
+                         ? (is_converter ? "; is it in mV?" : "; is it in another unit?")
+                         : "";
   findings.push_back({is_converter || ratio > kFarBeyond,
-                      fmt::format("{} values of {} are outside the {} range, {}; reading {} with {}{}", outside, channel.column->name,
-                                  is_converter ? "converter's" : "stated", Text(*channel.column, range),
+                      fmt::format("{} values of {} are outside the {} range, {}; reading {} with {}{}", outside,
+                                  channel.column->name, is_converter ? "converter's" : "stated", Text(*channel.column, range),
                                   channel.reading[worst]->reading, Text(*channel.column, channel.value[worst]), hint)});
 }
 
@@ -75,7 +76,8 @@ void CheckStuck(const Channel& channel, const BenchFormat& bench, const Expected
 }
 
 /// @param moves  Noise of its own, or another channel that shows motion or noise: this one should, too.
-void CheckAlive(const Channel& channel, bool moves, const BenchFormat& bench, const Expected& claim, std::vector<Finding>& findings) {
+void CheckAlive(const Channel& channel, bool moves, const BenchFormat& bench, const Expected& claim,
+                std::vector<Finding>& findings) {
   if (channel.size() < kFewestToJudge || !moves) return;
   if (Moves(channel)) return CheckStuck(channel, bench, claim, findings);
   findings.push_back({true, fmt::format("{} in all {} readings: the channel is dead, or its column is another's",
@@ -111,9 +113,8 @@ void CheckSteps(const Channel& channel, const std::vector<double>& beside, std::
   Reading reading;
   channel.column->number(reading) = step;
   const double shown = ParseNumber(channel.column->print(reading)).value_or(kNaN);
-  findings.push_back(
-      {false, fmt::format("{} comes in steps of {:.6g}: that resolution is the largest part of its noise",
-                          channel.column->name, shown)});
+  findings.push_back({false, fmt::format("{} comes in steps of {:.6g}: that resolution is the largest part of its noise",
+                                         channel.column->name, shown)});
 }
 
 }  // namespace
@@ -147,8 +148,7 @@ std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario&
 
 std::string InLines(const std::vector<Finding>& findings) {
   std::string text;
-  for (const Finding& finding : findings)
-    text += (finding.fatal ? "cannot be: " : "doubtful: ") + finding.line + "\n";
+  for (const Finding& finding : findings) text += (finding.fatal ? "cannot be: " : "doubtful: ") + finding.line + "\n";
   return text;
 }
 

@@ -21,7 +21,8 @@ struct Finding {
 /// directions that contradict the angles; times that stand still; rows that repeat; axes that stood elsewhere; readings that come
 /// in steps as large as their noise; what is not as the scenario claims: of another size, order or sign. Fatal ones first.
 /// @param expected  What is claimed of the columns; of those that are left out nothing is.
-std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario& scenario, const std::vector<Expected>& expected = {});
+std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario& scenario,
+                           const std::vector<Expected>& expected = {});
 
 /// A line each, "cannot be: ..." or "doubtful: ...".
 std::string InLines(const std::vector<Finding>& findings);

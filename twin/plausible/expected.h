@@ -12,13 +12,14 @@ namespace twinbench::plausible {
 struct Expected {
   std::string column;
   double noise = 0.0;  // of one reading, white, standard deviation [SI]; 0: not stated, or less than a step of the instrument
-  double step = 0.0;  // least step of the reading [SI]; 0: not known
+  double step = 0.0;   // least step of the reading [SI]; 0: not known
   /// Standard deviation of its values within the reading's set-up, made on purpose: a tilt, a sweep [SI]; 0: not known.
   std::function<double(const Reading&)> spread = {};
   /// What it shows by the angles and places of the reading, but for a constant of each set-up [SI]; NaN: not known.
   std::function<double(const Reading&)> nominal = {};
-  bool is_angle = false;    // nominal: whole turns apart
-  bool is_loose = false;    // nominal: changed wires that a diagnosis names, or a mounting that nobody knows so well, are no reason to refuse
+  bool is_angle = false;  // nominal: whole turns apart
+  bool is_loose =
+      false;  // nominal: changed wires that a diagnosis names, or a mounting that nobody knows so well, are no reason to refuse
 };
 
 }  // namespace twinbench::plausible

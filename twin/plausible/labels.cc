@@ -15,22 +15,20 @@
 namespace twinbench::plausible {
 namespace {
 
-constexpr double kContradicted = 0.3;  // of the labels of a run
+constexpr double kContradicted = 0.3;                        // of the labels of a run
 constexpr double kFastest_rad_s = 1e6 * units::turn / 60.0;  // a million turns a minute: no spindle does
-constexpr double kTurnsAPass = 20.0;   // or less than a turn by so much: no circle is measured so
+constexpr double kTurnsAPass = 20.0;                         // or less than a turn by so much: no circle is measured so
 
 /// The angle that a bench's positions and directions are labels of; null if it has no such.
 const ReadingColumn* LabelledAngle(const BenchFormat& bench) {
   for (const ReadingColumn& column : bench.columns) {
-    if (column.role == ColumnRole::kRequired && column.number)
-      return column.name.ends_with("_deg") ? &column : nullptr;
+    if (column.role == ColumnRole::kRequired && column.number) return column.name.ends_with("_deg") ? &column : nullptr;
   }
   return nullptr;
 }
 
 /// Two readings of one pass that have the same position and stand at different angles.
-void CheckPositions(const std::vector<Reading>& readings, const ReadingColumn& angle,
-                    std::vector<Finding>& findings) {
+void CheckPositions(const std::vector<Reading>& readings, const ReadingColumn& angle, std::vector<Finding>& findings) {
   std::map<std::tuple<int, int, int>, double> first;  // set-up, pass, position
   std::size_t judged = 0, wrong = 0;
   int example = 0;
@@ -45,10 +43,9 @@ void CheckPositions(const std::vector<Reading>& readings, const ReadingColumn& a
   }
   if (judged < kFewestToJudge || static_cast<double>(wrong) < kContradicted * static_cast<double>(judged)) return;
   findings.push_back(
-      {true,
-       fmt::format("{} of {} readings have the position of another one of their pass, at another {}; reading {} "
-                   "is one of them",
-                   wrong, judged, angle.name, example)});
+      {true, fmt::format("{} of {} readings have the position of another one of their pass, at another {}; reading {} "
+                         "is one of them",
+                         wrong, judged, angle.name, example)});
 }
 
 /// An angle that nothing turns to in the time since the reading before. The twin would follow it there, step by step.
@@ -64,23 +61,20 @@ void CheckSpeed(const std::vector<Reading>& readings, const ReadingColumn& angle
 }
 
 /// The label says which way the angle went.
-void CheckDirections(const std::vector<Reading>& readings, const ReadingColumn& angle,
-                     std::vector<Finding>& findings) {
+void CheckDirections(const std::vector<Reading>& readings, const ReadingColumn& angle, std::vector<Finding>& findings) {
   std::size_t judged = 0, wrong = 0;
   for (std::size_t i = 1; i < readings.size(); ++i) {
     const Reading& here = readings[i];
     const Reading& before = readings[i - 1];
-    if (here.phase != Phase::kFullCircle || here.setup != before.setup || here.pass != before.pass ||
-        here.direction == 0)
-      continue;
+    if (here.phase != Phase::kFullCircle || here.setup != before.setup || here.pass != before.pass || here.direction == 0) continue;
     const double step = ValueOf(angle, here) - ValueOf(angle, before);
     if (!(std::abs(step) > 1e-9) || std::abs(step) > units::turn / 2.0) continue;
     ++judged;
     if (step * here.direction < 0.0) ++wrong;
   }
   if (judged < kFewestToJudge || static_cast<double>(wrong) < kContradicted * static_cast<double>(judged)) return;
-  findings.push_back({false, fmt::format("{} of {} steps of {} go against the direction that the readings say",
-                                         wrong, judged, angle.name)});
+  findings.push_back(
+      {false, fmt::format("{} of {} steps of {} go against the direction that the readings say", wrong, judged, angle.name)});
 }
 
 void CheckClock(const std::vector<Reading>& readings, std::vector<Finding>& findings) {
@@ -101,12 +95,14 @@ void CheckCircle(const std::vector<Reading>& readings, const ReadingColumn& angl
   }
   const double usual = MiddleOf(turns);
   if (turns.empty() || (usual > 1.0 / kTurnsAPass && usual < kTurnsAPass)) return;
-  findings.push_back({usual > 1.0, fmt::format("{} makes {:.3g} turns in a pass of the full circle: is it in deg?", angle.name, usual)});
+  findings.push_back(
+      {usual > 1.0, fmt::format("{} makes {:.3g} turns in a pass of the full circle: is it in deg?", angle.name, usual)});
 }
 
 /// All that a row says but its number.
 std::vector<double> RowOf(const Reading& r, const BenchFormat& bench) {
-  std::vector<double> row = {ToSeconds(r.time), 1.0 * r.setup, 1.0 * r.pass, 1.0 * r.direction, 1.0 * r.position, static_cast<double>(r.phase)};
+  std::vector<double> row = {ToSeconds(r.time), 1.0 * r.setup,    1.0 * r.pass,
+                             1.0 * r.direction, 1.0 * r.position, static_cast<double>(r.phase)};
   for (const ReadingColumn& column : bench.columns) {
     if (!column.number) continue;
     const double value = ValueOf(column, r);
@@ -131,8 +127,10 @@ void CheckRepeatedRows(const std::vector<Reading>& readings, const BenchFormat& 
     example = reading.reading;
   }
   if (again < kFewestToJudge || std::ranges::all_of(ShownChannels(readings, bench), IsCoarse)) return;
-  findings.push_back({true, fmt::format("{} of {} rows repeat another one, its time and values to the last digit, reading {} among them: they "
-                                        "are no readings of their own", again, readings.size(), example)});
+  findings.push_back(
+      {true, fmt::format("{} of {} rows repeat another one, its time and values to the last digit, reading {} among them: they "
+                         "are no readings of their own",
+                         again, readings.size(), example)});
 }
 
 /// The column of the place that an axis was filed at.
@@ -187,9 +185,11 @@ void CheckAxes(const std::vector<Reading>& readings, const BenchFormat& bench, s
     const auto elsewhere = std::ranges::count_if(found.off, is_elsewhere);
     if (elsewhere == 0 || !(nearer > 0.0)) continue;
     const auto example = std::ranges::find_if(found.off, is_elsewhere) - found.off.begin();
-    findings.push_back({true, fmt::format("{} of {} readings have {} at another place than {} says, reading {} is the first of them: "
-                                          "the axis and what was read do not go together", elsewhere, found.off.size(), name, place->name,
-                                          found.reading[static_cast<std::size_t>(example)]->reading)});
+    findings.push_back(
+        {true,
+         fmt::format("{} of {} readings have {} at another place than {} says, reading {} is the first of them: "
+                     "the axis and what was read do not go together",
+                     elsewhere, found.off.size(), name, place->name, found.reading[static_cast<std::size_t>(example)]->reading)});
   }
 }
 

@@ -10,11 +10,11 @@
 namespace twinbench::procedure {
 namespace {
 
-constexpr int kAgain = 16;        // readings that are all the same: of steps so coarse that noise hides in them, one in many is another
+constexpr int kAgain = 16;  // readings that are all the same: of steps so coarse that noise hides in them, one in many is another
 constexpr int kProveEvery = 16;
 constexpr int kProveFirst = 2;
 constexpr int kSamplesTheSame = 64;
-constexpr double kAgree = 10.0;   // times the noise of a difference
+constexpr double kAgree = 10.0;                    // times the noise of a difference
 constexpr double kFollows_rad = 1.0 * units::deg;  // more than the steps of any encoder
 
 double ValueOf(const ClaimedColumn& claim, const Reading& reading) {
@@ -118,7 +118,8 @@ LatchedSamples DoubtedInstruments::Latched() {
 void DoubtedInstruments::RequireMoving(const Reading& sample) {
   for (std::size_t k = 0; last_ && k < claims_.size(); ++k) {
     same_[k] = ValueOf(claims_[k], *last_) == ValueOf(claims_[k], sample) && IsShown(claims_[k], sample) ? same_[k] + 1 : 0;
-    if (same_[k] >= kSamplesTheSame) Fail(fmt::format("show {} in {} samples: they are dead or stuck", Text(claims_[k], sample), same_[k]));
+    if (same_[k] >= kSamplesTheSame)
+      Fail(fmt::format("show {} in {} samples: they are dead or stuck", Text(claims_[k], sample), same_[k]));
   }
 }
 

@@ -19,11 +19,12 @@ struct ClaimedColumn {
 
 /// Instruments of a real bench, which are not believed at once. Readings at rest: the first two, those behind a fault and every
 /// sixteenth are taken twice at their place, and must agree within ten times the noise; of instruments that once did not, all are
-/// (those that answer late by one show the place before); a reading that is the one before to the last digit, or nothing but zeros, is taken again until it is another.
-/// In motion: no column shows the very same for 64 samples. What is read again is in no record: replays need it not.
+/// (those that answer late by one show the place before); a reading that is the one before to the last digit, or nothing but zeros,
+/// is taken again until it is another. In motion: no column shows the very same for 64 samples. What is read again is in no record:
+/// replays need it not.
 class DoubtedInstruments : public InstrumentSet {
  public:
-  DoubtedInstruments(InstrumentSet& inner, std::vector<ClaimedColumn> claims) 
+  DoubtedInstruments(InstrumentSet& inner, std::vector<ClaimedColumn> claims)
       : inner_(inner), claims_(std::move(claims)), same_(claims_.size()) {}
   /// @throws DeviceFault kStuck of what is dead, stuck or late; kProtocol of a value out of range.
   Reading Read() override;

@@ -310,7 +310,8 @@ void MachineSequencer::Keep(int number, const Reading& sample, const std::functi
   Reading reading = Joined(plan()[static_cast<std::size_t>(number)], sample);
   if (enter) enter(reading);
   if (plan_.complete) plan_.complete(reading);
-  if (const std::vector<Reading>& last = taken_.empty() ? state_.kept : taken_; !last.empty()) RequireTogether(reading, last.back(), plan_.bench);
+  const std::vector<Reading>& before = taken_.empty() ? state_.kept : taken_;
+  if (!before.empty()) RequireTogether(reading, before.back(), plan_.bench);
   const double room_degC = reading.temperature_degC;
   if (room_degC < options_.coldest_degC || room_degC > options_.hottest_degC)
     throw DeviceFault(FaultKind::kImplausible, "thermometer",

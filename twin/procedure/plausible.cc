@@ -48,7 +48,8 @@ void RequireTogether(const Reading& reading, const Reading& before, const std::s
   constexpr double kLeastWay_rad = 0.01 * units::deg;  // less may be noise of the reference
   const auto now = EncoderOf(reading), then = EncoderOf(before);
   if (!FormatOf(bench).compared || reading.setup != before.setup || !now || !then) return;
-  const double way_rad = *now - *then, off_rad = std::remainder(reading.reference_rad - before.reference_rad - way_rad, units::turn);
+  const double way_rad = *now - *then;
+  const double off_rad = std::remainder(reading.reference_rad - before.reference_rad - way_rad, units::turn);
   if (!(std::abs(off_rad) > 0.5 * std::max(std::abs(way_rad), kLeastWay_rad))) return;
   throw DeviceFault(FaultKind::kMoved, "reference",
                     fmt::format("went {:.6f} deg to this reading, and the encoder of its axis {:.6f} deg: does either stand?",

@@ -12,7 +12,8 @@ void RequirePlausible(const Reading& reading, const Reading& before, const Optio
 void RequireTimely(const Reading& sample, Time from, Time to);
 void RequireTimely(const Acquisition& block, Time asked, Time answered);
 
-/// @param before  The reading before, of a bench whose reference is read and not commanded: its axis' own encoder is about the reading.
+/// @param before  The reading before, of a bench whose reference is read and not commanded. The encoder of its axis was looked at
+///                about both.
 /// @throws DeviceFault kMoved if from one to the next the reference did not go the way that the encoder went.
 void RequireTogether(const Reading& reading, const Reading& before, const std::string& bench);
 
