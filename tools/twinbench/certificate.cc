@@ -28,11 +28,6 @@ struct CertificateOptions {
   bool wants_template = false, force = false;
 };
 
-std::string WholeFile(const std::string& path) {
-  if (!std::ifstream(path)) throw InputError(path, "cannot be read", "a file");
-  return BytesOfFile(path);
-}
-
 Temperature TemperatureOf(const std::vector<Reading>& readings, const Laboratory& laboratory, const std::string& laboratory_file) {
   if (std::isfinite(laboratory.temperature_degC))
     return {laboratory.temperature_degC, laboratory.expanded_temperature_degC, "as the laboratory states it"};
