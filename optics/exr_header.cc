@@ -139,4 +139,14 @@ void RequirePlausibleExr(const std::string& path) {
   ExrHeader(path).Check();
 }
 
+void WriteExrBeside(const std::string& path, const std::function<void(const char* to)>& write) {
+  std::error_code no_place;
+  const auto target = std::filesystem::weakly_canonical(path, no_place);  // a link stays one
+  const bool is_new = !std::filesystem::exists(path);
+  if (no_place || (!is_new && !std::filesystem::is_regular_file(target))) return write(path.c_str());
+  const std::string beside = target.string() + ".part";
+  write(beside.c_str());
+  std::filesystem::rename(beside, target);
+}
+
 }  // namespace twinbench::optics

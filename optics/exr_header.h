@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace twinbench::optics {
@@ -18,5 +19,9 @@ inline constexpr int kMostExrChannels_B = 2048;  // of the list of channels, som
 ///
 /// Reference: OpenEXR File Layout (magic number, version field, headers of attributes: name, type, size, value).
 void RequirePlausibleExr(const std::string& path);
+
+/// Lets `write` make a file beside its place and renames it, so that a reader sees a whole file or none. What has no place of its own
+/// (a device, an open file of /proc) is written itself.
+void WriteExrBeside(const std::string& path, const std::function<void(const char* to)>& write);
 
 }  // namespace twinbench::optics

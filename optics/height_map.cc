@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <stdexcept>
 
 #include "optics/exr_header.h"
@@ -101,13 +100,11 @@ void WriteHeightMap(const std::string& path, const HeightMap& map) {
   Imf::FrameBuffer buffer;
   buffer.insert("Y", PixelsOf(pixels, header.dataWindow(), map.width));
   try {
-    const std::string beside = path + ".part";  // a reader sees a whole file or none
-    {
-      Imf::OutputFile file(beside.c_str(), header);
+    WriteExrBeside(path, [&](const char* to) {
+      Imf::OutputFile file(to, header);
       file.setFrameBuffer(buffer);
       file.writePixels(map.height);
-    }
-    std::filesystem::rename(beside, path);
+    });
   } catch (const std::exception& error) {
     throw std::runtime_error(path + ": cannot write the height map: " + error.what());
   }

@@ -16,7 +16,6 @@
 #include <ImfVecAttribute.h>
 
 #include <cmath>
-#include <filesystem>
 #include <set>
 #include <stdexcept>
 
@@ -185,12 +184,10 @@ void WriteIrradianceMaps(const std::string& path, const std::vector<IrradianceMa
   std::vector<Imf::Header> headers;
   for (const IrradianceMap& map : maps) headers.push_back(MakeHeader(map));
   try {
-    const std::string beside = path + ".part";  // a reader sees a whole file or none
-    {
-      Imf::MultiPartOutputFile file(beside.c_str(), headers.data(), static_cast<int>(headers.size()));
+    WriteExrBeside(path, [&](const char* to) {
+      Imf::MultiPartOutputFile file(to, headers.data(), static_cast<int>(headers.size()));
       for (std::size_t i = 0; i < maps.size(); ++i) WritePart(file, static_cast<int>(i), maps[i]);
-    }
-    std::filesystem::rename(beside, path);
+    });
   } catch (const std::exception& error) {
     throw std::runtime_error(path + ": cannot write the irradiance map: " + error.what());
   }

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { close, faintOf, faultsOf, folder, makeRun, open, scenario, twinbench, write } from "./bench.mjs";
+import { close, exchangeResults, faintOf, faultsOf, folder, makeRun, open, scenario, twinbench, write } from "./bench.mjs";
 
 const kEvil = "</script><script>document.title='caught'</script><img src=x onerror=\"document.title='caught'\">";
 
@@ -299,7 +299,7 @@ test("nothing that results or a folder's name say is read as markup or script", 
   results.separation.turntable[`${kEvil}_arcsec`] = results.separation.turntable.ez_arcsec;
   results.separation.not_separable = [{ what: kEvil, why: kEvil }];
   results.diagnosis = { verdict: "named", in_words: kEvil, causes: [{ effect: kEvil, where: "", probability: 1, parameters: {}, next_measurement: kEvil }] };
-  write("evil/results.json", JSON.stringify(results));
+  exchangeResults("evil", results);
   twinbench("report", "evil");
   const page = await open("evil/report.html");
   assert.equal(await page.title(), "evil");
@@ -319,7 +319,7 @@ test("a hundred thousand points are drawn and can be zoomed into", async () => {
   const x = Array.from({ length: n }, (_, k) => (360 * k) / n);
   const results = { many: { position_deg: x, ez_arcsec: x.map((a) => Math.sin(a)) } };
   makeRun("many", scenario("turntable_shifts"));
-  write("many/results.json", JSON.stringify(results));
+  exchangeResults("many", results);
   twinbench("report", "many");
   const page = await open("many/report.html");
   const card = page.locator("figure.card").first();

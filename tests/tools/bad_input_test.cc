@@ -44,9 +44,10 @@ TEST_F(BadInput, WithoutEndIsRefused) {
   ExpectRefused({"import", "wide.csv", "--scenario", "small.toml", "-o", "out"}, "columns");
 }
 
-/// Pixels a thousandth of an atom wide show what no machine does: nothing may be certain of that.
+/// An effect of some twenty pixels, of which the fit knows nothing: nothing may be certain of its numbers.
 TEST_F(BadInput, ThatNoFitDescribesHasNoResult) {
-  Write("five.toml", "bench = \"freeform_five_axis\"\n[freeform_procedure]\nposes = 30\n[ccd]\npixel_um = 1e-9\n");
+  Write("five.toml", "bench = \"freeform_five_axis\"\n[freeform_procedure]\nposes = 30\n"
+                     "[[effect]]\nname = \"slope_crosstalk\"\nper_spot_px = 50.0\n");
   const Outcome run = Call({"run", "five.toml", "-o", "run"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("does not describe the readings: ccd leaves "));

@@ -37,12 +37,12 @@ bool Wrote(const std::string& file, const std::string& text, bool until_on_disk)
 
 void WriteFileAtOnce(const std::string& path, const std::string& text) {
   std::error_code error;
-  if (fs::exists(path, error) && !fs::is_regular_file(path)) {
+  const fs::path target = fs::weakly_canonical(path, error);
+  const bool has_place = !error && (!fs::exists(path) || fs::is_regular_file(target));  // an open file of /proc has none either
+  if (!has_place) {
     if (!Wrote(path, text, false)) throw BenchError(path + ": cannot be written");
     return;
   }
-  const fs::path behind_links = fs::canonical(path, error);
-  const fs::path target = error ? fs::path(path) : behind_links;
   const std::string beside = target.string() + ".part";
   const bool is_whole = Wrote(beside, text, true);
   error.clear();
