@@ -283,6 +283,27 @@ TEST(MachineFaults, AnInstrumentsOwnClockGoesIntoNoReading) {
   }
 }
 
+TEST(MachineFaults, ALastTriggerThatLatchesNothingIsAGapAndIsGoneForAgain) {
+  constexpr std::size_t kTriggers = 12;
+  DrivenTwin twin(ShortCircles());
+  const std::vector<ReadingColumn> shown = InstrumentColumns(FormatOf(twin.scenario.bench).columns);
+  std::size_t seen = 0;
+  bool is_lost = false;
+  TroubledMachine troubled(twin.bench, shown, {}, [&](const std::string&, const std::string& request, std::string& answer) {
+    if (request != "latched" || is_lost) return;
+    LatchedSamples latched = ParseLatched(answer, shown);
+    if ((seen += latched.samples.size()) < kTriggers) return;
+    latched.samples.pop_back();
+    answer = LatchedText(latched, shown);
+    is_lost = true;
+  });
+  MachineBench bench = troubled.Bench();
+  EXPECT_EQ(twin.FaultOn(bench), "");
+  ASSERT_EQ(twin.log.attempts.size(), 1u);
+  EXPECT_EQ(twin.log.attempts[0].fault, "gap");
+  EXPECT_EQ(std::ssize(twin.log.readings), BenchOf(twin.scenario).planned_readings(twin.scenario));
+}
+
 TEST(MachineFaults, AMachineThatFreezesInMidMoveAndALimitSwitchEndTheRun) {
   ExpectStopped("machine,stall", "stalled", "on its way");
   ExpectStopped("machine,limit", "limit", "limit switch");
