@@ -5,6 +5,7 @@
 #include "tests/support/kept_text.h"
 #include "twin/core/device_fault.h"
 #include "twin/core/nothing_moves.h"
+#include "twin/procedure/machine_watch.h"
 #include "twin/procedure/turning.h"
 #include "twin/procedure/whereabouts.h"
 
@@ -228,6 +229,16 @@ TEST(Whereabouts, FollowACircleAndTellWhoeverChangesATarget) {
   states[1].commanded = 7.0;
   EXPECT_NO_THROW(where.RequireOurs(states)) << "it turns on";
   EXPECT_TRUE(std::isnan(where.Sent(1, states[1]))) << "whatever target its controller had before";
+}
+
+TEST(LimitSwitch, OfAMachineLeavesOnlyTheWayOffItOpen) {
+  for (const int limit : {-1, 1}) {
+    AxisState on_switch;
+    on_switch.encoder = 0.1;
+    on_switch.limit = limit;
+    EXPECT_THROW(RequireMayGo({{"x"}}, {on_switch}, {0.1 + 0.01 * limit}, {}), DeviceFault);
+    EXPECT_NO_THROW(RequireMayGo({{"x"}}, {on_switch}, {0.1 - 0.01 * limit}, {}));
+  }
 }
 
 }  // namespace
