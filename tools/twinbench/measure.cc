@@ -92,9 +92,8 @@ void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, 
   try {
     procedure::CarryOut(bench, scenario, record, page.ShownToo(ShownOn(line), stands), options);
   } catch (const std::exception& fault) {
-    const auto* stopped = dynamic_cast<const procedure::StoppedRun*>(&fault);
     if (kind == "replay") throw;  // of a recording's tables nothing can be asked
-    TellStopped(fault, "tables", stopped ? stopped->stands() : procedure::StopBoth(bench, options));
+    TellStopped(fault, "tables", [&] { return procedure::StopBoth(bench, options); });
   }
   ListenNoMore();
   record.Finish();

@@ -145,9 +145,8 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
   try {
     BenchOf(scenario).drive(bench, scenario, record, page.ShownToo(ShownOn(line), stands), options);
   } catch (const std::exception& fault) {
-    const auto* stopped = dynamic_cast<const procedure::StoppedRun*>(&fault);
     if (kind == "replay") throw;  // of a recording's axes nothing can be asked
-    TellStopped(fault, "axes", stopped ? stopped->stands() : procedure::StopMachine(bench, options));
+    TellStopped(fault, "axes", [&] { return procedure::StopMachine(bench, options); });
   }
   ListenNoMore();
   record.Finish();

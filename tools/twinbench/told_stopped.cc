@@ -17,7 +17,9 @@ std::string Reason(const std::exception& why) {
 
 }  // namespace
 
-void TellStopped(const std::exception& why, const std::string& what, const procedure::Standstill& stands) {
+void TellStopped(const std::exception& why, const std::string& what, const std::function<procedure::Standstill()>& stop) {
+  const auto* stopped = dynamic_cast<const procedure::StoppedRun*>(&why);
+  const procedure::Standstill stands = stopped ? stopped->stands() : stop();
   constexpr const char* kKept = "every reading so far is kept. Go on with --resume";
   if (!stands.is_sure)
     throw StateUnknown(fmt::format("{}. STATE UNKNOWN - USE THE EMERGENCY STOP. WHETHER THE {} STAND STILL IS NOT KNOWN: "

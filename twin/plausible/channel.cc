@@ -7,6 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "twin/core/distributions.h"
+
 namespace twinbench::plausible {
 
 double ValueOf(const ReadingColumn& column, const Reading& reading) {
@@ -58,10 +60,7 @@ double StepOf(const Channel& channel) {
 }
 
 double MiddleOf(std::vector<double> x) {
-  if (x.empty()) return 0.0;
-  const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
-  std::ranges::nth_element(x, middle);
-  return *middle;
+  return x.empty() ? 0.0 : Median(std::move(x));
 }
 
 double ScatterOf(const std::vector<double>& x) {

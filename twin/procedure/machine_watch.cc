@@ -20,10 +20,6 @@ std::string Place(const MachineAxis& axis, double at) {
   return fmt::format("{:.6f} {}", at / axis.to_SI(), axis.unit());
 }
 
-AxisLimits LimitsOf(const MachineOptions& options, std::size_t axis) {
-  return axis < options.axes.size() ? options.axes[axis] : AxisLimits{};
-}
-
 void CheckHealth(const MachineAxis& axis, const AxisState& state) {
   if (!state.referenced)
     throw DeviceFault(FaultKind::kRestarted, axis.name, "has lost its origin; its coordinates mean nothing");
@@ -130,7 +126,7 @@ void RequireMayGo(const std::vector<MachineAxis>& axes, const std::vector<AxisSt
                   const MachineOptions& options) {
   for (std::size_t k = 0; k < to.size(); ++k) {
     const MachineAxis& axis = axes[k];
-    const AxisLimits limits = LimitsOf(options, k);
+    const AxisLimits limits = LimitsOf(options.axes, k);
     if (to[k] < limits.lower || to[k] > limits.upper)
       throw DeviceFault(FaultKind::kLimit, axis.name,
                         fmt::format("{} lies outside the soft limits {} to {}", Place(axis, to[k]),
@@ -148,7 +144,7 @@ std::vector<AxisState> RequireMayTurn(MachineBench& bench, const MachineOptions&
     const MachineAxis& axis = bench.machine.Axes()[k];
     CheckHealth(axis, states[k]);
     if (states[k].limit != 0) throw DeviceFault(FaultKind::kLimit, axis.name, "stands on a limit switch");
-    const AxisLimits limits = LimitsOf(options, k);
+    const AxisLimits limits = LimitsOf(options.axes, k);
     if (states[k].encoder < limits.lower || states[k].encoder > limits.upper)
       throw DeviceFault(FaultKind::kLimit, axis.name,
                         fmt::format("has come to {}, outside the soft limits {} to {}", Place(axis, states[k].encoder),

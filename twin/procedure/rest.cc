@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "twin/core/nothing_moves.h"
+#include "twin/procedure/whereabouts.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -155,8 +156,7 @@ std::vector<SeenAxis> LookAt(MachineController& machine, const std::vector<AxisL
   std::vector<SeenAxis> seen;
   for (std::size_t k = 0; k < states.size(); ++k) {
     const MachineAxis& axis = machine.Axes()[k];
-    const double in_position = k < limits.size() ? limits[k].in_position : AxisLimits{}.in_position;
-    seen.push_back({axis.name, axis.is_rotary, states[k].moving, states[k].encoder, in_position});
+    seen.push_back({axis.name, axis.is_rotary, states[k].moving, states[k].encoder, LimitsOf(limits, k).in_position});
   }
   return seen;
 }

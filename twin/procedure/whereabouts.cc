@@ -18,6 +18,10 @@ constexpr double kTurnedOn = std::numeric_limits<double>::infinity();  // in pla
 
 }  // namespace
 
+AxisLimits LimitsOf(const std::vector<AxisLimits>& limits, std::size_t axis) {
+  return axis < limits.size() ? limits[axis] : AxisLimits{};
+}
+
 Whereabouts::Whereabouts(const std::vector<MachineAxis>& axes, const std::vector<AxisLimits>& limits)
     : axes_(axes), limits_(limits), sent_(axes.size(), kNaN) {}
 
@@ -27,7 +31,7 @@ double Whereabouts::Sent(std::size_t axis, const AxisState& state) const {
 }
 
 double Whereabouts::Tolerance(std::size_t axis) const {
-  const double in_position = LimitsOf(axis).in_position;
+  const double in_position = LimitsOf(limits_, axis).in_position;
   return std::isfinite(in_position) ? in_position : kGrosslyOff;
 }
 
@@ -45,7 +49,7 @@ void Whereabouts::Released(std::size_t axis) {
 
 void Whereabouts::RequireOurs(const std::vector<AxisState>& states) const {
   for (std::size_t k = 0; k < states.size(); ++k) {
-    const double in_position = LimitsOf(k).in_position;
+    const double in_position = LimitsOf(limits_, k).in_position;
     const double same = (std::isfinite(in_position) ? in_position : kSameTarget) + kRounding;
     if (sent_[k] == kTurnedOn || !(std::abs(states[k].commanded - sent_[k]) > same)) continue;  // nor where either is unknown
     const MachineAxis& axis = axes_[k];

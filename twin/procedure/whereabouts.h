@@ -6,6 +6,9 @@
 
 namespace twinbench::procedure {
 
+/// Those of an axis; where none are stated, the widest.
+AxisLimits LimitsOf(const std::vector<AxisLimits>& limits, std::size_t axis);
+
 /// Where the axes of a machine were sent by us: what its controller and its encoders say is compared with that, for somebody else
 /// (a pendant, another program) may have sent them elsewhere. Metres and radians.
 class Whereabouts {
@@ -28,11 +31,9 @@ class Whereabouts {
   void RequireOurs(const std::vector<AxisState>& states) const;
 
  private:
-  AxisLimits LimitsOf(std::size_t axis) const { return axis < limits_.size() ? limits_[axis] : AxisLimits{}; }
-
   const std::vector<MachineAxis>& axes_;
   const std::vector<AxisLimits>& limits_;
-  std::vector<double> sent_;  // NaN: not by us
+  std::vector<double> sent_;  // NaN: not by us; infinite: it turned on since
 };
 
 }  // namespace twinbench::procedure
