@@ -88,7 +88,7 @@ TEST_P(AnyMachineContract, ARealBenchGoesOnWithTheReadingThatIsMissing) {
       BenchOf(scenario_).drive(bench, scenario_, log, {}, options);
     } else {
       EXPECT_THROW(BenchOf(scenario_).drive(bench, scenario_, log, {}, options), DeviceFault);
-      EXPECT_EQ(log.readings.size(), stop_at) << "every reading is kept before the operator is heard";
+      EXPECT_EQ(log.readings.size(), KeptWhenStoppedAt(stop_at, scenario_)) << "every reading is kept before the operator is heard";
     }
   }
   ASSERT_EQ(log.readings.size(), without_stops.size());

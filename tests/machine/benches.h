@@ -19,4 +19,9 @@ inline Scenario ShortStops() { return ShortScenario("short_stops"); }
 inline Scenario ShortSweep() { return ShortScenario("short_sweep"); }
 inline Scenario ShortHob() { return ShortScenario("short_hob"); }
 
+/// Of a circle all is kept or nothing; ShortCircles begins with two of 12 readings.
+inline std::size_t KeptWhenStoppedAt(std::size_t readings, const Scenario& scenario) {
+  return scenario.bench == "circular_motion" ? (readings + 11) / 12 * 12 : readings;
+}
+
 }  // namespace twinbench::test

@@ -7,6 +7,7 @@
 #include "tests/machine/driven_twin.h"
 #include "tests/support/machine_run.h"
 #include "tests/support/sanitized.h"
+#include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/core/sample_text.h"
 #include "twin/procedure/machine_watch.h"
@@ -283,25 +284,36 @@ TEST(MachineFaults, AnInstrumentsOwnClockGoesIntoNoReading) {
   }
 }
 
-TEST(MachineFaults, ALastTriggerThatLatchesNothingIsAGapAndIsGoneForAgain) {
-  constexpr std::size_t kTriggers = 12;
-  DrivenTwin twin(ShortCircles());
+/// Drops what the `trigger`th of all triggers latched, once.
+std::string FaultWithout(DrivenTwin& twin, std::size_t trigger) {
   const std::vector<ReadingColumn> shown = InstrumentColumns(FormatOf(twin.scenario.bench).columns);
   std::size_t seen = 0;
   bool is_lost = false;
   TroubledMachine troubled(twin.bench, shown, {}, [&](const std::string&, const std::string& request, std::string& answer) {
     if (request != "latched" || is_lost) return;
     LatchedSamples latched = ParseLatched(answer, shown);
-    if ((seen += latched.samples.size()) < kTriggers) return;
-    latched.samples.pop_back();
+    const std::size_t before = seen;
+    if ((seen += latched.samples.size()) < trigger) return;
+    latched.samples.erase(latched.samples.begin() + static_cast<std::ptrdiff_t>(trigger - before - 1));
     answer = LatchedText(latched, shown);
     is_lost = true;
   });
   MachineBench bench = troubled.Bench();
-  EXPECT_EQ(twin.FaultOn(bench), "");
-  ASSERT_EQ(twin.log.attempts.size(), 1u);
-  EXPECT_EQ(twin.log.attempts[0].fault, "gap");
-  EXPECT_EQ(std::ssize(twin.log.readings), BenchOf(twin.scenario).planned_readings(twin.scenario));
+  return twin.FaultOn(bench);
+}
+
+TEST(MachineFaults, ATriggerThatLatchesNothingIsAGapOfWhichNothingIsKeptAndIsGoneForAgain) {
+  const std::vector<Reading> whole = DrivenInProcess(ShortCircles());
+  constexpr std::size_t kCircle = 12;
+  for (const std::size_t trigger : {std::size_t{1}, std::size_t{5}, kCircle}) {
+    DrivenTwin twin(ShortCircles());
+    EXPECT_EQ(FaultWithout(twin, trigger), "");
+    ASSERT_EQ(twin.log.attempts.size(), 1u);
+    EXPECT_EQ(twin.log.attempts[0].fault, "gap");
+    EXPECT_EQ(twin.log.attempts[0].reading, 0);
+    ASSERT_EQ(twin.log.readings.size(), whole.size());
+    for (std::size_t k = 0; k < kCircle; ++k) EXPECT_NEAR(benches::circular::kEncoder_rad(twin.log.readings[k]), twinbench::benches::circular::kEncoder_rad(whole[k]), 1e-3) << k;
+  }
 }
 
 TEST(MachineFaults, AMachineThatFreezesInMidMoveAndALimitSwitchEndTheRun) {

@@ -136,13 +136,18 @@ void MachineSequencer::Go(const Arc& arc) {
 }
 
 void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
+  const std::vector<Reading> samples = SamplesAlong(arc, static_cast<std::size_t>(end - first));
+  for (const Reading& sample : samples) Keep(first++, sample);
+}
+
+/// All of them or none: behind a trigger that latched nothing every sample would stand one place too early.
+std::vector<Reading> MachineSequencer::SamplesAlong(const Arc& arc, std::size_t triggers) {
   HearOperator(options_);
   if (options_.log) options_.log->RequireRoom();
   const std::vector<AxisState> from = LookBeforeMotion();
   const double radius_m = Radius_m(arc, from);
-  int next = first;
-  Time first_time{};
-  Arm(end - first, 0);
+  std::vector<Reading> samples;
+  Arm(static_cast<int>(triggers), 0);
   bench_.machine.StartArc(arc);
   where_.SentRound(arc, from);
   Watch(bench_, PathTime_s(arc, radius_m), where_, options_, [&] {
@@ -150,29 +155,30 @@ void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
     if (latched.overrun)
       throw DeviceFault(FaultKind::kOverrun, "instruments", "their memory ran full; samples are lost");
     for (const Reading& sample : latched.samples) {
-      if (next == end)
+      if (samples.size() == triggers)
         throw DeviceFault(FaultKind::kProtocol, "instruments", "more samples came than there were triggers");
-      if (next == first) first_time = sample.time;
-      RequirePace(arc, radius_m, next - first, first_time, sample.time);
-      Keep(next++, sample);
+      samples.push_back(sample);
     }
   });
-  if (next < end)
-    throw DeviceFault(
-        FaultKind::kGap, "instruments",
-        fmt::format("the path has ended and {} of {} triggers latched nothing", end - next, end - first));
+  if (samples.size() < triggers)
+    throw DeviceFault(FaultKind::kGap, "instruments",
+                      fmt::format("the path has ended and {} of {} triggers latched nothing", triggers - samples.size(), triggers));
+  RequirePace(arc, radius_m, samples);
+  return samples;
 }
 
-/// Of a sample, against the first one.
-void MachineSequencer::RequirePace(const Arc& arc, double radius_m, int trigger, Time first, Time now) const {
+void MachineSequencer::RequirePace(const Arc& arc, double radius_m, const std::vector<Reading>& samples) const {
   constexpr double kShare = 0.1, kStamped_s = 1.0;  // an instrument may stamp when it is looked at
   if (arc.feed_m_s <= 0.0) return;
-  const double takes_s = trigger * arc.trigger_step_rad * radius_m / arc.feed_m_s, took_s = ToSeconds(now - first);
-  if (std::abs(took_s - takes_s) <= kShare * takes_s + kStamped_s) return;
-  throw DeviceFault(FaultKind::kFollowing, "machine",
-                    fmt::format("took {:.3g} s from the first trigger to the {}th and takes {:.3g} s at its feed of {:.6g} mm/min: is an "
-                                "override set?",
-                                took_s, trigger + 1, takes_s, arc.feed_m_s / units::mm * 60.0));
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    const double takes_s = static_cast<double>(k) * arc.trigger_step_rad * radius_m / arc.feed_m_s;
+    const double took_s = ToSeconds(samples[k].time - samples.front().time);
+    if (std::abs(took_s - takes_s) <= kShare * takes_s + kStamped_s) continue;
+    throw DeviceFault(FaultKind::kFollowing, "machine",
+                      fmt::format("took {:.3g} s from the first trigger to the {}th and takes {:.3g} s at its feed of {:.6g} mm/min: is an "
+                                  "override set?",
+                                  took_s, k + 1, takes_s, arc.feed_m_s / units::mm * 60.0));
+  }
 }
 
 void MachineSequencer::Arm(int samples, int lines) {
@@ -219,7 +225,7 @@ void MachineSequencer::TakeInMotion(int reading, Time due, Duration late, const 
                       fmt::format("a reading in motion came {:.3g} s late: they answer more slowly than they are asked",
                                   ToSeconds(now - due)));
   LookAtTurning();
-  Keep(reading, sample, enter);
+  KeepAndHear(reading, sample, enter);
 }
 
 void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
@@ -235,7 +241,7 @@ void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
     for (const Reading& sample : latched.samples) {
       if (next == end)
         throw DeviceFault(FaultKind::kProtocol, "instruments", "more samples came than they were armed for");
-      Keep(next++, sample);
+      KeepAndHear(next++, sample);
     }
     if (latched.overrun)
       throw DeviceFault(FaultKind::kOverrun, "instruments",
@@ -252,7 +258,7 @@ void MachineSequencer::TakeAtRest(int reading, Duration dwell, const std::functi
   std::vector<Stood> stood;
   const Reading sample = ReadAtRest(stood);
   for (const Stood& axis : stood) RequireStood(axis);
-  Keep(reading, sample, [&](Reading& r) {
+  KeepAndHear(reading, sample, [&](Reading& r) {
     for (const Stood& axis : stood) EnterInto(r, axis);
     if (enter) enter(r);
   });
@@ -322,9 +328,12 @@ void MachineSequencer::Keep(int number, const Reading& sample, const std::functi
     return;
   }
   taken_.push_back(reading);
-  const bool is_last = number + 1 == static_cast<int>(plan().size());
-  if (taken_.size() >= Together() || is_last) Flush();
-  if (!is_last) HearOperator(options_);
+  if (taken_.size() >= Together() || IsLast(number)) Flush();
+}
+
+void MachineSequencer::KeepAndHear(int number, const Reading& sample, const std::function<void(Reading&)>& enter) {
+  Keep(number, sample, enter);
+  if (!IsLast(number)) HearOperator(options_);
 }
 
 std::size_t MachineSequencer::Together() const {

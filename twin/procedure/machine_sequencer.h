@@ -106,8 +106,11 @@ class MachineSequencer {
   void LookAtAxes(std::vector<Stood>& stood, double Stood::*when);
   std::vector<AxisState> LookBeforeMotion();
   AxisState LookAtTurning();
-  void RequirePace(const Arc& arc, double radius_m, int trigger, Time first, Time now) const;
+  void RequirePace(const Arc& arc, double radius_m, const std::vector<Reading>& samples) const;
+  std::vector<Reading> SamplesAlong(const Arc& arc, std::size_t triggers);
   void Keep(int reading, const Reading& sample, const std::function<void(Reading&)>& enter = {});
+  void KeepAndHear(int reading, const Reading& sample, const std::function<void(Reading&)>& enter = {});
+  bool IsLast(int reading) const { return reading + 1 == static_cast<int>(plan().size()); }
   Reading Joined(const Reading& planned, const Reading& sample) const;
   void RequireSame(const Reading& reading) const;
   double PathTime_s(const Arc& arc, double radius_m) const;
