@@ -5,8 +5,8 @@
 #include "tests/hidden/reduced.h"
 #include "twin/benches/registry.h"
 
-// A few machines of every sort. What falls short of what is asked - the second diagnosis, the stated gain - is in
-// docs/scores.md.
+// A few machines of every sort. What falls short of what is asked - the second diagnosis, the stated gain - is counted by
+// tools/scores.
 namespace twinbench::foreign {
 namespace {
 
