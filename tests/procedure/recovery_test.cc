@@ -74,6 +74,40 @@ TEST(Recovery, ARunThatIsTakenUpByAnotherProgramIsTheUndisturbedOne) {
   }
 }
 
+/// Moves of the table under test from when a real bench's run is taken up to its next block.
+/// @param elsewhere  What somebody did with the tables meanwhile.
+int MovesUntilTheNextBlock(const std::function<void(RotaryBench&)>& elsewhere) {
+  const Scenario scenario = test::RestlessBench();
+  sim::Twin twin(scenario);
+  RotaryBench real = twin.Bench();
+  real.simulation = nullptr;
+  MemoryLog log;
+  Course stopped, taken_up;
+  stopped.options.stop_requested = [&] { return log.readings.size() >= 5; };
+  EXPECT_NE(EndOn(real, scenario, log, stopped), "none");
+  elsewhere(real);
+  real.clock.Wait(std::chrono::seconds(60));
+  int moves = 0;
+  bool is_next = false;
+  taken_up.options.target.in_position_rad = taken_up.options.reference.in_position_rad = 5.0 * units::arcsec;
+  taken_up.before = [&](const std::string& device, const std::string& request, CallAnswer&) {
+    is_next = is_next || request.starts_with("acquire");
+    moves += !is_next && device == "target" && request.starts_with("move");
+  };
+  taken_up.options.readings_done = static_cast<int>(log.readings.size());
+  taken_up.options.calls_done = log.calls;
+  EXPECT_EQ(EndOn(real, scenario, log, taken_up), "none");
+  return moves;
+}
+
+/// From the side from which it was approached: to behind the stop, and to it.
+TEST(Recovery, ARealBenchGoesBackToItsLastStopIfEitherTableWasMovedMeanwhile) {
+  const int moves = MovesUntilTheNextBlock([](RotaryBench&) {});
+  const auto away = [](RotaryTable& table) { table.StartMove(table.EncoderAngle_rad() + 1.0 * units::deg); };
+  EXPECT_EQ(MovesUntilTheNextBlock([&](RotaryBench& bench) { away(bench.target); }), moves + 2);
+  EXPECT_EQ(MovesUntilTheNextBlock([&](RotaryBench& bench) { away(bench.reference); }), moves + 2);
+}
+
 TEST(Recovery, ARecordOfAnotherSeedIsNotContinued) {
   Scenario scenario = test::RestlessBench();
   MemoryLog log;
