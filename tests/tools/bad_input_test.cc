@@ -75,7 +75,7 @@ TEST_F(BadInput, OfAFileThatIsNotThereIsRefused) {
   ExpectRefused({"run", "none.toml", "-o", "out"}, "none.toml: ");
   ExpectRefused({"export", "none", "--readings", "r.csv"}, "none: ");
   ExpectRefused({"separate", "none"}, "none: ");
-  ExpectRefused({"score", "none"}, "none/truth.json");
+  ExpectRefused({"score", "none"}, "none");
   ExpectRefused({"import", "none.csv", "--scenario", "small.toml", "-o", "out"}, "none.csv");
 }
 

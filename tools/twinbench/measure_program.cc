@@ -54,8 +54,6 @@ void MeasureByProgram(const MeasureOptions& options, const Scenario& scenario, L
   const RunFolder folder = tools::FolderOf(options);
   const BegunRun begun = TakeUpIfAsked(options, scenario, folder);
   if (!begun.record || !begun.record->finished()) {
-    if (!options.resume && fs::exists(folder.record()))
-      throw InputError(folder.path, "there is a run already", "another folder, or --resume");
     fs::create_directories(folder.path);
     ListenForStop();
     const hw::ReadStops back = RunOnce(file, scenario, folder);

@@ -75,6 +75,7 @@ RunFolder FolderOf(const MeasureOptions& options) {
 BegunRun TakeUpIfAsked(const MeasureOptions& options, const Scenario& scenario, const RunFolder& folder) {
   const bool is_begun = std::filesystem::exists(folder.record());
   if (!options.resume) {
+    if (is_begun) throw InputError(folder.path, "there is a run already", "another folder, or --resume to go on with it");
     RequireRoomFor(folder, scenario);
     return {};
   }

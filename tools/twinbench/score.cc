@@ -31,6 +31,8 @@ nlohmann::json WithValues(const report::ScoredRun& score) {
 void PrintScore(const ScoreOptions& options, JsonAnswer& answer) {
   const RunFolder folder{options.folder};
   RequireOutput(answer.to(), {folder.truth(), folder.scenario()});
+  if (!std::filesystem::exists(folder.record()))
+    throw InputError(folder.path, "there is no record.sqlite in it", "the folder of a run");
   if (!std::filesystem::exists(folder.truth()))
     throw InputError(folder.truth(), "is not there",
                      "a run of the twin: what was measured or imported has no truth");

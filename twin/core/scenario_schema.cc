@@ -35,8 +35,8 @@ bool Bounds::Contain(double value) const {
 
 std::string Bounds::Text() const {
   if (lower == Bounds{}.lower && upper == Bounds{}.upper) return "";
-  if (above_lower) return fmt::format(" above {} and up to {}", lower, upper);
-  return fmt::format(" from {} to {}", lower, upper);
+  if (above_lower) return fmt::format(" above {:.15g} and up to {:.15g}", lower, upper);
+  return fmt::format(" from {:.15g} to {:.15g}", lower, upper);
 }
 
 std::vector<ScenarioKey> KeysOf(Scenario& s) {
