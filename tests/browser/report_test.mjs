@@ -19,6 +19,9 @@ after(close);
 /** The library draws what has changed some frames later. */
 const drawnAgain = (page) => page.waitForTimeout(500);
 
+/** Of those that can be looked at as polar plots. */
+const firstCurve = (page) => page.locator("figure.card").filter({ has: page.getByRole("button", { name: "Linear" }) }).first();
+
 const plots = (page) => page.locator(".plot");
 
 for (const run of ["rotary", "turntable", "diagnosed"]) {
@@ -43,6 +46,15 @@ for (const run of ["rotary", "turntable", "diagnosed"]) {
   });
 }
 
+test("a page opens with what the run says: its title, tiles with U and units, and polar plots with theirs", async () => {
+  const page = await open("turntable/report.html");
+  assert.match(await page.locator("h1").innerText(), /: turntable$/);
+  assert.match(await page.locator(".subtitle").innerText(), /simulated, seed \d+ · \d+ readings in \d+:\d\d h/);
+  assert.match(await page.locator(".tile").first().innerText(), /Largest error\s+\S+ ± \S+ arcsec\s+Turntable: index error EZ, at \S+°/);
+  assert.match(await firstCurve(page).locator("h3").innerText(), /\[arcsec\]$/);
+  await page.close();
+});
+
 test("a page of four shifts is below 3 MB", () => {
   twinbench("report", "rotary");
   assert.ok(statSync(join(folder, "rotary/report.html")).size < 3e6);
@@ -50,14 +62,14 @@ test("a page of four shifts is below 3 MB", () => {
 
 test("the pointer on a plot shows value, uncertainty and truth", async () => {
   const page = await open("turntable/report.html");
-  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "turntable, ez", exact: true }) });
+  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "Turntable: index error EZ [arcsec]", exact: true }) });
   await card.getByRole("button", { name: "Linear" }).click();
   const box = await card.locator(".plot").boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   const tip = card.locator(".tip");
   await tip.waitFor();
   const text = await tip.innerText();
-  assert.match(text, /position \d+ deg/);
+  assert.match(text, /position \d+°/);
   assert.match(text, /estimate\s+\S+ ± \S+ arcsec/);
   assert.match(text, /truth\s+\S+ arcsec/);
   await page.close();
@@ -65,7 +77,7 @@ test("the pointer on a plot shows value, uncertainty and truth", async () => {
 
 test("the plotted numbers are those of results.json", async () => {
   const page = await open("turntable/report.html");
-  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "turntable, ez", exact: true }) });
+  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "Turntable: index error EZ [arcsec]", exact: true }) });
   await card.getByRole("button", { name: "Numbers" }).click();
   const shown = await card.locator(".numbers tbody tr").first().locator("td").allInnerTexts();
   const { default: results } = await import(join(folder, "turntable/results.json"), { with: { type: "json" } });
@@ -91,16 +103,16 @@ test("by keys alone a plot is reached, read, zoomed and shown whole again, and a
   await page.keyboard.press("Enter");
   await tabTo(({ text }) => text.trim() === "truth");
   await page.keyboard.press("Space");
-  const truth = page.locator("figure.card").first().getByRole("button", { name: "truth" });
+  const truth = firstCurve(page).getByRole("button", { name: "truth" });
   assert.equal(await truth.getAttribute("aria-pressed"), "false");
   await tabTo(({ role }) => role === "application");
   await page.keyboard.press("ArrowRight");
-  const readout = page.locator("figure.card").first().locator(".readout");
+  const readout = firstCurve(page).locator(".readout");
   const first = await readout.innerText();
   await page.keyboard.press("ArrowRight");
-  assert.match(first, /estimate, position 0 deg: \S+ ± \S+ arcsec/);
+  assert.match(first, /estimate, position 0°: \S+ ± \S+ arcsec/);
   assert.notEqual(await readout.innerText(), first);
-  const labels = () => page.locator("figure.card").first().locator(".plot svg text").allTextContents();
+  const labels = () => firstCurve(page).locator(".plot svg text").allTextContents();
   const whole = await labels();
   assert.ok(whole.includes("100"), `labels of the axes: ${whole}`);
   await page.keyboard.press("+");
@@ -115,22 +127,22 @@ test("by keys alone a plot is reached, read, zoomed and shown whole again, and a
 
 test("on a polar plot pointer and cursor keys show the value at an angle", async () => {
   const page = await open("turntable/report.html");
-  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "turntable, ez", exact: true }) });
+  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "Turntable: index error EZ [arcsec]", exact: true }) });
   await card.locator(".plot").focus();
   for (let n = 0; n < 5; ++n) await page.keyboard.press("ArrowRight");
   await card.locator(".tip").waitFor();
   const byKeys = await card.locator(".tip").innerText();
-  assert.match(byKeys, /position 40 deg\s+estimate\s+\S+ ± \S+ arcsec\s+truth/);
+  assert.match(byKeys, /position 40°\s+estimate\s+\S+ ± \S+ arcsec\s+truth/);
   const box = await card.locator(".plot").boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2 - 60);
   await drawnAgain(page);
-  assert.match(await card.locator(".tip").innerText(), /position 90 deg/);
+  assert.match(await card.locator(".tip").innerText(), /position 90°/);
   await page.close();
 });
 
 test("wheel with Ctrl zooms, wheel alone does not", async () => {
   const page = await open("turntable/report.html");
-  const card = page.locator("figure.card").first();
+  const card = firstCurve(page);
   await card.getByRole("button", { name: "Linear" }).click();
   const labels = () => card.locator(".plot svg text").allTextContents();
   const box = await card.locator(".plot").boundingBox();
@@ -162,7 +174,7 @@ const linear = async (page, heading) => {
 
 test("a rectangle is zoomed into by pointer, by button and by Shift, and shown whole again", async () => {
   const page = await open("turntable/report.html");
-  const card = await linear(page, "turntable, ez");
+  const card = await linear(page, "Turntable: index error EZ [arcsec]");
   const plot = card.locator(".plot");
   const box = await plot.boundingBox();
   const drag = async (from, to) => {
@@ -196,20 +208,20 @@ test("a rectangle is zoomed into by pointer, by button and by Shift, and shown w
 
 test("a rectangle is moved, sized and zoomed into by keys alone, told in words, and left by Escape", async () => {
   const page = await open("turntable/report.html");
-  const card = await linear(page, "turntable, ez");
+  const card = await linear(page, "Turntable: index error EZ [arcsec]");
   const plot = card.locator(".plot");
   const whole = await numbersBelow(card);
   const readout = () => card.locator(".readout").innerText();
   await plot.focus();
   await page.keyboard.press("z");
-  assert.match(await readout(), /^position \[deg\] 87.5 to 262.5, .* Enter zooms, Escape leaves\.$/);
+  assert.match(await readout(), /^position \[°\] 87.5 to 262.5, .* Enter zooms, Escape leaves\.$/);
   assert.deepEqual(await faultsOf(page), []);
   await page.keyboard.press("Escape");
   assert.deepEqual(await numbersBelow(card), whole);
   await page.keyboard.press("z");
   for (let n = 0; n < 3; ++n) await page.keyboard.press("ArrowRight"); // 5 % each
   for (let n = 0; n < 2; ++n) await page.keyboard.press("Shift+ArrowLeft");
-  assert.match(await readout(), /^position \[deg\] 140 to 280, /);
+  assert.match(await readout(), /^position \[°\] 140 to 280, /);
   await page.keyboard.press("Enter");
   await drawnAgain(page);
   const shown = await numbersBelow(card);
@@ -302,14 +314,15 @@ test("nothing that results or a folder's name say is read as markup or script", 
   exchangeResults("evil", results);
   twinbench("report", "evil");
   const page = await open("evil/report.html");
-  assert.equal(await page.title(), "evil");
+  const title = await page.title();
+  assert.match(title, /: evil$/);
   assert.equal(await page.locator("img").count(), 0);
   assert.equal(await page.locator(".verdict").innerText(), kEvil);
   const plot = page.locator("#figure-causes .plot, figure.card .plot").first();
   await plot.focus();
   await page.keyboard.press("ArrowRight");
   await page.waitForTimeout(100);
-  assert.equal(await page.title(), "evil");
+  assert.equal(await page.title(), title);
   assert.deepEqual(page.said, []);
   await page.close();
 });
@@ -322,7 +335,7 @@ test("a hundred thousand points are drawn and can be zoomed into", async () => {
   exchangeResults("many", results);
   twinbench("report", "many");
   const page = await open("many/report.html");
-  const card = page.locator("figure.card").first();
+  const card = firstCurve(page);
   await card.getByRole("button", { name: "Linear" }).click();
   const before = await card.screenshot();
   await card.getByRole("button", { name: "Zoom in" }).click();

@@ -8,11 +8,12 @@
 
 #include "twin/report/page/harmonics_of.h"
 #include "twin/report/page/scored.h"
+#include "twin/report/page/tiles.h"
 
 namespace twinbench::report {
 namespace {
 
-using nlohmann::json, testing::DoubleNear, testing::AllOf, testing::ElementsAre, testing::HasSubstr;
+using nlohmann::json, testing::DoubleNear, testing::ElementsAre;
 using testing::Pointwise;
 
 const json kResults = json::parse(R"({
@@ -25,7 +26,7 @@ const json kResults = json::parse(R"({
 TEST(CurveFigures, HoldTheNumbersOfResultsWithTheirUncertaintyAndItsCoverage) {
   const std::vector<Figure> figures = CurveFigures(kResults, {});
   ASSERT_EQ(figures.size(), 1u);
-  EXPECT_EQ(figures[0].title, "table, ez");
+  EXPECT_EQ(figures[0].title, "table: index error EZ");
   EXPECT_EQ(figures[0].y.unit, "arcsec");
   ASSERT_EQ(figures[0].series.size(), 1u);
   const FigureSeries& curve = figures[0].series[0];
@@ -45,13 +46,38 @@ TEST(CurveFigures, ShowTruthOnlyWhereTheScoreHasIt) {
   EXPECT_THAT(truth.y, ElementsAre(1.25, testing::IsNan(), -2.75));  // what was not scored has none
 }
 
+TEST(DeviationFigures, AreEstimatesLessTruthWithTheirUncertainty) {
+  const json score = {{"values", ScoredValuesJson({{"table.ez_arcsec[0]", 1.5, 0.1, 1.25}, {"table.ez_arcsec[2]", -2.5, 0.3, -2.75}})}};
+  const std::vector<Figure> less = DeviationFigures(CurveFigures(kResults, score));
+  ASSERT_EQ(less.size(), 1u);
+  ASSERT_EQ(less[0].series.size(), 1u);
+  EXPECT_THAT(less[0].series[0].y, ElementsAre(0.25, testing::IsNan(), 0.25));
+  EXPECT_THAT(less[0].series[0].u, ElementsAre(0.1, 0.2, 0.3));
+  EXPECT_TRUE(DeviationFigures(CurveFigures(kResults, {})).empty()) << "nothing is known of the truth";
+}
+
+TEST(TilesOf, SayTheLargestErrorWithItsUncertaintyAndHowErrorsCompareWithIt) {
+  json results = kResults;
+  results["separation"]["not_separable"] = {"table ez"};
+  const json score = {{"table", {{"ez", {{"mean_chi2", 5.5}}}, {"ex", {{"mean_chi2", 0.9}}}}}};
+  const std::vector<PageTile> tiles = TilesOf(results, score, CurveFigures(results, score));
+  ASSERT_EQ(tiles.size(), 4u);
+  EXPECT_EQ(tiles[0].value, "−2.50 ± 0.67 arcsec");  // 2.25 times 0.3, less a bit
+  EXPECT_EQ(tiles[0].note, "table: index error EZ, at 180°");
+  EXPECT_EQ(tiles[1].value, "2.06 arcsec");  // of the two that there are
+  EXPECT_EQ(tiles[2].value, "5.50");
+  EXPECT_EQ(tiles[2].tone, VerdictTone::kBad);
+  EXPECT_EQ(tiles[3].value, "1");
+  EXPECT_TRUE(TilesOf(json::object(), {}, {}).empty());
+}
+
 TEST(CurveFigures, BeginWithTheTurnOfWhatIsUnderTest) {
   const json table = {{"position_deg", {0.0, 120.0, 240.0}}, {"dx_um", {1.0, 2.0, 3.0}}, {"ez_arcsec", {3.0, 2.0, 1.0}}};
   const std::vector<Figure> figures = CurveFigures({{"separation", {{"reference", table}, {"target", table}}}}, {});
   ASSERT_EQ(figures.size(), 4U);
-  EXPECT_THAT(figures[0].title, AllOf(HasSubstr("target"), HasSubstr("ez")));
-  EXPECT_THAT(figures[1].title, AllOf(HasSubstr("target"), HasSubstr("dx")));
-  EXPECT_THAT(figures[2].title, AllOf(HasSubstr("reference"), HasSubstr("ez")));
+  EXPECT_THAT(figures[0].title, "Table under test: index error EZ");
+  EXPECT_THAT(figures[1].title, "Table under test: radial error DX");
+  EXPECT_THAT(figures[2].title, "Reference table: index error EZ");
 }
 
 TEST(CurveFigures, KeepCurvesOfOtherLengthsApartFromTheirAngles) {
@@ -67,7 +93,7 @@ TEST(CurveFigures, PutThePassesOfASetUpIntoOneFigure) {
   }
   const std::vector<Figure> figures = CurveFigures({{"path", paths}}, {});
   ASSERT_EQ(figures.size(), 2u);
-  EXPECT_EQ(figures[1].title, "path, dx, set-up 1");
+  EXPECT_EQ(figures[1].title, "path: radial error DX, set-up 1");
   ASSERT_EQ(figures[1].series.size(), 2u);
   EXPECT_EQ(figures[1].series[1].name, "pass 1");
 }
@@ -75,7 +101,7 @@ TEST(CurveFigures, PutThePassesOfASetUpIntoOneFigure) {
 TEST(SpectrumFigures, ReadListsAndListsOfTerms) {
   const std::vector<Figure> figures = SpectrumFigures(kResults, {});
   ASSERT_EQ(figures.size(), 2u);
-  EXPECT_EQ(figures[0].title, "model terms, amplitude");
+  EXPECT_EQ(figures[0].title, "model terms: amplitude");
   EXPECT_THAT(figures[0].series[0].x, ElementsAre(1, 7));
   EXPECT_THAT(figures[0].series[0].y, ElementsAre(6.5, 0.25));
   EXPECT_THAT(figures[0].series[0].u, ElementsAre(0.5, 0.125));

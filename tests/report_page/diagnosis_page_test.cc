@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/report_page/blocks.h"
+#include "twin/report/page/causes.h"
 
 namespace twinbench::report {
 namespace {
@@ -34,7 +35,7 @@ Block BlockIn(const std::vector<PageSection>& sections, const std::string& title
 }
 
 TEST(VerdictOf, SaysATieWithAllItsMembers) {
-  EXPECT_EQ(VerdictOf(kDiagnosis).text, "One of: eccentricity or tilt at x");
+  EXPECT_EQ(VerdictOf(kDiagnosis).text, "Ambiguous: eccentricity or tilt at x");
   EXPECT_EQ(VerdictOf({{"verdict", "none"}}).tone, VerdictTone::kGood);
   EXPECT_EQ(VerdictOf({{"verdict", "named"}, {"in_words", "Named: roll\nmore"}}).text, "Named: roll");
 }
@@ -42,14 +43,25 @@ TEST(VerdictOf, SaysATieWithAllItsMembers) {
 TEST(DiagnosisSections, StateEveryCauseWithItsSizeAndProbability) {
   const std::vector<PageSection> sections = DiagnosisSections(kDiagnosis);
   const Figure& causes = BlockIn<Figure>(sections, "Causes");
-  EXPECT_THAT(causes.categories, ElementsAre("eccentricity", "tilt at x", "something without a name"));
-  EXPECT_THAT(causes.series[0].y, ElementsAre(0.5, 0.45, 0.05));
+  EXPECT_THAT(causes.categories, ElementsAre("eccentricity or tilt at x", "unmodelled effect"));
+  EXPECT_THAT(causes.series[0].y, ElementsAre(0.95, 0.05));
   EXPECT_THAT(BlockIn<PageTable>(sections, "Sizes").rows[0],
-              ElementsAre("eccentricity", "amplitude 12.35 ± 0.50 arcsec", "50 %", "turn the device by 90 degrees"));
+              ElementsAre("eccentricity or tilt at x", "amplitude 12.35 ± 0.50 arcsec", "", "95 %", "turn the device by 90 degrees"));
+}
+
+TEST(DiagnosisSections, RankCausesByWhatTheyExplain) {
+  const json causes = json::parse(R"([{"effect": "tone", "where": "", "probability": 0.99, "parameters": {"phase": {"value": -1, "u": 9, "lower": -1, "upper": 1, "unit": "1"}}},
+                                      {"effect": "drift", "where": "", "probability": 0.90, "parameters": {"rate": {"value": 3, "u": 0, "unit": "deg"}}}])");
+  const std::vector<CauseGroup> groups = GroupsOf({{"causes", causes}, {"plots", {{"share", {0.2, 0.7}}}}});
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(groups[0].name, "drift");
+  EXPECT_EQ(groups[0].size, "rate 3°");
+  EXPECT_EQ(groups[1].size, "") << "the readings do not determine it";
+  EXPECT_EQ(GroupsOf({{"causes", causes}})[0].name, "tone") << "where no share is stated, by probability";
 }
 
 TEST(DiagnosisSections, NameTheDoublesOfACause) {
-  EXPECT_THAT(BlockIn<PageTable>(DiagnosisSections(kDiagnosis), "What looks the same in this run").rows,
+  EXPECT_THAT(BlockIn<PageTable>(DiagnosisSections(kDiagnosis), "Indistinguishable in this run (aliased)").rows,
               ElementsAre(ElementsAre("eccentricity", "tilt at x", "0.99")));
 }
 

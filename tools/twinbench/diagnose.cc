@@ -29,6 +29,7 @@
 #include "twin/diagnose/screen/screen.h"
 #include "twin/diagnose/shown.h"
 #include "twin/plausible/check.h"
+#include "twin/report/json_units.h"
 #include "twin/report/diagnosis_text.h"
 #include "twin/report/sound.h"
 #include "twin/report/verdict_line.h"
@@ -109,6 +110,8 @@ void MergeIntoResults(const RunFolder& folder, nlohmann::json diagnosis, const r
   const std::string path = folder.results();
   nlohmann::json results = fs::exists(path) ? ReadJson(path) : nlohmann::json::object();
   diagnosis["plots"] = diagnose::PlotsJson(page.found);
+  for (const double share : page.shown.share) diagnosis["plots"]["share"].push_back(report::In(1.0, share));
+  diagnosis["plots"]["share_unnamed"] = report::In(1.0, page.shown.share_unnamed);
   diagnosis["in_words"] = report::DiagnosisText(page, {report::Letters::kAscii, true});
   diagnosis["screen"] = diagnose::ToJson(page.screen);
   results["diagnosis"] = std::move(diagnosis);

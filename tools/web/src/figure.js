@@ -11,6 +11,9 @@ import { viewsOf } from "./views.js";
 
 const kHeight = 320;
 
+/** A polar plot has no axis beside which the unit could stand. */
+const titleOf = ({ form, title, y }) => (form === "angle" && y.unit ? `${title} [${y.unit}]` : title);
+
 function pressed(made, is) {
   made.setAttribute("aria-pressed", String(is));
 }
@@ -65,7 +68,7 @@ class Card {
     tools.append(this.numbersButton(), button("Save", () => this.save(), { title: "Save this picture" }));
     return element(
       "figcaption", {},
-      element("div", {}, element("h3", {}, this.figure.title), this.figure.note ? element("p", { class: "note" }, this.figure.note) : ""),
+      element("div", {}, element("h3", {}, titleOf(this.figure)), this.figure.note ? element("p", { class: "note" }, this.figure.note) : ""),
       tools,
     );
   }

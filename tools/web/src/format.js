@@ -19,7 +19,7 @@ export function measured(value, u, k) {
 }
 
 export function withUnit(text, unit) {
-  return unit ? `${text} ${unit}` : text;
+  return unit ? `${text}${unit === "\u00b0" ? "" : " "}${unit}` : text;
 }
 
 export function axisTitle(axis) {

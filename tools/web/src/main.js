@@ -26,7 +26,17 @@ function header() {
     element("div", { class: "brand" }, element("span", {}, "twinbench"), themeButton()),
     element("h1", {}, page.title),
     page.subtitle ? element("p", { class: "subtitle" }, page.subtitle) : "",
+    tiles(),
     page.verdict ? element("p", { class: `verdict ${page.tone}` }, page.verdict) : "",
+  );
+}
+
+function tiles() {
+  if (!page.tiles?.length) return "";
+  return element(
+    "dl", { class: "tiles" },
+    ...page.tiles.map(({ name, value, note, tone }) =>
+      element("div", { class: `tile ${tone}` }, element("dt", {}, name), element("dd", { class: "value" }, value), note ? element("dd", { class: "note" }, note) : "")),
   );
 }
 

@@ -1,7 +1,7 @@
 // A curve against an angle as a polar plot: zero is a circle, so that errors of both signs can be seen.
 import { band } from "./bands.js";
 import { base, itemStyle, lineStyle } from "./common.js";
-import { axisTitle, number } from "./format.js";
+import { axisTitle, number, withUnit } from "./format.js";
 import { headAt, tipElement, valuesAt } from "./tip.js";
 import { palette } from "./theme.js";
 
@@ -77,7 +77,7 @@ export function polarOption(figure, shown, looks, zoomed = 1) {
     radiusAxis: {
       type: "value", min: inner, max: outer, interval: tick,
       axisLine: { show: false }, axisTick: { show: false },
-      axisLabel: { color: colours.ink, fontSize: 11, formatter: (r) => (Math.abs(r) < tick / 2 ? "0" : Math.abs(Math.abs(r) - outer) < tick / 2 ? number(r) : ""), backgroundColor: colours.paper, padding: [1, 3] },
+      axisLabel: { color: colours.ink, fontSize: 11, formatter: (r) => (Math.abs(r) < tick / 2 ? "0" : Math.abs(Math.abs(r) - outer) < tick / 2 ? withUnit(number(r), figure.y.unit) : ""), backgroundColor: colours.paper, padding: [1, 3] },
       splitLine: { lineStyle: { color: colours.line, opacity: 0.6 } },
     },
     tooltip: {

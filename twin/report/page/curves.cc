@@ -92,7 +92,8 @@ void AddList(const Lists& lists, const json& object, const std::string& key, con
   const std::string path = lists.path + "." + key;
   const auto [name, unit] = NameAndUnit(key);
   const std::string where = FigureOf(object), of = SeriesOf(object);
-  Figure figure{lists.form, PathInWords(lists.path) + ", " + name + (where.empty() ? "" : ", " + where), "", lists.x, {name, unit}, {}};
+  const std::string rest = where.empty() ? "" : ", " + where;
+  Figure figure{lists.form, CurveTitle(lists.path, name) + rest, "", lists.x, {name, unit}, {}, {}, PathInWords(lists.path) + ", " + name + rest};
   FigureSeries series{of.empty() ? "estimate" : of, SeriesRole::kEstimate, x, *y, {}, CoverageOf(lists.results, path)};
   if (const auto u = NumbersAt(object, "u_" + key); u && u->size() == x.size()) series.u = *u;
   Figure& to = FigureFor(figures, figure);
@@ -114,7 +115,7 @@ bool IsCounter(const std::string& key) {
 /// What a reader looks for first: what was under test before what it was compared with, and the turn about its own axis
 /// before its other errors.
 int RankOf(const Figure& figure) {
-  const bool of_reference = figure.title.starts_with("reference") || figure.title.starts_with("multitooth");
+  const bool of_reference = figure.file.starts_with("reference") || figure.file.starts_with("multitooth");
   return 2 * (of_reference ? 1 : 0) + (figure.y.name == "ez" ? 0 : 1);
 }
 
@@ -178,6 +179,23 @@ std::vector<Figure> CurveFigures(const json& results, const json& score) {
     }
   });
   Rank(figures);
+  return figures;
+}
+
+std::vector<Figure> DeviationFigures(const std::vector<Figure>& curves) {
+  std::vector<Figure> figures;
+  for (const Figure& curve : curves) {
+    Figure figure{FigureForm::kLine, "Estimate less truth: " + curve.title, "", curve.x, curve.y, {}, {}, curve.file + ", less truth"};
+    for (std::size_t k = 0; k + 1 < curve.series.size(); ++k) {
+      const FigureSeries &estimate = curve.series[k], &truth = curve.series[k + 1];
+      if (estimate.role != SeriesRole::kEstimate || truth.role != SeriesRole::kTruth) continue;
+      FigureSeries less = estimate;
+      less.name = curve.series.size() > 2 ? estimate.name : "estimate less truth";
+      for (std::size_t i = 0; i < less.y.size(); ++i) less.y[i] -= truth.y[i];
+      figure.series.push_back(std::move(less));
+    }
+    if (!figure.series.empty()) figures.push_back(std::move(figure));
+  }
   return figures;
 }
 

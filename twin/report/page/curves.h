@@ -15,6 +15,9 @@ namespace twinbench::report {
 /// @return a figure a curve, in the order of the file; passes of the same curve in one figure.
 std::vector<Figure> CurveFigures(const nlohmann::json& results, const nlohmann::json& score);
 
+/// What the estimates of these curves are beside their truth, with the same u; a curve without truth has none.
+std::vector<Figure> DeviationFigures(const std::vector<Figure>& curves);
+
 /// Every spectrum: lists beside `order`, and lists of objects that have an `order` each.
 std::vector<Figure> SpectrumFigures(const nlohmann::json& results, const nlohmann::json& score);
 

@@ -15,32 +15,19 @@ namespace {
 
 using nlohmann::json;
 
-std::string ParametersOf(const json& cause) {
-  std::string text;
-  if (!cause.contains("parameters")) return text;
-  for (const auto& [name, p] : cause.at("parameters").items()) {
-    const double u = NumberAt(p, "u");
-    const std::string unit = TextAt(p, "unit");
-    text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", NameAndUnit(name).name, NumberText(NumberAt(p, "value"), u),
-                        std::isfinite(u) ? " ± " + NumberText(u, u) : "", unit == "1" ? "" : " " + unit);
+Figure RankFigure(const json& diagnosis) {
+  const std::vector<CauseGroup> groups = GroupsOf(diagnosis);
+  const bool by_share = std::ranges::any_of(groups, [](const CauseGroup& group) { return std::isfinite(group.share); });
+  Figure figure{FigureForm::kShares, "Causes", by_share ? "ranked by what each explains of the variance beyond noise" : "how probable each is by these readings",
+                {"", ""}, {by_share ? "share of the variance" : "probability", ""}, {}};
+  FigureSeries bars{figure.y.name, SeriesRole::kEstimate, {}, {}, {}};
+  for (const CauseGroup& group : groups) {
+    figure.categories.push_back(group.name);
+    bars.y.push_back(by_share ? group.share : group.probability);
   }
-  return text;
-}
-
-std::string Percent(double share) {
-  return std::isfinite(share) ? fmt::format("{:.3g} %", 100.0 * share) : "";
-}
-
-Figure ProbabilityFigure(const json& diagnosis) {
-  Figure figure{FigureForm::kShares, "Causes", "how probable each is by these readings", {"", ""}, {"probability", ""}, {}};
-  FigureSeries bars{"probability", SeriesRole::kEstimate, {}, {}, {}};
-  for (const json& cause : ListAt(diagnosis, "causes")) {
-    figure.categories.push_back(NameOfCause(cause));
-    bars.y.push_back(NumberAt(cause, "probability"));
-  }
-  const double unknown = diagnosis.contains("unknown") ? NumberAt(diagnosis.at("unknown"), "probability") : 0.0;
+  const double unknown = by_share ? NumberAt(diagnosis.at("plots"), "share_unnamed") : diagnosis.contains("unknown") ? NumberAt(diagnosis.at("unknown"), "probability") : 0.0;
   if (unknown > 0.0) {
-    figure.categories.push_back("something without a name");
+    figure.categories.push_back("unmodelled effect");
     bars.y.push_back(unknown);
   }
   if (!figure.categories.empty()) figure.series.push_back(bars);
@@ -48,14 +35,14 @@ Figure ProbabilityFigure(const json& diagnosis) {
 }
 
 PageTable CauseTable(const json& diagnosis) {
-  PageTable table{"Sizes", {"cause", "size", "probability", "measure next"}, {}};
-  for (const json& cause : ListAt(diagnosis, "causes"))
-    table.rows.push_back({NameOfCause(cause), ParametersOf(cause), Percent(NumberAt(cause, "probability")), TextAt(cause, "next_measurement")});
+  PageTable table{"Sizes", {"cause", "size", "share of the variance", "probability", "measure next"}, {}};
+  for (const CauseGroup& group : GroupsOf(diagnosis))
+    table.rows.push_back({group.name, group.size, Percent(group.share), Percent(group.probability), group.next});
   return table;
 }
 
 PageTable TieTable(const json& diagnosis) {
-  PageTable table{"What looks the same in this run", {"cause", "cannot be told from", "overlap"}, {}};
+  PageTable table{"Indistinguishable in this run (aliased)", {"cause", "indistinguishable from", "overlap"}, {}};
   for (const json& cause : ListAt(diagnosis, "causes")) {
     for (const json& rival : ListAt(cause, "indistinguishable_from"))
       table.rows.push_back({NameOfCause(cause), NameOfCause(rival), NumberText(NumberAt(rival, "overlap"))});
@@ -64,7 +51,7 @@ PageTable TieTable(const json& diagnosis) {
 }
 
 PageTable GainTable(const json& diagnosis) {
-  PageTable table{"What the extension gains on readings that it was not fitted to", {"what", "is", "unit"}, {}};
+  PageTable table{"Held-out improvement: readings that the extension was not fitted to", {"what", "is", "unit"}, {}};
   if (!diagnosis.contains("gain")) return table;
   const json& gain = diagnosis.at("gain");
   for (const auto& [key, spoken] : std::vector<std::pair<std::string, std::string>>{
@@ -93,8 +80,8 @@ PageTable ScreenTable(const json& diagnosis) {
 PageSection CauseSection(const json& diagnosis) {
   PageSection section{"Diagnosis", "", {}};
   const double p = NumberAt(diagnosis, "alarm_p");
-  if (std::isfinite(p)) section.lead = fmt::format("Probability of so large a difference where readings and scenario agree: {:.2g}.", p);
-  if (Figure causes = ProbabilityFigure(diagnosis); !causes.series.empty()) section.blocks.emplace_back(std::move(causes));
+  if (std::isfinite(p)) section.lead = fmt::format("Probability of so large a residual if the scenario were right: {:.2g}.", p);
+  if (Figure causes = RankFigure(diagnosis); !causes.series.empty()) section.blocks.emplace_back(std::move(causes));
   AddFilled(CauseTable(diagnosis), section);
   AddFilled(TieTable(diagnosis), section);
   AddFilled(GainTable(diagnosis), section);
@@ -102,7 +89,7 @@ PageSection CauseSection(const json& diagnosis) {
 }
 
 PageSection ResidualSection(const json& diagnosis) {
-  PageSection section{"Residuals", "What the model leaves of the readings, against each circumstance.", {}};
+  PageSection section{"Residuals", "Readings less what the scenario predicts, against each recorded condition.", {}};
   if (diagnosis.contains("plots")) {
     if (PageChoice choice = ResidualChoice(diagnosis.at("plots")); !choice.figures.empty()) section.blocks.emplace_back(std::move(choice));
   }
@@ -126,11 +113,11 @@ PageVerdict VerdictOf(const json& diagnosis) {
   const std::string words = TextAt(diagnosis, "in_words");
   const VerdictTone tone = verdict == "none" ? VerdictTone::kGood : verdict == "unknown" ? VerdictTone::kBad : VerdictTone::kDoubt;
   if (!words.empty()) return {words.substr(0, words.find('\n')), tone};
-  if (verdict == "none") return {"Readings and scenario agree.", tone};
-  if (verdict == "unknown") return {"Something without a name: " + TextAt(diagnosis.value("unknown", json()), "signature"), tone};
+  if (verdict == "none") return {"Consistent with the scenario.", tone};
+  if (verdict == "unknown") return {"Unmodelled effect: " + TextAt(diagnosis.value("unknown", json()), "signature"), tone};
   std::string names;
   for (const json& cause : ListAt(diagnosis, "causes")) names += (names.empty() ? "" : verdict == "tie" ? " or " : ", ") + NameOfCause(cause);
-  return {(verdict == "tie" ? "One of: " : "Named: ") + names, tone};
+  return {(verdict == "tie" ? "Ambiguous: " : "Cause identified: ") + names, tone};
 }
 
 std::vector<PageSection> DiagnosisSections(const json& diagnosis) {

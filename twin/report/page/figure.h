@@ -43,6 +43,7 @@ struct Figure {
   FigureAxis x, y;
   std::vector<FigureSeries> series;
   std::vector<std::string> categories = {};  // what each bar is, where that is a word
+  std::string file = {};                     // what its picture is called; empty: as its title
 };
 
 struct PageTable {
@@ -96,12 +97,19 @@ struct PageSection {
 /// How the verdict of a page is to be taken.
 enum class VerdictTone { kPlain, kGood, kDoubt, kBad };
 
+/// A number to be seen at a glance.
+struct PageTile {
+  std::string name, value, note = {};
+  VerdictTone tone = VerdictTone::kPlain;
+};
+
 struct Page {
   std::string title;     // of the file and the page
   std::string subtitle;  // one line
   std::string verdict;   // one sentence; empty: there is none
   VerdictTone tone = VerdictTone::kPlain;
   std::vector<PageSection> sections;
+  std::vector<PageTile> tiles = {};
 };
 
 }  // namespace twinbench::report

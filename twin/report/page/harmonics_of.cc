@@ -38,7 +38,7 @@ FigureSeries AmplitudesOf(const FigureSeries& curve) {
 
 std::optional<Figure> HarmonicsOf(const Figure& curve) {
   Figure figure{FigureForm::kBars, curve.title + ": harmonics", "amplitudes of the plotted points",
-                {"order", ""},     {"amplitude", curve.y.unit}, {}};
+                {"order", ""},     {"amplitude", curve.y.unit}, {}, {}, curve.file.empty() ? "" : curve.file + ": harmonics"};
   for (const FigureSeries& series : curve.series) {
     if (GoesRoundInEqualSteps(series)) figure.series.push_back(AmplitudesOf(series));
   }

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string_view>
+#include <utility>
 
 namespace twinbench::report {
 namespace {
@@ -22,6 +24,11 @@ constexpr auto kUnits = std::to_array<WrittenUnit>({{"um_m_K", "um/m/K"}, {"um_m
                                                     {"nm", "nm"},         {"mm", "mm"},       {"pm", "pm"},     {"px", "px"},
                                                     {"mV", "mV"},         {"ns", "ns"},       {"ms", "ms"},     {"V", "V"},
                                                     {"s", "s"},           {"m", "m"}});
+/// What the field calls the parts of a bench and the errors of an axis of rotation (ISO 230-7).
+constexpr auto kNames = std::to_array<std::pair<std::string_view, std::string_view>>(
+    {{"target", "Table under test"}, {"reference", "Reference table"}, {"turntable", "Turntable"}, {"multitooth", "Multi-tooth table"},
+     {"device", "Device under test"}, {"polygon", "Polygon"}, {"encoder", "Encoder"}, {"ez", "index error EZ"}, {"ex", "tilt error EX"},
+     {"ey", "tilt error EY"}, {"dx", "radial error DX"}, {"dy", "radial error DY"}, {"dz", "axial error DZ"}});
 constexpr std::array kPlaces = {"separation.", "results.", "values."};
 
 /// "terms[]" are the terms.
@@ -79,6 +86,35 @@ std::string PathInWords(const std::string& path) {
   }
   std::replace(words.begin(), words.end(), '.', ' ');
   return Spaced(words);
+}
+
+std::string CurveTitle(const std::string& path, const std::string& name) {
+  std::string title, word;
+  std::istringstream words(PathInWords(path) + (name.empty() ? "" : " : " + name));
+  while (words >> word) {
+    if (word == ":") {
+      title += ":";
+      continue;
+    }
+    for (const auto& [key, spoken] : kNames)
+      if (word == key) word = spoken;
+    title += (title.empty() ? "" : " ") + word;
+  }
+  return title;
+}
+
+std::string ShownUnit(const std::string& unit) {
+  if (unit == "deg") return "°";
+  if (unit == "degC") return "°C";
+  std::string shown = unit;
+  for (const std::string_view micro : {"um", "urad", "us", "uV"}) {
+    if (shown == micro || shown.starts_with(std::string(micro) + "/")) shown.replace(0, 1, "µ");
+  }
+  return shown;
+}
+
+std::string AfterNumber(const std::string& shown_unit) {
+  return shown_unit.empty() || shown_unit == "°" ? shown_unit : " " + shown_unit;
 }
 
 std::string NumberText(double value) {

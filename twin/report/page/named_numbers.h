@@ -24,6 +24,16 @@ std::optional<std::vector<double>> NumbersAt(const nlohmann::json& object, const
 /// "separation.target" as a person says it: "target". What only says where in the file it stood is left out.
 std::string PathInWords(const std::string& path);
 
+/// The same with a quantity as the field calls them: "separation.target", "ez" are "Table under test: index error EZ".
+/// @param name  Of the quantity; empty: it is the last word of the path.
+std::string CurveTitle(const std::string& path, const std::string& name);
+
+/// "um" as people read it: "µm".
+std::string ShownUnit(const std::string& unit);
+
+/// A unit as it stands behind a number: all but the degree of an angle keep their distance.
+std::string AfterNumber(const std::string& shown_unit);
+
 /// A number of an object; NaN if it has none of that name.
 double NumberAt(const nlohmann::json& object, const std::string& key);
 

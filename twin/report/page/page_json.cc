@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/core/errors.h"
+#include "twin/report/page/named_numbers.h"
 
 namespace twinbench::report {
 namespace {
@@ -49,7 +50,7 @@ const char* Word(VerdictTone tone) {
 }
 
 Json AxisJson(const FigureAxis& axis) {
-  return {{"name", axis.name}, {"unit", axis.unit}};
+  return {{"name", axis.name}, {"unit", ShownUnit(axis.unit)}};
 }
 
 Json SeriesJson(const FigureSeries& series) {
@@ -85,7 +86,7 @@ Json BlockJson(const PageColumns& columns) {
   Json made = {{"type", "columns"}, {"title", columns.title}, {"note", columns.note}, {"columns", Json::array()},
                {"x", columns.x}, {"y", columns.y}, {"colour", columns.colour}, {"group", columns.group}};
   for (const PageColumns::Column& column : columns.columns)
-    made["columns"].push_back({{"name", column.name}, {"unit", column.unit}, {"values", column.values}});
+    made["columns"].push_back({{"name", column.name}, {"unit", ShownUnit(column.unit)}, {"values", column.values}});
   return made;
 }
 
@@ -124,7 +125,9 @@ std::string WithReplaced(const std::string& text, const std::vector<std::pair<ch
 
 std::string PageJson(const Page& page) {
   Json made = {{"title", page.title}, {"subtitle", page.subtitle}, {"verdict", page.verdict},
-               {"tone", Word(page.tone)}, {"sections", Json::array()}};
+               {"tone", Word(page.tone)}, {"tiles", Json::array()}, {"sections", Json::array()}};
+  for (const PageTile& tile : page.tiles)
+    made["tiles"].push_back({{"name", tile.name}, {"value", tile.value}, {"note", tile.note}, {"tone", Word(tile.tone)}});
   for (const PageSection& section : page.sections) made["sections"].push_back(SectionJson(section));
   // A name that is no UTF-8 must not keep the rest from being shown.
   return made.dump(-1, ' ', false, Json::error_handler_t::replace);

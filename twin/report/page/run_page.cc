@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+#include <cmath>
+
+#include "twin/core/bench_format.h"
 #include "twin/report/page/curves.h"
 #include "twin/report/page/diagnosis_page.h"
 #include "twin/report/page/harmonics_of.h"
 #include "twin/report/page/readings_page.h"
 #include "twin/report/page/tables.h"
+#include "twin/report/page/tiles.h"
 #include "twin/report/page/volumetric.h"
 
 namespace twinbench::report {
@@ -26,10 +31,16 @@ bool HasTruth(const std::vector<Figure>& figures) {
 }
 
 PageSection CurveSection(const std::vector<Figure>& curves) {
-  PageSection section{"Errors",
-                      "Each curve with its expanded uncertainty as a band. Polar: how far from the dashed circle is the error.",
-                      {}};
-  if (HasTruth(curves)) section.lead += " Truth is what the twin injected, as the score compares it: without what the design cannot tell.";
+  PageSection section{"Errors", "Each curve with its expanded uncertainty U as a band. Polar: the distance from the dashed circle is the error.", {}};
+  if (HasTruth(curves)) section.lead += " Truth: the simulated errors, without those orders that the design does not separate.";
+  if (std::vector<Figure> less = DeviationFigures(curves); !less.empty()) {
+    PageChoice choice{"Estimate less truth", "with its expanded uncertainty U", {"of"}, {}, {}};
+    for (Figure& figure : less) {
+      choice.answers.push_back({figure.title.substr(figure.title.find(": ") + 2)});
+      choice.figures.push_back(std::move(figure));
+    }
+    section.blocks.emplace_back(std::move(choice));
+  }
   AddFigures(curves, section);
   return section;
 }
@@ -71,6 +82,27 @@ PageSection BudgetSection(const nlohmann::json& results) {
   return section;
 }
 
+/// What the bench measures, and the run.
+std::string TitleOf(const PageSource& source) {
+  std::string title = source.provenance.bench.empty() ? "" : FormatOf(source.provenance.bench).title;
+  if (title.empty()) return source.name;
+  title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
+  return title + ": " + source.name;
+}
+
+/// "rotary_4dof · simulated, seed 1 · 628 readings in 1:10 h · twinbench 0.9".
+std::string SubtitleOf(const PageSource& source, const std::vector<Reading>& readings) {
+  const Provenance& from = source.provenance;
+  std::string text = from.bench;
+  text += from.source == "twin" ? fmt::format(" · simulated, seed {}", from.seed) : " · " + from.source;
+  if (!from.clock_origin_utc.empty()) text += " · " + from.clock_origin_utc;
+  if (!readings.empty()) {
+    const auto minutes = std::lround(ToSeconds(readings.back().time - readings.front().time) / 60.0);
+    text += fmt::format(" · {} reading{} in {}:{:02} h", readings.size(), readings.size() == 1 ? "" : "s", minutes / 60, minutes % 60);
+  }
+  return from.program_version.empty() ? text : text + " · twinbench " + from.program_version;
+}
+
 }  // namespace
 
 PageSection ProvenanceSection(const PageSource& source) {
@@ -92,9 +124,7 @@ PageSection ProvenanceSection(const PageSource& source) {
 Page RunPage(const PageSource& source, const nlohmann::json& results, const nlohmann::json& score, const std::vector<Reading>& readings,
              const std::vector<PageImage>& images) {
   const std::vector<Figure> curves = CurveFigures(results, score);
-  Page page{source.name, "", "", VerdictTone::kPlain, {}};
-  page.subtitle = source.provenance.bench;
-  if (source.provenance.source == "twin") page.subtitle += ", simulated: the readings are those of the twin";
+  Page page{TitleOf(source), SubtitleOf(source, readings), "", VerdictTone::kPlain, {}, TilesOf(results, score, curves)};
   if (results.contains("diagnosis")) {
     const PageVerdict verdict = VerdictOf(results.at("diagnosis"));
     page.verdict = verdict.text, page.tone = verdict.tone;

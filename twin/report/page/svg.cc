@@ -74,11 +74,12 @@ std::string TickText(double value) {
 }
 
 std::string AxisText(const FigureAxis& axis) {
-  return axis.unit.empty() ? axis.name : axis.name + " [" + axis.unit + "]";
+  return axis.unit.empty() ? axis.name : axis.name + " [" + ShownUnit(axis.unit) + "]";
 }
 
 void DrawHead(const Figure& figure, SvgCanvas& canvas) {
-  canvas.Text(20, 26, figure.title, "start", 15, true);
+  const bool has_axis = figure.form != FigureForm::kAngle || figure.y.unit.empty();
+  canvas.Text(20, 26, has_axis ? figure.title : figure.title + " [" + ShownUnit(figure.y.unit) + "]", "start", 15, true);
   double x = 20.0;
   for (std::size_t k = 0; k < figure.series.size(); ++k) {
     const FigureSeries& series = figure.series[k];
@@ -305,7 +306,7 @@ std::string SvgOf(const Figure& figure) {
 std::vector<std::pair<std::string, std::string>> SvgPictures(const Page& page) {
   std::vector<std::pair<std::string, std::string>> pictures;
   const auto add = [&pictures](const std::string& section, const Figure& figure) {
-    pictures.emplace_back(FileNameOf(section + " " + figure.title) + ".svg", SvgOf(figure));
+    pictures.emplace_back(FileNameOf(section + " " + (figure.file.empty() ? figure.title : figure.file)) + ".svg", SvgOf(figure));
   };
   for (const PageSection& section : page.sections) {
     for (const PageBlock& block : section.blocks) {
