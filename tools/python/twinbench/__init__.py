@@ -13,7 +13,17 @@ none in its name is SI. Wrong input raises InputError with where, what and what 
 BenchError. Long calls let other threads run.
 """
 
-from ._core import BenchError, InputError, __version__
+try:
+    from ._core import BenchError, InputError, __version__
+except ModuleNotFoundError as missing:
+    if missing.name != f"{__name__}._core":
+        raise
+    import sys as _sys
+
+    raise ImportError(
+        "twinbench: {0} has no compiled module for Python {1.major}.{1.minor}; in a clone: tools/quickstart builds it for Debian's Python "
+        "(PYTHONPATH=build/python /usr/bin/python3), `pip install .` for the Python that runs it".format(__path__[0], _sys.version_info)
+    ) from None
 from .benches import AngleBench, RotaryBench, TableState
 from .machines import AxisState, MachineBench
 from .motions import error_motion
