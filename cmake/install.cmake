@@ -32,6 +32,7 @@ if(TARGET twinbench_python)
   install(TARGETS twinbench_python LIBRARY DESTINATION lib/python3/dist-packages/twinbench COMPONENT python)
   install(DIRECTORY tools/python/twinbench DESTINATION lib/python3/dist-packages COMPONENT python
     PATTERN __pycache__ EXCLUDE)
+  install(DIRECTORY scenarios DESTINATION lib/python3/dist-packages/twinbench COMPONENT python)
 endif()
 
 set(CPACK_GENERATOR DEB)

@@ -53,7 +53,7 @@ message(STATUS "twinbench drivers: libiio ${Iio_VERSION}, comedilib ${Comedi_VER
 option(TWINBENCH_PYTHON "Build the Python package, if pybind11 is installed" ON)
 if(TWINBENCH_PYTHON)
   set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Python that the package is for")
-  find_package(Python 3.9 COMPONENTS Interpreter Development.Module Development.Embed)
+  find_package(Python 3.11 COMPONENTS Interpreter Development.Module OPTIONAL_COMPONENTS Development.Embed)
   find_package(pybind11 CONFIG)
 endif()
 if(Python_FOUND AND pybind11_FOUND)
