@@ -8,14 +8,14 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tools/python/answers.h"
 #include "tools/python/follow_class.h"
 #include "tools/python/json_values.h"
 #include "tools/python/own_bench.h"
 #include "tools/python/own_machine.h"
+#include "tools/python/readings.h"
 #include "tools/python/readings_columns.h"
 #include "tools/python/studies.h"
-#include "tools/twinbench/evaluated_run.h"
-#include "tools/twinbench/run_folder.h"
 #include "twin/benches/diagnosis_json.h"
 #include "twin/benches/encoder_comparison/procedure.h"
 #include "twin/benches/evaluated.h"
@@ -184,31 +184,15 @@ void AddFunctions(py::module_& m) {
     }();
     return py::make_tuple(run.readings, ValueOf(run.truth));
   });
-  m.def("load_run", [](const std::string& source, const std::string& scenario) {
-    tools::RecordedRun run = tools::LoadRecordedRun(source, scenario, {});
-    Readings readings{run.scenario.bench, std::move(run.readings)};
-    return py::make_tuple(std::move(run.scenario), std::move(readings));
-  });
   m.def("drive", &Drive, py::arg("bench"), py::arg("scenario"));
   m.def("machine_parts", &PartsForPython, py::arg("scenario"));
   m.def("error_motion", &ErrorMotionOf, py::arg("angle_rad"), py::arg("turns"), py::arg("is_axial"));
-  m.def("evaluate", [](const Scenario& scenario, const Readings& r) {
-    const tools::EvaluatedRun run = [&] {
-      py::gil_scoped_release unlocked;
-      return tools::EvaluatedWithBudget(scenario, r.readings);
-    }();
-    return ValueOf(run.evaluation.results);
-  });
   m.def("separate", [](const Scenario& scenario, const Readings& r, const std::string& estimator) {
     const report::Evaluation evaluation = [&] {
       py::gil_scoped_release unlocked;
       return Separated(scenario, r, estimator);
     }();
     return ValueOf(evaluation.separation);
-  });
-  m.def("score", [](const Scenario& scenario, const Readings& r, const py::object& truth,
-                    const std::string& estimator) {
-    return ValueOf(ScoreOf(scenario, r.readings, JsonOf(truth), EstimatorNamed(estimator)).json);
   });
   m.def("diagnose", [](const Scenario& scenario, const Readings& r, const std::string& model,
                        const std::vector<std::string>& excluded, const std::string& cache_folder) {
@@ -236,5 +220,6 @@ PYBIND11_MODULE(_core, m) {
   AddScenario(m);
   AddReadings(m);
   AddFunctions(m);
+  AddAnswers(m);
   AddStudies(m);
 }

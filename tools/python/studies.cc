@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "tools/python/json_values.h"
+#include "tools/python/readings.h"
 #include "tools/twinbench/bench_means.h"
 #include "tools/twinbench/campaign_table.h"
 #include "tools/twinbench/passing_run.h"

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/passing_run.h"
@@ -41,21 +42,25 @@ std::vector<uncertainty::Figure> FiguresOf(const Scenario& scenario, const std::
 }
 
 void Share(const BudgetOptions& options, JsonAnswer& answer) {
-  const Scenario scenario = LoadScenario(options.scenario, options.overrides);
-  const Bench& bench = BenchOf(scenario);
-  if (!bench.contributions)
-    throw InputError(options.scenario, "nobody has written down what moves the readings of " + scenario.bench,
-                     BenchesWhere([](const Bench& b) { return b.contributions != nullptr; }));
-  const uncertainty::OneAtATime found = uncertainty::RunOneAtATime(
-      scenario, bench.contributions(scenario), [&](const Scenario& s) { return FiguresOf(s, options.figures); });
-  if (found.total.empty())
-    throw InputError("--of " + options.figures, "results.json has no number there",
-                     "a place of results.json, as stability.range");
-  answer.Write(report::ContributionsJson(found));
-  if (!answer.IsOnStdout()) fmt::print("{}", report::WithoutNoNumbers(report::ContributionsText(found)));
+  const Answer found = BudgetOf(LoadScenario(options.scenario, options.overrides), options.scenario, options.figures);
+  answer.Write(found.json);
+  if (!answer.IsOnStdout()) fmt::print("{}", found.text);
 }
 
 }  // namespace
+
+Answer BudgetOf(const Scenario& scenario, const std::string& source, const std::string& figures) {
+  const Bench& bench = BenchOf(scenario);
+  if (!bench.contributions)
+    throw InputError(source, "nobody has written down what moves the readings of " + scenario.bench,
+                     BenchesWhere([](const Bench& b) { return b.contributions != nullptr; }));
+  const uncertainty::OneAtATime found = uncertainty::RunOneAtATime(
+      scenario, bench.contributions(scenario), [&](const Scenario& s) { return FiguresOf(s, figures); });
+  if (found.total.empty())
+    throw InputError("--of " + figures, "results.json has no number there",
+                     "a place of results.json, as stability.range");
+  return {report::ContributionsJson(found), report::WithoutNoNumbers(report::ContributionsText(found))};
+}
 
 void AddBudget(CLI::App& app) {
   auto* command = app.add_subcommand(

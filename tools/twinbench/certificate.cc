@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/overwriting.h"
@@ -62,10 +63,10 @@ Certified CertifiedOf(const RunFolder& folder, const nlohmann::json& results, co
   throw InputError(folder.results(), "nothing in it can be certified" + why, "results with uncertainties that are told apart");
 }
 
-CertificateContent ContentOf(const CertificateOptions& options) {
-  const RunFolder folder{options.run};
+CertificateContent ContentOf(const std::string& run, const std::string& laboratory, const std::string& laboratory_file) {
+  const RunFolder folder{run};
   CertificateContent content;
-  content.laboratory = ReadLaboratory(InputText(options.laboratory, "what new --laboratory writes"), options.laboratory);
+  content.laboratory = ReadLaboratory(laboratory, laboratory_file);
   const auto record = RunRecord::Open(folder.path);
   if (!record->finished()) throw InputError(folder.record(), "the run is not finished", "a complete run");
   const twinbench::Provenance provenance = record->provenance();
@@ -79,10 +80,10 @@ CertificateContent ContentOf(const CertificateOptions& options) {
   content.readings_from = provenance.source, content.recorded_by = provenance.program_version;
   content.program_version = TWINBENCH_VERSION;
   content.simulated = IsSimulated(provenance, content.laboratory);
-  content.temperature = TemperatureOf(record->Readings(), content.laboratory, options.laboratory);
+  content.temperature = TemperatureOf(record->Readings(), content.laboratory, laboratory_file);
   for (const std::string& file : {folder.results(), folder.scenario(), folder.record()})
     content.digests.emplace_back(std::filesystem::path(file).filename().string(), Sha256(BytesOfFile(file)));
-  RequireTraceability(content, options.laboratory);
+  RequireTraceability(content, laboratory_file);
   return content;
 }
 
@@ -95,8 +96,8 @@ void Write(const std::string& path, const std::string& text, const std::string& 
   fmt::print("{}: {}\n", path, what);
 }
 
-nlohmann::json ToldJson(const CertificateContent& content, const std::string& output) {
-  nlohmann::json json = {{"certificate", output}, {"simulated", content.simulated}, {"certified", nlohmann::json::array()}, {"left_out", nlohmann::json::array()}};
+nlohmann::json ToldJson(const CertificateContent& content) {
+  nlohmann::json json = {{"simulated", content.simulated}, {"certified", nlohmann::json::array()}, {"left_out", nlohmann::json::array()}};
   for (const CertifiedQuantity& one : content.certified.quantities)
     json["certified"].push_back({{"title", one.title}, {"norm", one.norm}, {"values", one.values.size()}, {"unit", one.unit}, {"note", one.note}});
   for (const LeftOut& one : content.certified.left_out) json["left_out"].push_back({{"what", one.what}, {"why", one.why}});
@@ -123,18 +124,24 @@ void MakeCertificate(const CertificateOptions& options, JsonAnswer& answer) {
   const std::vector<std::string> inputs = {options.laboratory, RunFolder{options.run}.results(), RunFolder{options.run}.scenario()};
   RequireOutput(answer.to(), inputs);
   RequireFree(options.output, inputs, options.force);
-  const CertificateContent content = ContentOf(options);
-  const std::string xml = CertificateXml(content);
-  if (!options.schema.empty() && !SatisfiesSchema(xml, options.schema))
+  const std::string laboratory = InputText(options.laboratory, "what new --laboratory writes");
+  Answer made = CertificateOf(options.run, laboratory, options.laboratory);
+  if (!options.schema.empty() && !SatisfiesSchema(made.text, options.schema))
     throw InputError(options.output, "the certificate does not satisfy " + options.schema + "/dcc.xsd; nothing was written", "what xmllint says above");
-  const std::size_t left_out = content.certified.left_out.size();
-  Write(options.output, xml,
-        fmt::format("{} results certified{}{}", content.certified.quantities.size(), left_out ? fmt::format(", {} left out and named", left_out) : "",
-                    content.simulated ? "; SIMULATED, which it says" : ""));
-  answer.Write(ToldJson(content, options.output));
+  const std::size_t left_out = made.json.at("left_out").size();
+  Write(options.output, made.text,
+        fmt::format("{} results certified{}{}", made.json.at("certified").size(), left_out ? fmt::format(", {} left out and named", left_out) : "",
+                    made.json.at("simulated").get<bool>() ? "; SIMULATED, which it says" : ""));
+  made.json["certificate"] = options.output;
+  answer.Write(made.json);
 }
 
 }  // namespace
+
+Answer CertificateOf(const std::string& run, const std::string& laboratory, const std::string& laboratory_file) {
+  const CertificateContent content = ContentOf(run, laboratory, laboratory_file);
+  return {ToldJson(content), CertificateXml(content)};
+}
 
 void AddCertificate(CLI::App& app) {
   auto* command = app.add_subcommand("certificate", "Write a run's results as a digital calibration certificate (DCC 3.3.0, XML)");

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
@@ -15,15 +16,12 @@
 namespace twinbench::tools {
 namespace {
 
-struct CompensateOptions {
-  std::string source, scenario, table, check, form = "plain", axis = "C";
+struct CompensateOptions : CompensationWish {
+  std::string source, scenario, table, check;
   std::vector<std::string> overrides;
-  separate::CompensationOptions how;
 };
 
-separate::IndexErrors ErrorsOf(const std::string& source, const std::string& scenario,
-                               const std::vector<std::string>& overrides) {
-  const RecordedRun run = LoadPlausibleRun(source, scenario, overrides);
+separate::IndexErrors ErrorsOf(const RecordedRun& run, const std::string& source) {
   const Bench& bench = BenchOf(run.scenario);
   if (!bench.index_errors)
     throw InputError(source, "the bench " + run.scenario.bench + " has no table that could be compensated",
@@ -32,29 +30,22 @@ separate::IndexErrors ErrorsOf(const std::string& source, const std::string& sce
 }
 
 /// As many entries as a controller takes, where nobody said how many.
-int PointsFor(const CompensateOptions& options) {
-  const int most = report::ControllerFormNamed(options.form).most_points;
-  return options.how.points == 0 && most > 0 ? most - 1 : options.how.points;
+int PointsFor(const CompensationWish& wish) {
+  const int most = report::ControllerFormNamed(wish.form).most_points;
+  return wish.how.points == 0 && most > 0 ? most - 1 : wish.how.points;
 }
 
 void Compensate(const CompensateOptions& options, JsonAnswer& answer) {
   for (const std::string& output : {options.table, answer.to()})
     RequireOutput(output, {options.source, options.scenario, options.check});
-  separate::CompensationOptions how = options.how;
-  how.points = PointsFor(options);
-  const separate::IndexErrors errors = ErrorsOf(options.source, options.scenario, options.overrides);
-  const separate::Compensation compensation = separate::Compensate(errors, how);
-  std::optional<separate::CompensationCheck> check;
-  if (!options.check.empty())
-    check = separate::CheckCompensation(errors, compensation, ErrorsOf(options.check, "", {}));
-  if (!options.table.empty())
-    WriteFileAtOnce(options.table,
-                    report::ControllerTable(options.form, compensation.table, options.axis,
-                                            report::CompensationComments(compensation, options.source)));
-  answer.Write(report::CompensationJson(errors, compensation, check ? &*check : nullptr));
-  if (answer.IsOnStdout()) return;
-  fmt::print("{}", report::WithoutNoNumbers(report::CompensationText(errors, compensation)));
-  if (check) fmt::print("{}", report::WithoutNoNumbers(report::CompensationCheckText(*check)));
+  PointsFor(options);  // a form that is not known is said first
+  const RecordedRun run = LoadPlausibleRun(options.source, options.scenario, options.overrides);
+  std::optional<RecordedRun> check;
+  if (!options.check.empty()) check = LoadPlausibleRun(options.check, "", {});
+  const CompensationMade made = CompensationOf(run, options.source, options, check ? &*check : nullptr, options.check);
+  if (!options.table.empty()) WriteFileAtOnce(options.table, made.table);
+  answer.Write(made.json);
+  if (!answer.IsOnStdout()) fmt::print("{}", made.text);
 }
 
 std::string FormsText() {
@@ -66,6 +57,22 @@ std::string FormsText() {
 }
 
 }  // namespace
+
+CompensationMade CompensationOf(const RecordedRun& run, const std::string& source, const CompensationWish& wish, const RecordedRun* check,
+                                const std::string& check_source) {
+  separate::CompensationOptions how = wish.how;
+  how.points = PointsFor(wish);
+  const separate::IndexErrors errors = ErrorsOf(run, source);
+  const separate::Compensation compensation = separate::Compensate(errors, how);
+  std::optional<separate::CompensationCheck> checked;
+  if (check) checked = separate::CheckCompensation(errors, compensation, ErrorsOf(*check, check_source));
+  CompensationMade made;
+  made.json = report::CompensationJson(errors, compensation, checked ? &*checked : nullptr);
+  made.text = report::WithoutNoNumbers(report::CompensationText(errors, compensation));
+  if (checked) made.text += report::WithoutNoNumbers(report::CompensationCheckText(*checked));
+  made.table = report::ControllerTable(wish.form, compensation.table, wish.axis, report::CompensationComments(compensation, source));
+  return made;
+}
 
 void AddCompensate(CLI::App& app) {
   auto* command = app.add_subcommand(

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/evaluated_run.h"
@@ -21,19 +22,9 @@
 namespace twinbench::tools {
 namespace {
 
-struct ImportOptions {
-  std::vector<std::string> files;
-  std::string scenario, folder, map;
-  std::vector<std::string> overrides, columns;
-  int most_readings = 0;
+struct ImportOptions : ImportWish {
+  std::string folder;
   bool look = false;
-};
-
-/// Readings, with the scenario that describes their bench.
-struct Taken {
-  Scenario scenario;
-  std::vector<Reading> readings;
-  std::string story;  // how they were understood; empty of a readings.csv
 };
 
 /// The bench of a file whose first line has every column that readings.csv must have; empty if it is no such file.
@@ -59,13 +50,13 @@ std::string BenchOfReadingsCsv(const std::string& path) {
 
 /// A file that is taken as it is: one that comes with its scenario, or that has every column a bench wants.
 /// @return its bench; empty if it is to be understood first.
-std::string TakenAsItIs(const ImportOptions& options) {
+std::string TakenAsItIs(const ImportWish& options) {
   if (options.files.size() != 1 || !options.map.empty() || !options.columns.empty()) return "";
   if (!options.scenario.empty()) return BenchOfScenarioFile(options.scenario);
   return BenchOfReadingsCsv(options.files.front());
 }
 
-Scenario UsualScenario(const std::string& bench, const ImportOptions& options,
+Scenario UsualScenario(const std::string& bench, const ImportWish& options,
                        const std::vector<std::string>& set) {
   const std::string title = "imported from " + std::filesystem::path(options.files.front()).filename().string();
   std::string quoted;
@@ -74,15 +65,15 @@ Scenario UsualScenario(const std::string& bench, const ImportOptions& options,
 }
 
 /// A readings.csv as formats.md has it, read to the bit.
-Taken TakeReadings(const ImportOptions& options, const std::string& bench) {
-  Taken taken;
+Imported TakeReadings(const ImportWish& options, const std::string& bench) {
+  Imported taken;
   taken.scenario = options.scenario.empty() ? UsualScenario(bench, options, options.overrides)
                                             : LoadScenario(options.scenario, options.overrides);
   taken.readings = ReadReadingsCsv(options.files.front(), taken.scenario.bench);
   return taken;
 }
 
-imports::Map MapOf(const ImportOptions& options) {
+imports::Map MapOf(const ImportWish& options) {
   imports::Map map = imports::LoadMap(options.map);
   if (map.bench.empty() && !options.scenario.empty()) map.bench = BenchOfScenarioFile(options.scenario);
   for (const std::string& column : options.columns) imports::SetColumn(column, map);
@@ -91,33 +82,25 @@ imports::Map MapOf(const ImportOptions& options) {
 }
 
 /// The bench's usual scenario with what the recording says about the course, or the one that is given.
-Scenario ScenarioOf(const ImportOptions& options, const imports::Imported& imported) {
+Scenario ScenarioOf(const ImportWish& options, const imports::Imported& imported) {
   std::vector<std::string> set = imported.set;
   set.insert(set.end(), options.overrides.begin(), options.overrides.end());
   if (!options.scenario.empty()) return LoadScenario(options.scenario, set);
   return UsualScenario(imported.bench, options, set);
 }
 
-Taken TakeAnything(const ImportOptions& options) {
+Imported TakeAnything(const ImportWish& options) {
   imports::Imported imported = imports::Import(options.files, MapOf(options));
-  return {ScenarioOf(options, imported), std::move(imported.readings), std::move(imported.story)};
+  return {{ScenarioOf(options, imported), std::move(imported.readings)}, std::move(imported.story)};
 }
 
-void Write(const Taken& taken, const ImportOptions& options, JsonAnswer& answer) {
+void Write(const Imported& taken, const ImportOptions& options, JsonAnswer& answer) {
   fmt::print("{}", taken.story);
   const std::vector<std::string> doubts = TellDoubts(taken.readings, taken.scenario, options.files.front());
   // Evaluated first: a file that cannot be evaluated leaves no folder behind.
   const EvaluatedRun run = EvaluatedWithBudget(taken.scenario, taken.readings);
   const RunFolder folder{options.folder};
-  RequireRoomFor(folder, taken.scenario);
-  {
-    const auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, "import: " + options.files.front(),
-                                                        taken.scenario.seed, "", taken.scenario.bench});
-    record->WriteBeside(kScenarioFile, WriteScenario(taken.scenario));
-    record->AppendAll(taken.readings);
-    record->Finish();
-    record->WriteBeside(kResultsFile, JsonText(run.evaluation.results));
-  }
+  WriteRun(folder, "import: " + options.files.front(), taken, run.evaluation.results, nullptr);
   if (!taken.story.empty()) WriteFileAtOnce(folder.path + "/import.txt", taken.story);
   fmt::print("{}", run.text);
   nlohmann::json json = RunJson(folder, taken.scenario, taken.readings, run);
@@ -140,11 +123,15 @@ void Import(const ImportOptions& options, JsonAnswer& answer) {
   if (options.folder.empty())
     throw InputError("-o", "it is not said where the run goes",
                      "-o FOLDER, or --look to see what would be imported");
-  const std::string bench = TakenAsItIs(options);
-  Write(bench.empty() ? TakeAnything(options) : TakeReadings(options, bench), options, answer);
+  Write(ImportedFrom(options), options, answer);
 }
 
 }  // namespace
+
+Imported ImportedFrom(const ImportWish& wish) {
+  const std::string bench = TakenAsItIs(wish);
+  return bench.empty() ? TakeAnything(wish) : TakeReadings(wish, bench);
+}
 
 void AddImport(CLI::App& app) {
   auto* command = app.add_subcommand("import", "Make a run folder from anybody's recording or readings.csv");

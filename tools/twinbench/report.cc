@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/reported.h"
@@ -40,10 +41,20 @@ std::string OutputOf(const ReportOptions& options) {
   return options.output.empty() ? UsualPagePath(options.source) : options.output;
 }
 
+void RequirePages() {
+  if (web::PageMarkup().empty())
+    throw InputError("report", "this program was built without pages",
+                     "--svg DIR, or a program that was built where npm is installed, without -DTWINBENCH_REPORT=OFF");
+}
+
+/// The page, once it is known to have a place.
+std::string HtmlFor(const report::Page& page, const ReportOptions& options) {
+  RequireFree(OutputOf(options), {options.source, options.score, RunFolder{options.source}.results()}, options.force, kOwnPage);
+  return report::PageHtml(page, web::PageMarkup());
+}
+
 void WritePage(const report::Page& page, const ReportOptions& options) {
-  const std::string output = OutputOf(options);
-  RequireFree(output, {options.source, options.score, RunFolder{options.source}.results()}, options.force, kOwnPage);
-  const std::string html = report::PageHtml(page, web::PageMarkup());
+  const std::string output = OutputOf(options), html = HtmlFor(page, options);
   if (output == "-") {
     fmt::print("{}", html);
   } else {
@@ -56,9 +67,7 @@ void MakeReport(const ReportOptions& options, JsonAnswer& answer) {
   RequireOutput(answer.to(), {options.source, options.score, RunFolder{options.source}.results()});
   if (options.output == "-" && answer.IsOnStdout()) throw InputError("report", "page and --json both go to stdout", "-o FILE, or --json FILE");
   const bool wants_page = options.pictures.empty() || !options.output.empty();
-  if (wants_page && web::PageMarkup().empty())
-    throw InputError("report", "this program was built without pages",
-                     "--svg DIR, or a program that was built where npm is installed, without -DTWINBENCH_REPORT=OFF");
+  if (wants_page) RequirePages();
   const report::Page page = PageOf(options.source, options.score);
   nlohmann::json json = {{"source", options.source}};
   if (!options.pictures.empty()) json["pictures"] = {{"folder", options.pictures}, {"files", WritePictures(page, options.pictures)}};
@@ -70,6 +79,11 @@ void MakeReport(const ReportOptions& options, JsonAnswer& answer) {
 }
 
 }  // namespace
+
+void WriteReport(const std::string& source, const std::string& score, const std::string& output) {
+  RequirePages();
+  WriteFileAtOnce(output, HtmlFor(PageOf(source, score), {source, score, output, ""}));
+}
 
 void AddReport(CLI::App& app) {
   auto* command = app.add_subcommand(

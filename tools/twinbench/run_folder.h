@@ -58,4 +58,10 @@ struct RecordedRun {
 RecordedRun LoadRecordedRun(const std::string& source, const std::string& scenario_path,
                             const std::vector<std::string>& overrides);
 
+/// A finished run of readings that are there: scenario.toml, record and results.json.
+/// @param truth  Beside it; null: nobody knows it.
+/// @throws InputError if the folder holds a run.
+void WriteRun(const RunFolder& folder, const std::string& readings_from, const RecordedRun& run, const nlohmann::json& results,
+              const nlohmann::json& truth);
+
 }  // namespace twinbench::tools

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
@@ -21,13 +22,6 @@ struct ScoreOptions {
   bool positions = false;
 };
 
-/// The score with every number beside its truth: pages of results take truth from here.
-nlohmann::json WithValues(const report::ScoredRun& score) {
-  nlohmann::json json = score.json;
-  if (!score.values.empty()) json["values"] = report::ScoredValuesJson(score.values);
-  return json;
-}
-
 void PrintScore(const ScoreOptions& options, JsonAnswer& answer) {
   const RunFolder folder{options.folder};
   RequireOutput(answer.to(), {folder.truth(), folder.scenario()});
@@ -40,13 +34,19 @@ void PrintScore(const ScoreOptions& options, JsonAnswer& answer) {
   const RecordedRun run = LoadPlausibleRun(folder.path, "", {});
   const report::ScoredRun score =
       ScoreOf(run.scenario, run.readings, truth, EstimatorNamed(options.estimator));
-  answer.Write(WithValues(score));
+  answer.Write(ScoreJson(score));
   if (answer.IsOnStdout()) return;
   if (options.positions) fmt::print("{}\n", score.positions);
   fmt::print("{}", score.text);
 }
 
 }  // namespace
+
+nlohmann::json ScoreJson(const report::ScoredRun& score) {
+  nlohmann::json json = score.json;
+  if (!score.values.empty()) json["values"] = report::ScoredValuesJson(score.values);  // pages of results take truth from here
+  return json;
+}
 
 void AddScore(CLI::App& app) {
   auto* command = app.add_subcommand("score", "Compare a run of the twin with its truth");

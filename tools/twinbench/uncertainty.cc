@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
@@ -46,28 +47,34 @@ std::vector<uncertainty::Joint> JointsOf(const RecordedRun& run, const std::stri
 void State(const UncertaintyOptions& options, JsonAnswer& answer) {
   RequireOutput(answer.to(), {options.source, options.scenario});
   const RecordedRun run = LoadPlausibleRun(options.source, options.scenario, options.overrides);
-  const uncertainty::Evaluate evaluate = EvaluationOf(run, options.estimator);
-  const std::vector<uncertainty::Budget> budgets = uncertainty::Budgets(run.scenario, evaluate);
-  if (budgets.empty())
-    throw InputError(options.source, "the readings come to no result with an uncertainty", "a run that separates");
-  const std::vector<uncertainty::Joint> stated = JointsOf(run, options.estimator, budgets);
-  std::vector<uncertainty::Joint> joints;
-  for (const uncertainty::Joint& joint : stated) joints.push_back(Combined(joint, budgets));
-  uncertainty::MonteCarlo trials;
-  if (options.monte_carlo) {
-    uncertainty::MonteCarloOptions how = options.trials;
-    how.joints = stated;
-    trials = uncertainty::Propagate(run.scenario, evaluate, how);
-  }
-  const uncertainty::MonteCarlo* const drawn = options.monte_carlo ? &trials : nullptr;
-  answer.Write(report::BudgetJson(budgets, joints, drawn));
-  if (answer.IsOnStdout()) return;
-  if (run.scenario.uncertainties.empty())
-    fmt::print("The scenario states no u_<key> (u_wavelength_nm = 0.01): only what the readings say counts.\n\n");
-  fmt::print("{}", report::WithoutNoNumbers(report::BudgetText(budgets, joints, drawn)));
+  const Answer stated = UncertaintyOf(run, options.source, options.estimator, options.monte_carlo ? &options.trials : nullptr);
+  answer.Write(stated.json);
+  if (!answer.IsOnStdout()) fmt::print("{}", stated.text);
 }
 
 }  // namespace
+
+Answer UncertaintyOf(const RecordedRun& run, const std::string& source, const std::string& estimator, const uncertainty::MonteCarloOptions* how) {
+  const uncertainty::Evaluate evaluate = EvaluationOf(run, estimator);
+  const std::vector<uncertainty::Budget> budgets = uncertainty::Budgets(run.scenario, evaluate);
+  if (budgets.empty())
+    throw InputError(source, "the readings come to no result with an uncertainty", "a run that separates");
+  const std::vector<uncertainty::Joint> stated = JointsOf(run, estimator, budgets);
+  std::vector<uncertainty::Joint> joints;
+  for (const uncertainty::Joint& joint : stated) joints.push_back(Combined(joint, budgets));
+  uncertainty::MonteCarlo trials;
+  if (how) {
+    uncertainty::MonteCarloOptions with_joints = *how;
+    with_joints.joints = stated;
+    trials = uncertainty::Propagate(run.scenario, evaluate, with_joints);
+  }
+  const uncertainty::MonteCarlo* const drawn = how ? &trials : nullptr;
+  Answer answer{report::BudgetJson(budgets, joints, drawn), ""};
+  if (run.scenario.uncertainties.empty())
+    answer.text = "The scenario states no u_<key> (u_wavelength_nm = 0.01): only what the readings say counts.\n\n";
+  answer.text += report::WithoutNoNumbers(report::BudgetText(budgets, joints, drawn));
+  return answer;
+}
 
 void AddUncertainty(CLI::App& app) {
   auto* command = app.add_subcommand(

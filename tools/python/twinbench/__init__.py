@@ -2,11 +2,11 @@
 
     import twinbench as tb
 
-    scenario = tb.Scenario("scenarios/rotary_4dof.toml", {"procedure.positions": 12})
-    run = tb.run(scenario)                        # on the twin
+    run = tb.run("scenarios/rotary_4dof.toml")    # simulated; tb.SCENARIOS is the folder of those that come with the package
     run.readings["target_deg"]                    # a numpy array; run.readings.frame(): pandas
     run.results["separation"]["target"]           # as in results.json
-    tb.diagnose(scenario, run.readings)["verdict"]
+    tb.diagnose(run.scenario, run.readings)["verdict"]
+    tb.report(run, "page.html")
 
 Everything is what the command line does, to the same bits. Angles and lengths carry their unit in their name; what has
 none in its name is SI. Wrong input raises InputError with where, what and what was expected; a failing bench raises
@@ -28,12 +28,15 @@ from .benches import AngleBench, RotaryBench, TableState
 from .machines import AxisState, MachineBench
 from .motions import error_motion
 from .readings import Readings
-from .run import Diagnosis, Follow, Run, diagnose, drive, frame, load, run, score, separate
-from .scenario import Scenario
+from .results import Budget, Certificate, Compensation, Uncertainty, budget, certificate, compensate, report, uncertainty
+from .run import Diagnosis, Follow, Run, diagnose, drive, frame, import_recording, load, run, score, separate
+from .scenario import SCENARIOS, Scenario
+from .shown import Results
 from .studies import Campaign, Investigation, Plan, campaign, investigate, plan
 
 __all__ = [
-    "AngleBench", "AxisState", "BenchError", "Campaign", "Diagnosis", "Follow", "InputError", "Investigation", "MachineBench", "Plan", "Readings", "RotaryBench",
-    "Run", "Scenario", "TableState", "__version__", "campaign", "diagnose", "drive", "error_motion", "frame", "investigate", "load", "plan", "run", "score",
-    "separate",
+    "AngleBench", "AxisState", "BenchError", "Budget", "Campaign", "Certificate", "Compensation", "Diagnosis", "Follow", "InputError", "Investigation",
+    "MachineBench", "Plan", "Readings", "Results", "RotaryBench", "Run", "SCENARIOS", "Scenario", "TableState", "Uncertainty", "__version__", "budget",
+    "campaign", "certificate", "compensate", "diagnose", "drive", "error_motion", "frame", "import_recording", "investigate", "load", "plan", "report", "run",
+    "score", "separate", "uncertainty",
 ]

@@ -6,17 +6,10 @@ import os
 from typing import TYPE_CHECKING
 
 from . import _core
+from .units import unit_of
 
 if TYPE_CHECKING:
     from .readings import Readings
-
-_UNITS = ("arcsec", "degC", "deg", "rad", "mm", "um", "nm", "V", "s", "K", "mT", "percent")
-
-
-def unit_of(column: str) -> str | None:
-    """The unit at the end of a column's name: "time_s" is in s. None: it has none."""
-    ending = column.rsplit("_", 1)[-1]
-    return ending if "_" in column and ending in _UNITS else None
 
 
 def write(readings: Readings, path: str | os.PathLike) -> None:

@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from . import _core
-from .nexus import unit_of
+from .units import unit_of
 
 if TYPE_CHECKING:
     from .readings import Readings

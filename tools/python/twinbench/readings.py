@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Mapping
 
 import numpy as np
 
-from . import _core
+from . import _core, shown
+from .units import frame_of
 
 if TYPE_CHECKING:
     import pandas
@@ -71,10 +72,8 @@ class Readings(Mapping):
         return Readings.from_columns({**self._columns, **columns}, self.bench)
 
     def frame(self) -> pandas.DataFrame:
-        """All columns as a pandas frame."""
-        import pandas
-
-        return pandas.DataFrame(self._columns)
+        """All columns as a pandas frame, a row a reading; ``frame.attrs["units"]`` has their units."""
+        return frame_of(self._columns)
 
     def to_csv(self, path: str | os.PathLike) -> None:
         """Writes readings.csv, as `twinbench export` does."""
@@ -101,6 +100,9 @@ class Readings(Mapping):
 
     def __repr__(self) -> str:
         return f"<twinbench.Readings of {self.bench}: {self.count} readings, {len(self)} columns>"
+
+    def _repr_html_(self) -> str:
+        return shown.text(f"{self.count} readings of {self.bench}") + shown.columns(self.items())
 
 
 def _cell(value: Any) -> str:

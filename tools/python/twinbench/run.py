@@ -3,50 +3,127 @@
 from __future__ import annotations
 
 import os
+import pathlib
+import warnings
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Iterable, Mapping
 
 import numpy as np
 
-from . import _core
+from . import _core, shown
 from .readings import Readings
-from .scenario import Scenario
+from .scenario import Scenario, overrides
+from .units import frame_of
 
 if TYPE_CHECKING:
     import pandas
 
 
 class Run:
-    """A scenario and its readings."""
+    """A scenario and its readings.
 
-    def __init__(self, scenario: Scenario, readings: Readings, truth: dict[str, Any] | None = None):
+    truth: what was injected (truth.json); None where nobody knows. readings_from: what the record says of them, "twin",
+    "python", "import: file". folder: where `save` has put it; None: nowhere. story: how a recording was understood.
+    """
+
+    def __init__(self, scenario: Scenario, readings: Readings, truth: dict[str, Any] | None = None, readings_from: str = "python"):
         self.scenario = scenario
         self.readings = readings
-        self.truth = truth  # what was injected (truth.json); None where nobody knows
+        self.truth = truth
+        self.readings_from = readings_from
+        self.folder: str | None = None
+        self.story = ""
+
+    @classmethod
+    def open(cls, folder: str | os.PathLike) -> Run:
+        """A run's folder, with its truth where there is one."""
+        opened = load(folder)
+        opened.truth = _core.truth_of(opened.folder)
+        return opened
+
+    def save(self, folder: str | os.PathLike) -> Run:
+        """Writes the folder that `twinbench run -o` or `import -o` leaves: scenario, record, results, tables and the truth, if it is known.
+
+        The record has the readings, not the raw samples and device calls behind them. Raises InputError if the folder holds a run.
+        """
+        folder = os.fspath(folder)
+        _core.save_run(folder, self.readings_from, self.scenario._core, self.readings._core, self.truth)
+        if self.story:
+            pathlib.Path(folder, "import.txt").write_text(self.story, encoding="utf-8")
+        self.folder = folder
+        return self
 
     @cached_property
-    def results(self) -> dict[str, Any]:
-        """results.json: lists of numbers are arrays."""
-        return _core.evaluate(self.scenario._core, self.readings._core)
+    def _evaluated(self) -> shown.Results:
+        return shown.Results(*_core.evaluate(self.scenario._core, self.readings._core))
+
+    @property
+    def results(self) -> shown.Results:
+        """results.json: lists of numbers are arrays, units at the ends of names. Evaluated when it is asked for first."""
+        return self._evaluated
+
+    @property
+    def summary(self) -> str:
+        """What `twinbench run` prints of the results."""
+        return self._evaluated.summary
 
     def __repr__(self) -> str:
-        return f"<twinbench.Run of {self.scenario!r}: {self.readings.count} readings>"
+        return f"<twinbench.Run {self.scenario.bench}: {self.scenario.title!r}, {self.readings.count} readings>"
+
+    def _repr_html_(self) -> str:
+        ok = sum(status == "ok" for status in self.readings["status"])
+        about = f"{self.scenario.title}\n{self.scenario.bench}, seed {self.scenario.seed}: {self.readings.count} readings, {ok} ok"
+        return shown.text(f"{about}\n\n{self.summary}" if "_evaluated" in vars(self) else about)
 
 
-def run(scenario: Scenario) -> Run:
-    """Carries a scenario out on the twin, in memory. Same seed, same bits."""
+def run(scenario: Scenario | str | os.PathLike) -> Run:
+    """Simulates a scenario, or that of a TOML file, in memory. Same seed, same bits."""
+    scenario = Scenario.of(scenario)
     readings, truth = _core.run_twin(scenario._core)
-    return Run(scenario, Readings(readings), truth)
+    return Run(scenario, Readings(readings), truth, "twin")
 
 
 def load(source: str | os.PathLike, scenario: str | os.PathLike = "") -> Run:
-    """A run's folder, or a readings.csv with its scenario. The truth is not opened."""
-    loaded, readings = _core.load_run(os.fspath(source), os.fspath(scenario))
-    return Run(Scenario._of(loaded), Readings(readings))
+    """A run's folder, or a readings.csv with its scenario. The truth is not opened (`Run.open` does)."""
+    loaded, readings, readings_from = _core.load_run(os.fspath(source), os.fspath(scenario))
+    opened = Run(Scenario._of(loaded), Readings(readings), None, readings_from)
+    opened.folder = os.fspath(source) if os.path.isdir(source) else None
+    return opened
+
+
+def import_recording(
+    files: str | os.PathLike | Iterable[str | os.PathLike],
+    map: str | os.PathLike = "",
+    scenario: str | os.PathLike = "",
+    columns: Mapping[str, str] | None = None,
+    changes: Mapping[str, Any] | None = None,
+    most_readings: int = 0,
+) -> Run:
+    """Imports a recording: readings.csv, or files of any layout, as `twinbench import` does (docs/import.md).
+
+    map: a ready map ("iso230") or a TOML file that says what the files do not. scenario: the bench's TOML file; left out: its usual one.
+    columns: {"reference_deg": "Axis 1.ActPos"}. changes: keys of the scenario. most_readings: longer recordings are averaged in blocks, 0:
+    none. ``run.story`` says how the files were understood; what speaks against the readings is a warning, and InputError if no result of
+    theirs can be trusted.
+    """
+    paths = [files] if isinstance(files, (str, os.PathLike)) else list(files)
+    loaded, readings, story = _core.import_recording(
+        [os.fspath(path) for path in paths], os.fspath(scenario), os.fspath(map), overrides(changes or {}),
+        [f"{name}={column}" for name, column in (columns or {}).items()], most_readings)
+    imported = Run(Scenario._of(loaded), Readings(readings), None, f"import: {os.fspath(paths[0])}")
+    imported.story = story
+    warn_of(imported)
+    return imported
+
+
+def warn_of(run: Run) -> None:
+    """What speaks against the readings, as warnings. Raises InputError if no result from them can be trusted."""
+    for line in _core.doubts(run.scenario._core, run.readings._core):
+        warnings.warn(line, stacklevel=3)
 
 
 def drive(bench: Any, scenario: Scenario) -> Run:
-    """Carries a scenario's procedure out on a bench of one's own: a RotaryBench, a MachineBench or an AngleBench.
+    """Runs a scenario's procedure on a bench of one's own: a RotaryBench, a MachineBench or an AngleBench.
 
     Raises BenchError with what the bench raised. A lost reading has its status; a failing device is tried again as
     on real hardware.
@@ -54,23 +131,24 @@ def drive(bench: Any, scenario: Scenario) -> Run:
     return Run(scenario, Readings(_core.drive(bench, scenario._core)))
 
 
-def separate(scenario: Scenario, readings: Readings, estimator: str = "rigorous") -> dict[str, Any]:
-    """separation.json: the errors of what was measured and of what it was measured with.
+def separate(scenario: Scenario, readings: Readings, estimator: str = "rigorous") -> shown.Answer:
+    """separation.json: the errors of what was measured and of what it was measured with, arrays by position.
 
-    estimator: "rigorous", or "published" for the paper's own equations. Raises InputError if the readings show no errors.
+    estimator: "rigorous" (weighted least squares, exact model), or "published" for the paper's equations. Raises InputError if the
+    readings show no errors.
     """
-    return _core.separate(scenario._core, readings._core, estimator)
+    return shown.Answer(_core.separate(scenario._core, readings._core, estimator))
 
 
-def score(run: Run, estimator: str = "rigorous") -> dict[str, Any]:
-    """A run of the twin against its truth, as `twinbench score --json`."""
+def score(run: Run, estimator: str = "rigorous") -> shown.Answer:
+    """A simulated run against its truth, as `twinbench score --json`."""
     if run.truth is None:
         raise _core.InputError("score: this run has no truth; expected a run of the twin")
-    return _core.score(run.scenario._core, run.readings._core, run.truth, estimator)
+    return shown.Answer(_core.score(run.scenario._core, run.readings._core, run.truth, estimator))
 
 
-class Diagnosis(dict):
-    """diagnosis.json as a dict, and `extended`: the scenario with the causes that were found."""
+class Diagnosis(shown.Answer):
+    """diagnosis.json, and `extended`: the scenario with the causes that were identified."""
 
     def __init__(self, found: dict[str, Any], extended_toml: str):
         super().__init__(found)
@@ -97,7 +175,7 @@ def diagnose(
 
 
 class Follow:
-    """The twin on the course of a record: what each reading should have shown, without noise.
+    """The twin on the path of a record: what each reading should have shown, without noise.
 
     Channels are in the bench's own order. Points are the scalar inputs at which a disturbance can enter
     ("laser.yaw", "target.ez"); disturbances are arrays of one value a reading, in SI.
@@ -128,13 +206,11 @@ class Follow:
 def frame(section: Mapping[str, Any]) -> pandas.DataFrame:
     """A pandas frame of those entries of a part of the results that are arrays of its most frequent length.
 
-    ``frame(run.results["separation"]["target"])`` has a row a position.
+    ``frame(run.results["separation"]["target"])`` has a row a position; ``frame.attrs["units"]`` has the units of its columns.
     """
-    import pandas
-
     arrays = {name: value for name, value in section.items() if isinstance(value, np.ndarray) and value.ndim == 1}
     if not arrays:
         raise _core.InputError("frame: there are no arrays in it; expected a part of the results with some")
     lengths = [len(value) for value in arrays.values()]
     rows = max(set(lengths), key=lengths.count)
-    return pandas.DataFrame({name: value for name, value in arrays.items() if len(value) == rows})
+    return frame_of({name: value for name, value in arrays.items() if len(value) == rows})

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import html
 import os
+import pathlib
 import tomllib
-from typing import Any
+from typing import Any, Mapping
 
-from . import _core
+from . import _core, shown
 from .values import toml
+
+SCENARIOS = pathlib.Path(__file__).with_name("scenarios")  # those that come with the package
 
 
 class Scenario:
@@ -22,12 +26,17 @@ class Scenario:
 
         changes: keys and values that take the place of those in the file, e.g. {"procedure.positions": 12}.
         """
-        self._core = _core.Scenario.load(os.fspath(path), _overrides(changes or {}))
+        self._core = _core.Scenario.load(os.fspath(path), overrides(changes or {}))
 
     @classmethod
     def from_toml(cls, text: str, folder: str | os.PathLike = ".") -> Scenario:
         """From the text of a scenario; files that it names are sought from `folder`."""
         return cls._of(_core.Scenario.parse(text, "scenario", os.fspath(folder)))
+
+    @classmethod
+    def of(cls, scenario: Scenario | str | os.PathLike) -> Scenario:
+        """The scenario itself, or that of a file."""
+        return scenario if isinstance(scenario, Scenario) else cls(scenario)
 
     @classmethod
     def _of(cls, core: _core.Scenario) -> Scenario:
@@ -57,11 +66,11 @@ class Scenario:
         return value
 
     def __setitem__(self, key: str, value: Any) -> None:
-        self._core = self._core.altered(_overrides({key: value}))
+        self._core = self._core.altered(overrides({key: value}))
 
     def changed(self, changes: dict[str, Any]) -> Scenario:
         """Another scenario, with other values of these keys."""
-        return Scenario._of(self._core.altered(_overrides(changes)))
+        return Scenario._of(self._core.altered(overrides(changes)))
 
     def to_dict(self) -> dict[str, Any]:
         """Every key of the scenario, with its default where the file says nothing."""
@@ -74,6 +83,10 @@ class Scenario:
     def __repr__(self) -> str:
         return f"<twinbench.Scenario {self.bench}: {self.title!r}, seed {self.seed}>"
 
+    def _repr_html_(self) -> str:
+        return f"<details><summary>{html.escape(repr(self)[1:-1])}</summary>{shown.text(self.toml())}</details>"
 
-def _overrides(changes: dict[str, Any]) -> list[str]:
+
+def overrides(changes: Mapping[str, Any]) -> list[str]:
+    """Changes as the command line's ``--set`` has them."""
     return [f"{key}={toml(value)}" for key, value in changes.items()]

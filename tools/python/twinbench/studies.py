@@ -9,20 +9,22 @@ from typing import TYPE_CHECKING, Any, Callable
 from . import _core
 from .readings import Readings
 from .scenario import Scenario
+from .shown import Answer, text
+from .units import frame_of
 
 if TYPE_CHECKING:
     import pandas
 
 
-class Plan(dict):
-    """What `twinbench plan --json` writes, as a dict, and `next`: scenarios of the runs to be made next, in their order."""
+class Plan(Answer):
+    """What `twinbench plan --json` writes, and `next`: scenarios of the runs to be made next, in their order."""
 
     def __init__(self, made: dict[str, Any], following: list[_core.Scenario]):
         super().__init__(made)
         self.next = [Scenario._of(core) for core in following]
 
 
-def plan(scenario: Scenario, setups: int = 0, minutes: float = 0.0, readings: float = 0.0, goal: str = "") -> Plan:
+def plan(scenario: Scenario | str | os.PathLike, setups: int = 0, minutes: float = 0.0, readings: float = 0.0, goal: str = "") -> Plan:
     """What a run would give, what it would not see, and which run would give more for its time.
 
     setups: how many there may be, 0: as many as the scenario has. minutes or readings: budget for further runs, not both.
@@ -30,7 +32,7 @@ def plan(scenario: Scenario, setups: int = 0, minutes: float = 0.0, readings: fl
     """
     if minutes and readings:
         raise _core.InputError("plan: there are two budgets; expected minutes or readings")
-    return Plan(*_core.plan(scenario._core, setups, minutes, readings, goal))
+    return Plan(*_core.plan(Scenario.of(scenario)._core, setups, minutes, readings, goal))
 
 
 class Campaign:
@@ -42,15 +44,21 @@ class Campaign:
         self.summary = summary
         self.results = results
 
+    def __repr__(self) -> str:
+        return f"<twinbench.Campaign {self.table}: {self.results['trials']} trials>"
+
+    def _repr_html_(self) -> str:
+        return text(self.summary)
+
     def frame(self) -> pandas.DataFrame:
-        """A pandas frame with a row a trial, from the text of `csv`."""
+        """A pandas frame with a row a trial, from the text of `csv`; units in ``frame.attrs["units"]``."""
         import pandas
 
-        return pandas.read_csv(io.StringIO(self.csv), comment="#", float_precision="round_trip")
+        return frame_of(pandas.read_csv(io.StringIO(self.csv), comment="#", float_precision="round_trip"))
 
 
 def campaign(study: str | os.PathLike, table: str | os.PathLike, threads: int = 1, resume: bool = False) -> Campaign:
-    """Carries out a study file (docs/campaign.md) into a SQLite table, which is made. Whatever `threads` is, the numbers are the same.
+    """Runs a study file (docs/campaign.md) into a SQLite table, which is made. Whatever `threads` is, the numbers are the same.
 
     resume: go on with a table; trials that are in it are not done again. Raises InputError if the table is there without it.
     """
@@ -58,8 +66,8 @@ def campaign(study: str | os.PathLike, table: str | os.PathLike, threads: int = 
     return Campaign(table, *_core.campaign(os.fspath(study), table, threads, resume))
 
 
-class Investigation(dict):
-    """investigation.json as a dict, and `extended`: the scenario with the causes that were told."""
+class Investigation(Answer):
+    """investigation.json, and `extended`: the scenario with the causes that were identified."""
 
     def __init__(self, found: dict[str, Any], extended: _core.Scenario):
         super().__init__(found)
@@ -74,7 +82,7 @@ def investigate(
     conclusive: float = 0.95,
     most_runs: int = 20,
 ) -> Investigation:
-    """Measures, diagnoses and chooses the run that tells most per minute, until the causes are told apart.
+    """Measures, diagnoses and chooses the run that gives most information per minute, until the causes are resolved.
 
     scenario: what is believed. bench: a scenario with something hidden, whose twin is measured; or a function that carries out the
     scenario that it is given and returns its readings, ``lambda asked: tb.drive(my_bench, asked).readings``. Of a function only runs are asked
