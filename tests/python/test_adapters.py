@@ -1,7 +1,9 @@
-"""The adapters among the examples: PyMeasure's own classes where it is installed, and the least of QCoDeS and Bluesky that they use."""
+"""What docs/python.md shows first, and the adapters: PyMeasure's own classes where it is installed, the least of QCoDeS and Bluesky that they use."""
 
 import importlib.util
+import os
 import pathlib
+import re
 import sys
 import tempfile
 import threading
@@ -118,6 +120,20 @@ class Bluesky(unittest.TestCase):
         status = self.waited(module.Key(module.Calibration("target", small("rotary_4dof")), "laser.wavelength_nm").set(-1.0))
         self.assertFalse(status.success)
         self.assertIsInstance(status.exception(), tb.InputError)
+
+
+class Documentation(unittest.TestCase):
+    def test_its_first_lines_run_as_they_stand(self):
+        code = re.search("```python\n(.*?)```", (SCENARIOS.parent / "docs/python.md").read_text(), re.S)[1]
+        before = os.getcwd()
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+            try:
+                pathlib.Path("scenarios").symlink_to(SCENARIOS)
+                exec(code, {})
+                self.assertGreater(pathlib.Path("page.html").stat().st_size, 100_000)
+            finally:
+                os.chdir(before)
 
 
 @unittest.skipUnless(importlib.util.find_spec("pymeasure"), "PyMeasure is not there")
