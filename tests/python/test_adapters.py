@@ -12,7 +12,7 @@ import unittest
 
 import numpy as np
 import twinbench as tb
-from test_package import SCENARIOS, small
+from test_package import SCENARIOS, needs_pages, small
 
 EXAMPLES = SCENARIOS.parent / "tools/python/examples"
 
@@ -123,6 +123,7 @@ class Bluesky(unittest.TestCase):
 
 
 class Documentation(unittest.TestCase):
+    @needs_pages
     def test_its_first_lines_run_as_they_stand(self):
         code = re.search("```python\n(.*?)```", (SCENARIOS.parent / "docs/python.md").read_text(), re.S)[1]
         before = os.getcwd()

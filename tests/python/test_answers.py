@@ -8,7 +8,7 @@ import unittest
 import warnings
 
 import twinbench as tb
-from test_package import SCENARIOS, SMALL, command, small
+from test_package import SCENARIOS, SMALL, command, needs_pages, small
 from twinbench.values import plain, toml
 
 LABORATORY = {
@@ -92,6 +92,7 @@ class BesideTheCommandLine(unittest.TestCase):
         with self.assertRaisesRegex(tb.InputError, "run.save"):
             tb.certificate(tb.run(small("encoder_comparison")), self.folder / "laboratory.toml")
 
+    @needs_pages
     def test_a_page_with_the_truth(self):
         command("score", self.folder / "run", "--json", self.folder / "run/score.json")
         command("report", self.folder / "run", "-o", self.folder / "theirs.html")

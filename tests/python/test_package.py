@@ -22,6 +22,8 @@ from twinbench.values import plain, toml
 PROGRAM = os.environ["TWINBENCH_PROGRAM"]
 SCENARIOS = pathlib.Path(os.environ["TWINBENCH_SCENARIOS"])
 
+needs_pages = unittest.skipUnless(os.environ["TWINBENCH_HAS_REPORT"] == "ON", "built without pages")
+
 # A small run of every bench.
 SMALL = {
     "rotary_4dof": {"procedure.positions": 12},

@@ -51,24 +51,29 @@ std::vector<std::string> Doubts(const Scenario& scenario, const Readings& r) {
   return lines;
 }
 
-py::object Score(const Scenario& scenario, const Readings& r, const py::object& truth, const std::string& estimator) {
+py::object Score(const Scenario& scenario, const Readings& r, const py::object& truth,
+                 const std::string& estimator) {
   return ValueOf(tools::ScoreJson(ScoreOf(scenario, r.readings, JsonOf(truth), EstimatorNamed(estimator))));
 }
 
-py::tuple Uncertainty(const Scenario& scenario, const Readings& r, const std::string& estimator, int trials, std::uint64_t seed, int threads) {
+py::tuple Uncertainty(const Scenario& scenario, const Readings& r, const std::string& estimator, int trials,
+                      std::uint64_t seed, int threads) {
   uncertainty::MonteCarloOptions how;
   how.most_trials = trials, how.seed = seed, how.threads = threads;
-  return Pair(Unlocked([&] { return tools::UncertaintyOf(RunOf(scenario, r), kTheRun, estimator, trials > 0 ? &how : nullptr); }));
+  return Pair(Unlocked(
+      [&] { return tools::UncertaintyOf(RunOf(scenario, r), kTheRun, estimator, trials > 0 ? &how : nullptr); }));
 }
 
 py::tuple Budget(const Scenario& scenario, const std::string& of) {
   return Pair(Unlocked([&] { return tools::BudgetOf(scenario, scenario.title, of); }));
 }
 
-py::tuple Compensate(const std::string& source, const Scenario& scenario, const Readings& r, const std::string& form, const std::string& axis, int points, int highest_order) {
+py::tuple Compensate(const std::string& source, const Scenario& scenario, const Readings& r,
+                     const std::string& form, const std::string& axis, int points, int highest_order) {
   tools::CompensationWish wish{form, axis, {}};
   wish.how.points = points, wish.how.search.highest_order = highest_order;
-  const tools::CompensationMade made = Unlocked([&] { return tools::CompensationOf(RunOf(scenario, r), source, wish); });
+  const tools::CompensationMade made =
+      Unlocked([&] { return tools::CompensationOf(RunOf(scenario, r), source, wish); });
   return py::make_tuple(ValueOf(made.json), made.text, made.table);
 }
 
@@ -82,7 +87,8 @@ py::tuple Load(const std::string& source, const std::string& scenario) {
 }
 
 /// As `run` leaves it.
-void Save(const std::string& folder, const std::string& from, const Scenario& scenario, const Readings& r, const py::object& truth) {
+void Save(const std::string& folder, const std::string& from, const Scenario& scenario, const Readings& r,
+          const py::object& truth) {
   const nlohmann::json truth_json = truth.is_none() ? nlohmann::json() : JsonOf(truth);
   Unlocked([&] {
     const tools::EvaluatedRun run = tools::EvaluatedWithBudget(scenario, r.readings);
@@ -96,9 +102,12 @@ py::object Truth(const std::string& folder) {
   return std::filesystem::exists(run.truth()) ? ValueOf(tools::ReadJson(run.truth())) : py::none();
 }
 
-py::tuple Import(const std::vector<std::string>& files, const std::string& scenario, const std::string& map, const std::vector<std::string>& overrides,
-                 const std::vector<std::string>& columns, int most_readings) {
-  tools::Imported taken = Unlocked([&] { return tools::ImportedFrom({files, scenario, map, overrides, columns, most_readings}); });
+py::tuple Import(const std::vector<std::string>& files, const std::string& scenario, const std::string& map,
+                 const std::vector<std::string>& overrides, const std::vector<std::string>& columns,
+                 int most_readings) {
+  tools::Imported taken = Unlocked([&] {
+    return tools::ImportedFrom({files, scenario, map, overrides, columns, most_readings});
+  });
   Readings readings{taken.scenario.bench, std::move(taken.readings)};
   return py::make_tuple(std::move(taken.scenario), std::move(readings), taken.story);
 }

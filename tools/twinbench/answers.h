@@ -21,7 +21,8 @@ struct Answer {
 /// @param source    The run's place, for messages.
 /// @param trials    Of Supplement 1; null: none.
 /// @throws InputError if no result has an uncertainty.
-Answer UncertaintyOf(const RecordedRun& run, const std::string& source, const std::string& estimator, const uncertainty::MonteCarloOptions* trials);
+Answer UncertaintyOf(const RecordedRun& run, const std::string& source, const std::string& estimator,
+                     const uncertainty::MonteCarloOptions* trials);
 
 /// `twinbench budget`: simulates the scenario, and again with one source after the other switched off.
 /// @param figures  Their place in results.json: "stability.range".
@@ -39,8 +40,8 @@ struct CompensationMade : Answer {
 /// `twinbench compensate`.
 /// @param check  A run with the table at work; null: none.
 /// @throws InputError if the bench has no table that could be compensated.
-CompensationMade CompensationOf(const RecordedRun& run, const std::string& source, const CompensationWish& wish, const RecordedRun* check = nullptr,
-                                const std::string& check_source = "");
+CompensationMade CompensationOf(const RecordedRun& run, const std::string& source, const CompensationWish& wish,
+                                const RecordedRun* check = nullptr, const std::string& check_source = "");
 
 /// `twinbench certificate`.
 /// @param laboratory  What the TOML file says; its name is for messages.

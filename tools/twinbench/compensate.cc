@@ -42,7 +42,8 @@ void Compensate(const CompensateOptions& options, JsonAnswer& answer) {
   const RecordedRun run = LoadPlausibleRun(options.source, options.scenario, options.overrides);
   std::optional<RecordedRun> check;
   if (!options.check.empty()) check = LoadPlausibleRun(options.check, "", {});
-  const CompensationMade made = CompensationOf(run, options.source, options, check ? &*check : nullptr, options.check);
+  const CompensationMade made =
+      CompensationOf(run, options.source, options, check ? &*check : nullptr, options.check);
   if (!options.table.empty()) WriteFileAtOnce(options.table, made.table);
   answer.Write(made.json);
   if (!answer.IsOnStdout()) fmt::print("{}", made.text);
@@ -58,8 +59,8 @@ std::string FormsText() {
 
 }  // namespace
 
-CompensationMade CompensationOf(const RecordedRun& run, const std::string& source, const CompensationWish& wish, const RecordedRun* check,
-                                const std::string& check_source) {
+CompensationMade CompensationOf(const RecordedRun& run, const std::string& source, const CompensationWish& wish,
+                                const RecordedRun* check, const std::string& check_source) {
   separate::CompensationOptions how = wish.how;
   how.points = PointsFor(wish);
   const separate::IndexErrors errors = ErrorsOf(run, source);
@@ -70,7 +71,8 @@ CompensationMade CompensationOf(const RecordedRun& run, const std::string& sourc
   made.json = report::CompensationJson(errors, compensation, checked ? &*checked : nullptr);
   made.text = report::WithoutNoNumbers(report::CompensationText(errors, compensation));
   if (checked) made.text += report::WithoutNoNumbers(report::CompensationCheckText(*checked));
-  made.table = report::ControllerTable(wish.form, compensation.table, wish.axis, report::CompensationComments(compensation, source));
+  made.table = report::ControllerTable(wish.form, compensation.table, wish.axis,
+                                       report::CompensationComments(compensation, source));
   return made;
 }
 

@@ -56,8 +56,7 @@ std::string TakenAsItIs(const ImportWish& options) {
   return BenchOfReadingsCsv(options.files.front());
 }
 
-Scenario UsualScenario(const std::string& bench, const ImportWish& options,
-                       const std::vector<std::string>& set) {
+Scenario UsualScenario(const std::string& bench, const ImportWish& options, const std::vector<std::string>& set) {
   const std::string title = "imported from " + std::filesystem::path(options.files.front()).filename().string();
   std::string quoted;
   for (const char c : title) quoted += c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ' ? '_' : c;

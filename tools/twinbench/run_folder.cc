@@ -75,10 +75,11 @@ RecordedRun LoadRecordedRun(const std::string& source, const std::string& scenar
   return run;
 }
 
-void WriteRun(const RunFolder& folder, const std::string& readings_from, const RecordedRun& run, const nlohmann::json& results,
-              const nlohmann::json& truth) {
+void WriteRun(const RunFolder& folder, const std::string& readings_from, const RecordedRun& run,
+              const nlohmann::json& results, const nlohmann::json& truth) {
   RequireRoomFor(folder, run.scenario);
-  const auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, readings_from, run.scenario.seed, "", run.scenario.bench});
+  const auto record =
+      RunRecord::Create(folder.path, {TWINBENCH_VERSION, readings_from, run.scenario.seed, "", run.scenario.bench});
   record->WriteBeside(kScenarioFile, WriteScenario(run.scenario));
   if (!truth.is_null()) record->WriteBeside(kTruthFile, JsonText(truth));
   record->AppendAll(run.readings);

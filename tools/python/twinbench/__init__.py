@@ -35,8 +35,8 @@ from .shown import Results
 from .studies import Campaign, Investigation, Plan, campaign, investigate, plan
 
 __all__ = [
-    "AngleBench", "AxisState", "BenchError", "Budget", "Campaign", "Certificate", "Compensation", "Diagnosis", "Follow", "InputError", "Investigation",
-    "MachineBench", "Plan", "Readings", "Results", "RotaryBench", "Run", "SCENARIOS", "Scenario", "TableState", "Uncertainty", "__version__", "budget",
-    "campaign", "certificate", "compensate", "diagnose", "drive", "error_motion", "frame", "import_recording", "investigate", "load", "plan", "report", "run",
-    "score", "separate", "uncertainty",
+    "AngleBench", "AxisState", "BenchError", "Budget", "Campaign", "Certificate", "Compensation", "Diagnosis", "Follow", "InputError",
+    "Investigation", "MachineBench", "Plan", "Readings", "Results", "RotaryBench", "Run", "SCENARIOS", "Scenario", "TableState",
+    "Uncertainty", "__version__", "budget", "campaign", "certificate", "compensate", "diagnose", "drive", "error_motion", "frame",
+    "import_recording", "investigate", "load", "plan", "report", "run", "score", "separate", "uncertainty",
 ]

@@ -76,7 +76,7 @@ def certificate(run: Run, laboratory: str | os.PathLike | Mapping[str, Any]) -> 
     """
     folder = _folder_of(run)
     if folder is None:
-        raise _core.InputError("certificate: the run is in no folder, or its scenario was changed since; expected one that run.save(folder) has written")
+        raise _core.InputError("certificate: the run is in no folder, or its scenario was changed since; expected a run after run.save(folder)")
     if isinstance(laboratory, Mapping):
         text, name = "\n".join(f"{key} = {toml(value)}" for key, value in laboratory.items()) + "\n", "laboratory"
     else:
