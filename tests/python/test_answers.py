@@ -1,9 +1,11 @@
 """Folders, uncertainty, budget, compensation, certificate, page and import: beside the command line, byte by byte."""
 
+import _thread
 import json
 import pathlib
 import sys
 import tempfile
+import threading
 import unittest
 import warnings
 
@@ -67,12 +69,17 @@ class BesideTheCommandLine(unittest.TestCase):
         self.assertEqual(plain(dict(drawn)), self.json_of("uncertainty", self.folder / "run", "--monte-carlo", "--trials", "1000", "--seed", "3"))
 
     def test_a_budget_of_sources(self):
-        scenario = tb.Scenario(SCENARIOS / "stability.toml", {"procedure.stability_s": 60.0})
+        scenario = tb.Scenario(SCENARIOS / "stability.toml", {"procedure.stability_s": 60.0, "adc.samples": 1000})
         pathlib.Path(self.folder, "stability.toml").write_text(scenario.toml())
         shares = tb.budget(scenario, of="stability.range")
         self.assertEqual(plain(dict(shares)), self.json_of("budget", self.folder / "stability.toml", "--of", "stability.range"))
         with self.assertRaisesRegex(tb.InputError, "no number there"):
             tb.budget(scenario, of="nothing")
+
+    def test_a_budget_that_takes_long_is_interrupted(self):
+        threading.Timer(0.3, _thread.interrupt_main).start()
+        with self.assertRaises(KeyboardInterrupt):
+            tb.budget(SCENARIOS / "stability.toml")
 
     def test_a_compensation_and_its_table(self):
         theirs = self.json_of("compensate", self.folder / "run", "--form", "linuxcnc", "-o", self.folder / "table.comp")

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/python/answers.h"
+#include "tools/python/interrupt.h"
 #include "tools/python/json_values.h"
 #include "tools/python/readings.h"
 #include "tools/twinbench/evaluated_run.h"
@@ -65,7 +66,7 @@ py::tuple Uncertainty(const Scenario& scenario, const Readings& r, const std::st
 }
 
 py::tuple Budget(const Scenario& scenario, const std::string& of) {
-  return Pair(Unlocked([&] { return tools::BudgetOf(scenario, scenario.title, of); }));
+  return Pair(Unlocked([&] { return tools::BudgetOf(scenario, scenario.title, of, HearInterrupt); }));
 }
 
 py::tuple Compensate(const std::string& source, const Scenario& scenario, const Readings& r,

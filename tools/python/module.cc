@@ -10,6 +10,7 @@
 
 #include "tools/python/answers.h"
 #include "tools/python/follow_class.h"
+#include "tools/python/interrupt.h"
 #include "tools/python/json_values.h"
 #include "tools/python/own_bench.h"
 #include "tools/python/own_machine.h"
@@ -36,10 +37,8 @@ namespace {
 
 namespace py = pybind11;
 
-/// Ctrl-C ends a long run.
 void Interrupted(const procedure::Progress& /*progress*/) {
-  py::gil_scoped_acquire lock;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  HearInterrupt();
 }
 
 std::unique_ptr<RunRecord> NewRecord(const Scenario& scenario, const char* backend) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "tools/python/interrupt.h"
 #include "tools/python/json_values.h"
 #include "tools/python/readings.h"
 #include "tools/twinbench/bench_means.h"
@@ -33,11 +34,6 @@ py::tuple Plan(const Scenario& scenario, int setups, double minutes, double read
 }
 
 /// Ctrl-C ends it between two trials; those that are done are in the table.
-void HearInterrupt() {
-  py::gil_scoped_acquire lock;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
-
 /// @return the table as CSV, what the command prints, and what it answers to programs.
 py::tuple Campaign(const std::string& path, const std::string& table_path, int threads, bool resume) {
   py::gil_scoped_release unlocked;

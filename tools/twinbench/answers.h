@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -26,8 +27,10 @@ Answer UncertaintyOf(const RecordedRun& run, const std::string& source, const st
 
 /// `twinbench budget`: simulates the scenario, and again with one source after the other switched off.
 /// @param figures  Their place in results.json: "stability.range".
+/// @param between  Called before each simulation; what it throws ends them.
 /// @throws InputError if the bench lists no sources, or there is no number at that place.
-Answer BudgetOf(const Scenario& scenario, const std::string& source, const std::string& figures);
+Answer BudgetOf(const Scenario& scenario, const std::string& source, const std::string& figures,
+                const std::function<void()>& between = {});
 
 struct CompensationWish {
   std::string form = "plain", axis = "C";

@@ -36,26 +36,30 @@ void AddFigures(const nlohmann::json& node, const std::string& path, const std::
 
 std::vector<uncertainty::Figure> FiguresOf(const Scenario& scenario, const std::string& wanted) {
   std::vector<uncertainty::Figure> figures;
-  AddFigures(EvaluationOf(scenario, ReadingsOfTwin(scenario), Estimator::kRigorous).results, "",
-             wanted, figures);
+  AddFigures(EvaluationOf(scenario, ReadingsOfTwin(scenario), Estimator::kRigorous).results, "", wanted, figures);
   return figures;
 }
 
 void Share(const BudgetOptions& options, JsonAnswer& answer) {
-  const Answer found = BudgetOf(LoadScenario(options.scenario, options.overrides), options.scenario, options.figures);
+  const Answer found =
+      BudgetOf(LoadScenario(options.scenario, options.overrides), options.scenario, options.figures);
   answer.Write(found.json);
   if (!answer.IsOnStdout()) fmt::print("{}", found.text);
 }
 
 }  // namespace
 
-Answer BudgetOf(const Scenario& scenario, const std::string& source, const std::string& figures) {
+Answer BudgetOf(const Scenario& scenario, const std::string& source, const std::string& figures,
+                const std::function<void()>& between) {
   const Bench& bench = BenchOf(scenario);
   if (!bench.contributions)
     throw InputError(source, "nobody has written down what moves the readings of " + scenario.bench,
                      BenchesWhere([](const Bench& b) { return b.contributions != nullptr; }));
-  const uncertainty::OneAtATime found = uncertainty::RunOneAtATime(
-      scenario, bench.contributions(scenario), [&](const Scenario& s) { return FiguresOf(s, figures); });
+  const uncertainty::OneAtATime found =
+      uncertainty::RunOneAtATime(scenario, bench.contributions(scenario), [&](const Scenario& s) {
+        if (between) between();
+        return FiguresOf(s, figures);
+      });
   if (found.total.empty())
     throw InputError("--of " + figures, "results.json has no number there",
                      "a place of results.json, as stability.range");

@@ -1,6 +1,6 @@
 # %% [markdown]
 # # Are two estimators as good as they say?
-# The same twin, twenty times with other noise; the rigorous estimator and the paper's equations against the errors that were
+# The same twin, twenty times with other noise; weighted least squares ("rigorous") and the paper's equations against the errors that were
 # put in. Open this file as a notebook (jupytext, VS Code) or run it: `python3 tools/python/examples/validate_separation.py`.
 
 # %%
@@ -14,7 +14,7 @@ scenario = tb.Scenario(SCENARIOS / "rotary_4dof.toml", {"procedure.positions": 1
 runs = [tb.run(scenario.changed({"repeat": k})) for k in range(20)]
 
 # %% [markdown]
-# Errors in stated uncertainties: 1 if the uncertainty is right. Means are taken out, as no shift shows them.
+# Errors in stated uncertainties: 1 if the uncertainty is right. Means are taken out, as no index offset shows them.
 
 # %%
 def chi2(run: tb.Run, estimator: str) -> float:

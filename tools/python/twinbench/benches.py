@@ -45,7 +45,7 @@ class _Table:
 class RotaryBench:
     """A bench of the kind rotary_4dof: two tables, a converter with four channels, and what stands beside them.
 
-    As it is, its clock is a count, its tables turn evenly and its room is quiet: a simulation needs `volts` alone.
+    As it is, its clock is a count, its tables turn evenly and its surroundings are quiet: a simulation needs `volts` alone.
     For real instruments override what you have. Angles in rad, counter-clockwise positive from above, unwrapped;
     times in s from when the bench was made. What a method raises ends the run; readings made before are kept by it.
     """

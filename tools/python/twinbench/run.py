@@ -163,14 +163,14 @@ def diagnose(
     scenario: Scenario,
     readings: Readings,
     model: str = "rigorous",
-    strike: Iterable[str] = (),
+    exclude: Iterable[str] = (),
     cache_folder: str | os.PathLike = "",
 ) -> Diagnosis:
     """What the scenario gets wrong about the readings, and what causes it.
 
-    strike: effects taken out of the catalogue. cache_folder: where calibrations of thresholds are kept; "" keeps none.
+    exclude: effects left out of the catalogue. cache_folder: where calibrations of thresholds are kept; "" keeps none.
     """
-    found = _core.diagnose(scenario._core, readings._core, model, list(strike), os.fspath(cache_folder))
+    found = _core.diagnose(scenario._core, readings._core, model, list(exclude), os.fspath(cache_folder))
     return Diagnosis(*found)
 
 

@@ -84,9 +84,9 @@ def investigate(
 ) -> Investigation:
     """Measures, diagnoses and chooses the run that gives most information per minute, until the causes are resolved.
 
-    scenario: what is believed. bench: a scenario with something hidden, whose twin is measured; or a function that carries out the
+    scenario: what is believed. bench: a scenario with something hidden, whose twin is measured; or a function that runs the
     scenario that it is given and returns its readings, ``lambda asked: tb.drive(my_bench, asked).readings``. Of a function only runs are asked
-    that nobody has to change the bench or its room for. goal: "target.ez 0.1arcsec". budget_min: of the procedures' own clocks.
+    that nobody has to change the bench or its surroundings for. goal: "target.ez 0.1arcsec". budget_min: of the procedures' own clocks.
     """
     hidden = bench._core if isinstance(bench, Scenario) else None
     if hidden is None and not callable(bench):
