@@ -20,16 +20,17 @@ PYTHON = os.path.realpath(sys.executable)
 def is_for_this_python(build: Path) -> bool:
     cache = build / "CMakeCache.txt"
     found = re.search("^Python_EXECUTABLE:.*=(.+)$", cache.read_text(), re.M) if cache.exists() else None
-    return found is not None and os.path.realpath(found[1]) == PYTHON and bool(re.search("^pybind11_DIR:.*/", cache.read_text(), re.M))
+    return found is not None and os.path.realpath(found[1]) == PYTHON and re.search("^pybind11_DIR:.*/", cache.read_text(), re.M) is not None
 
 
 def configured() -> Path:
-    """build/ where that is for this Python, else a folder of this Python's own."""
+    """build/ where that is for this Python, else build-pip/: for another Python only the module is compiled anew."""
     if is_for_this_python(ROOT / "build"):
         return ROOT / "build"
-    build = ROOT / f"build-{sys.implementation.cache_tag}"
-    options = [f"-DPython_EXECUTABLE={PYTHON}", "-DCMAKE_BUILD_TYPE=Release", "-DTWINBENCH_TESTS=OFF",
-               "-DCMAKE_REQUIRE_FIND_PACKAGE_pybind11=ON", "-DCMAKE_REQUIRE_FIND_PACKAGE_Python=ON"]
+    build = ROOT / "build-pip"
+    options = ["--fresh"] if not is_for_this_python(build) else []
+    options += [f"-DPython_EXECUTABLE={PYTHON}", "-DCMAKE_BUILD_TYPE=Release", "-DTWINBENCH_TESTS=OFF",
+                "-DCMAKE_REQUIRE_FIND_PACKAGE_pybind11=ON", "-DCMAKE_REQUIRE_FIND_PACKAGE_Python=ON"]
     try:
         import pybind11  # of an isolated build
 
