@@ -66,7 +66,7 @@ test("a served twin is seen while it is measured, and stopped by the page as by 
   const points = () => page.locator("#live-psd-a .plot").getAttribute("data-points").then(Number);
   const first = await points();
   await until(async () => (await points()) > first, () => "no further readings");
-  assert.match(await page.locator("#counted").innerText(), /^\d+ of \d+ readings, bench time [\d:]+, [\d:]+ left$/);
+  assert.match(await page.locator("#counted").innerText(), /^\d+ of \d+ readings, bench time [\d:]+, [\d:]+ left, ends at \d+:\d\d/);
   assert.deepEqual(await faultsOf(page), []);
 
   await page.locator("#live-residual-of-psd-a-x .plot[data-points]").waitFor();
@@ -83,7 +83,8 @@ test("a served twin is seen while it is measured, and stopped by the page as by 
   assert.equal(await page.locator("#counted").innerText(), held);
   assert.match(held, new RegExp(`^${k} of `));
   assert.match(await paused.innerText(), /everything stands/);
-  assert.equal(await pause.innerText(), "Go on");
+  assert.equal(await page.locator("#state").innerText(), "Paused: everything stands");
+  assert.equal(await pause.innerText(), "Resume");
   await pause.press("Enter");
   await until(async () => (await page.locator("#counted").innerText()) !== held, () => "it did not go on");
   assert.equal(await pause.innerText(), "Pause");

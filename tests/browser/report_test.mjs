@@ -22,6 +22,11 @@ const drawnAgain = (page) => page.waitForTimeout(500);
 /** Of those that can be looked at as polar plots. */
 const firstCurve = (page) => page.locator("figure.card").filter({ has: page.getByRole("button", { name: "Linear" }) }).first();
 
+const boxOf = async (part) => {
+  await part.scrollIntoViewIfNeeded();
+  return part.boundingBox();
+};
+
 const plots = (page) => page.locator(".plot");
 
 for (const run of ["rotary", "turntable", "diagnosed"]) {
@@ -64,7 +69,7 @@ test("the pointer on a plot shows value, uncertainty and truth", async () => {
   const page = await open("turntable/report.html");
   const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "Turntable: index error EZ [arcsec]", exact: true }) });
   await card.getByRole("button", { name: "Linear" }).click();
-  const box = await card.locator(".plot").boundingBox();
+  const box = await boxOf(card.locator(".plot"));
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   const tip = card.locator(".tip");
   await tip.waitFor();
@@ -133,7 +138,7 @@ test("on a polar plot pointer and cursor keys show the value at an angle", async
   await card.locator(".tip").waitFor();
   const byKeys = await card.locator(".tip").innerText();
   assert.match(byKeys, /position 40°\s+estimate\s+\S+ ± \S+ arcsec\s+truth/);
-  const box = await card.locator(".plot").boundingBox();
+  const box = await boxOf(card.locator(".plot"));
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2 - 60);
   await drawnAgain(page);
   assert.match(await card.locator(".tip").innerText(), /position 90°/);
@@ -145,7 +150,7 @@ test("wheel with Ctrl zooms, wheel alone does not", async () => {
   const card = firstCurve(page);
   await card.getByRole("button", { name: "Linear" }).click();
   const labels = () => card.locator(".plot svg text").allTextContents();
-  const box = await card.locator(".plot").boundingBox();
+  const box = await boxOf(card.locator(".plot"));
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   const whole = await labels();
   await page.mouse.wheel(0, -300);
@@ -161,7 +166,7 @@ test("wheel with Ctrl zooms, wheel alone does not", async () => {
 
 /** Numbers at the axis below a plot, in its own minus signs. */
 const numbersBelow = async (card) => {
-  const box = await card.locator(".plot").boundingBox();
+  const box = await boxOf(card.locator(".plot"));
   const texts = await card.locator(".plot svg text").evaluateAll((all) => all.map((text) => ({ text: text.textContent, at: text.getBoundingClientRect() })));
   return texts.filter(({ at }) => at.y > box.y + box.height - 46 && at.y < box.y + box.height - 25).map(({ text }) => Number(text.replace("\u2212", "-"))).filter(Number.isFinite);
 };
@@ -176,7 +181,7 @@ test("a rectangle is zoomed into by pointer, by button and by Shift, and shown w
   const page = await open("turntable/report.html");
   const card = await linear(page, "Turntable: index error EZ [arcsec]");
   const plot = card.locator(".plot");
-  const box = await plot.boundingBox();
+  const box = await boxOf(plot);
   const drag = async (from, to) => {
     const at = ([x, y]) => [box.x + 62 + x * (box.width - 80), box.y + 14 + y * (box.height - 60)]; // in the rectangle of the axes
     await page.mouse.move(...at(from));

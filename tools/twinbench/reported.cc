@@ -55,7 +55,9 @@ nlohmann::json ResultsOf(const RunFolder& folder) {
 report::Page OfRun(const RunFolder& folder, const std::string& score) {
   report::PageSource source = SourceOf(folder.path, {folder.scenario(), folder.record(), folder.results()});
   const auto record = RunRecord::Open(folder.path);
-  TellDoubts(record->Readings(), LoadScenario(folder.scenario()), folder.path, stderr);
+  const Scenario scenario = LoadScenario(folder.scenario());
+  source.title = scenario.title;
+  TellDoubts(record->Readings(), scenario, folder.path, stderr);
   source.provenance = record->provenance();
   return report::RunPage(source, ResultsOf(folder), ScoreOf(folder, score), record->Readings(), LightPictures(folder.images()));
 }

@@ -39,6 +39,7 @@ let predicted = 0;
 let raised = 0;
 let columns = [];
 let ended = false;
+let paused = null; // what the program says of its pause
 let heard = performance.now();
 let changed = false;
 
@@ -88,10 +89,17 @@ function begin({ command, bench, folder, can_pause, columns: named }) {
   figures = liveFigures(columns);
   axes.replaceChildren(...columns.map(({ name }) => element("div", {}, element("dt", {}, name), element("dd", {}, "\u2013"))));
   cards.replaceChildren(...figures.cards);
-  if (!ended) say("", goesOn());
+  if (!ended) sayState();
 }
 
-const goesOn = () => (counts ? "The campaign goes on" : serves ? "The twin is served" : "The measurement goes on");
+const running = () => (counts ? "The campaign is running" : serves ? "The twin is served" : "The measurement is running");
+const sayState = () => (paused === "paused" ? say("doubt", "Paused: everything stands") : paused === "restless" ? say("bad", "Paused, but not at rest: look at the bench") : say("", running()));
+
+function held(event) {
+  pause.heard(event);
+  paused = event.state;
+  if (!ended) sayState();
+}
 
 /** Axes that others move. */
 function moved({ t, v, moving }) {
@@ -111,7 +119,7 @@ function reading(r) {
 function progress({ done, planned, bench_s, left_s }) {
   bar.max = planned;
   bar.value = done;
-  counted.textContent = `${done} of ${planned} readings, bench time ${clock(bench_s)}, ${left_s < 0 ? "time left not known yet" : `${clock(left_s)} left`}`;
+  counted.textContent = `${done} of ${planned} readings, bench time ${clock(bench_s)}, ${left_s < 0 ? "time left not known yet" : `${clock(left_s)} left, ends at ${new Date(Date.now() + 1000 * left_s).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" })}`}`;
 }
 
 /** What the twin, set to the readings before, said that these should be. */
@@ -171,7 +179,7 @@ on("residuals", compare);
 on("alarm", alarm);
 on("unjudged", ({ why }) => (judged.textContent = `Readings are not compared with the twin: ${why}`));
 on("asked", ({ what }) => (what === "stop" ? stop.asked() : pause.asked(what)));
-on("pause", pause.heard);
+on("pause", held);
 on("left_out", (lost) => (subtitle.textContent = `${lost} messages came too fast to be shown; the record has every reading`));
 on("end", end);
 on("beat", () => {});
@@ -180,7 +188,7 @@ events.onerror = () => {
 };
 events.onopen = () => {
   heard = performance.now();
-  if (!ended) say("", figures ? goesOn() : "Connected; nothing is being measured yet");
+  if (!ended) figures ? sayState() : say("", "Connected; nothing is being measured yet");
 };
 setInterval(() => {
   if (changed) (changed = false), figures?.draw(), residuals?.draw(), trials.draw();
@@ -194,5 +202,5 @@ const theme = button(isDark() ? "Light" : "Dark", () => {
 
 document.getElementById("page").append(
   element("header", {}, element("div", { class: "brand" }, element("span", {}, "twinbench, live"), theme), title, subtitle, verdict),
-  element("main", { id: "content", tabindex: -1 }, stop.element, pause.element, steps.element, element("section", { class: "part" }, bar, counted, axes), trials.element, cards, residualPart),
+  element("main", { id: "content", tabindex: -1 }, element("div", { class: "halts" }, stop.element, pause.element), steps.element, element("section", { class: "part" }, bar, counted, axes), trials.element, cards, residualPart),
 );

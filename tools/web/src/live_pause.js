@@ -1,4 +1,4 @@
-// Pause and going on. The page says that a measurement is paused when the program has said so, and it says so when it has seen that everything stands.
+// Pause and resume. The page says that a measurement is paused when the program has said so, and it says so when it has seen that everything stands.
 import { button, element } from "./dom.js";
 
 const kWords = {
@@ -6,7 +6,7 @@ const kWords = {
   not_yet: ({ why }) => `Not paused yet: ${why}. The program tries again behind the next readings`,
   paused: ({ reading }) => `Paused at reading ${reading}: everything stands`,
   restless: ({ why }) => `Paused, but not at rest: ${why}. Look at the bench`,
-  over: ({ reading }) => `Goes on behind reading ${reading}`,
+  over: ({ reading }) => `Resumed behind reading ${reading}`,
 };
 
 /** @param send  (path) -> promise of the program's answer. */
@@ -24,7 +24,7 @@ export function pausePanel(send) {
   }, { class: "pause", id: "pause", hidden: true });
   const want = (yes) => {
     wanted = yes;
-    toggle.textContent = yes ? "Go on" : "Pause";
+    toggle.textContent = yes ? "Resume" : "Pause";
   };
   return {
     element: element("section", { class: "halt", "aria-label": "Pause" }, toggle, said),

@@ -18,7 +18,7 @@ export function stopPanel(send) {
   }, { class: "stop", id: "stop-sure" });
   const question = element("h2", { id: "stop-question" }, "Stop the measurement?");
   const means = element("p", {}, "The program tells whatever moves to stop, as after Ctrl-C, and asks it whether it stands. Readings so far are kept.");
-  dialog.append(question, means, element("div", { class: "tools" }, sure, button("Go on", () => dialog.close(), { id: "stop-not" })));
+  dialog.append(question, means, element("div", { class: "tools" }, sure, button("Cancel", () => dialog.close(), { id: "stop-not" })));
   return {
     element: element("section", { class: "halt", "aria-label": "Stop" }, ask, said, dialog),
     /** What is stopped, where it is no measurement. */

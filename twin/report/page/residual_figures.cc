@@ -53,11 +53,13 @@ bool AreAlike(const std::vector<double>& a, const std::vector<double>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
 }
 
-/// One curve where nothing was extended, else both.
+/// One curve where nothing was extended, else both and what is between them.
 std::vector<FigureSeries> BeforeAndAfter(const std::vector<double>& x, const std::vector<double>& before, const std::vector<double>& after,
                                          const std::vector<double>& u) {
   if (AreAlike(before, after)) return {{"residual", SeriesRole::kEstimate, x, before, u}};
-  return {{"before", SeriesRole::kBefore, x, before, u}, {"after", SeriesRole::kAfter, x, after, u}};
+  std::vector<double> causes;
+  for (std::size_t k = 0; k < before.size(); ++k) causes.push_back(before[k] - after[k]);
+  return {{"before", SeriesRole::kBefore, x, before, u}, {"after", SeriesRole::kAfter, x, after, u}, {"identified causes", SeriesRole::kExpected, x, causes, {}}};
 }
 
 void AddAgainst(const json& plots, std::vector<Chosen>& chosen) {

@@ -82,9 +82,10 @@ PageSection BudgetSection(const nlohmann::json& results) {
   return section;
 }
 
-/// What the bench measures, and the run.
+/// What the scenario asks, or else what the bench measures, and the run.
 std::string TitleOf(const PageSource& source) {
-  std::string title = source.provenance.bench.empty() ? "" : FormatOf(source.provenance.bench).title;
+  std::string title = source.title;
+  if (title.empty() && !source.provenance.bench.empty()) title = FormatOf(source.provenance.bench).title;
   if (title.empty()) return source.name;
   title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
   return title + ": " + source.name;

@@ -12,6 +12,7 @@ namespace twinbench::report {
 /// Where what is shown came from.
 struct PageSource {
   std::string name;             // of the run
+  std::string title = {};       // of its scenario
   Provenance provenance = {};
   std::string program_version;  // that made the page
   std::vector<std::pair<std::string, std::string>> digests;  // file, SHA-256
