@@ -31,6 +31,13 @@ Table TableIn(const std::string& path) {
   return table;
 }
 
+TEST(CoverageTile, SaysWhetherUncertaintiesHold) {
+  twinbench::TemporaryFolder folder;
+  const report::PageTile tile = CoverageTile(TableIn(folder.File("t.sqlite")));
+  EXPECT_EQ(tile.value, "66.7 %");  // |trial - 2.5| of 0.5 and 1.5 are within 1.96
+  EXPECT_EQ(tile.tone, report::VerdictTone::kBad);
+}
+
 TEST(CampaignSections, PlotsHoldEveryTrial) {
   twinbench::TemporaryFolder folder;
   const std::vector<report::PageSection> sections = CampaignSections(TableIn(folder.File("t.sqlite")));

@@ -84,6 +84,7 @@ report::Page OfCampaign(const std::string& path) {
   source.provenance.bench = table.Made("bench");
   source.provenance.program_version = table.Made("version");
   report::Page page{source.name, "campaign on " + source.provenance.bench, "", report::VerdictTone::kPlain, campaign::CampaignSections(table)};
+  if (report::PageTile coverage = campaign::CoverageTile(table); !coverage.value.empty()) page.tiles.push_back(std::move(coverage));
   if (const std::string study = table.Made("study"); !study.empty())
     page.sections.push_back({"Study", "", {report::PageText{"The study file", study}}});
   page.sections.push_back(report::ProvenanceSection(source));

@@ -167,4 +167,24 @@ std::vector<PageSection> CampaignSections(const Table& table) {
   return sections;
 }
 
+report::PageTile CoverageTile(const Table& table) {
+  constexpr double kExpected = 0.95, kByChance = 3.0;
+  Summary summary;
+  table.ForEach([&](const TrialRow& row) { summary.Add(row); });
+  report::PageTile tile{"Coverage of U", "", "", report::VerdictTone::kGood};
+  double furthest = -1.0;
+  for (const auto& [name, result] : summary.Results()) {
+    if (result.scored == 0) continue;
+    // Numbers of a list go together; trials do not.
+    const double sd = std::sqrt(kExpected * (1.0 - kExpected) / static_cast<double>(summary.Trials()));
+    const double off = std::abs(result.coverage95 - kExpected) / sd;
+    if (off <= furthest) continue;
+    furthest = off;
+    tile.value = fmt::format("{:.1f} %", 100.0 * result.coverage95);
+    tile.note = fmt::format("of the errors of {}, the furthest from 95 % in {} trials", report::PathInWords(name), summary.Trials());
+    tile.tone = off > kByChance ? report::VerdictTone::kBad : report::VerdictTone::kGood;
+  }
+  return tile;
+}
+
 }  // namespace twinbench::campaign

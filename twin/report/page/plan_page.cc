@@ -121,8 +121,8 @@ Page PlanPage(const PageSource& source, const json& plan) {
     if (TextAt(run, "name") == TextAt(plan, "next")) page.verdict = "Tells most for its time: " + TextAt(run, "words") + ".";
   }
   PageSection runs{"Runs", "", {}}, next{"Next run", "", {}}, sight{"Detectability", "", {}};
-  AddFilled(RunsTable(plan), runs);
   AddFilled(PlannedResults(plan), runs);
+  AddFilled(RunsTable(plan), runs);
   for (Figure& figure : OrderFigures(plan)) runs.blocks.emplace_back(std::move(figure));
   AddFilled(PlannedLosses(plan), runs);
   if (Figure advice = AdviceFigure(plan); !advice.series.empty()) next.blocks.emplace_back(std::move(advice));
