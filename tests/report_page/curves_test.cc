@@ -26,7 +26,7 @@ const json kResults = json::parse(R"({
 TEST(CurveFigures, HoldTheNumbersOfResultsWithTheirUncertaintyAndItsCoverage) {
   const std::vector<Figure> figures = CurveFigures(kResults, {});
   ASSERT_EQ(figures.size(), 1u);
-  EXPECT_EQ(figures[0].title, "table: index error EZ");
+  EXPECT_EQ(figures[0].title, "Table: index error EZ");
   EXPECT_EQ(figures[0].y.unit, "arcsec");
   ASSERT_EQ(figures[0].series.size(), 1u);
   const FigureSeries& curve = figures[0].series[0];
@@ -63,7 +63,7 @@ TEST(TilesOf, SayTheLargestErrorWithItsUncertaintyAndHowErrorsCompareWithIt) {
   const std::vector<PageTile> tiles = TilesOf(results, score, CurveFigures(results, score));
   ASSERT_EQ(tiles.size(), 4u);
   EXPECT_EQ(tiles[0].value, "−2.50 ± 0.67 arcsec");  // 2.25 times 0.3, less a bit
-  EXPECT_EQ(tiles[0].note, "table: index error EZ, at 180°");
+  EXPECT_EQ(tiles[0].note, "Table: index error EZ, at 180°");
   EXPECT_EQ(tiles[1].value, "2.06 arcsec");  // of the two that there are
   EXPECT_EQ(tiles[2].value, "5.50");
   EXPECT_EQ(tiles[2].tone, VerdictTone::kBad);
@@ -93,7 +93,7 @@ TEST(CurveFigures, PutThePassesOfASetUpIntoOneFigure) {
   }
   const std::vector<Figure> figures = CurveFigures({{"path", paths}}, {});
   ASSERT_EQ(figures.size(), 2u);
-  EXPECT_EQ(figures[1].title, "path: radial error DX, set-up 1");
+  EXPECT_EQ(figures[1].title, "Path: radial error DX, set-up 1");
   ASSERT_EQ(figures[1].series.size(), 2u);
   EXPECT_EQ(figures[1].series[1].name, "pass 1");
 }
@@ -101,7 +101,7 @@ TEST(CurveFigures, PutThePassesOfASetUpIntoOneFigure) {
 TEST(SpectrumFigures, ReadListsAndListsOfTerms) {
   const std::vector<Figure> figures = SpectrumFigures(kResults, {});
   ASSERT_EQ(figures.size(), 2u);
-  EXPECT_EQ(figures[0].title, "model terms: amplitude");
+  EXPECT_EQ(figures[0].title, "Model terms: amplitude");
   EXPECT_THAT(figures[0].series[0].x, ElementsAre(1, 7));
   EXPECT_THAT(figures[0].series[0].y, ElementsAre(6.5, 0.25));
   EXPECT_THAT(figures[0].series[0].u, ElementsAre(0.5, 0.125));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -26,9 +27,9 @@ constexpr auto kUnits = std::to_array<WrittenUnit>({{"um_m_K", "um/m/K"}, {"um_m
                                                     {"s", "s"},           {"m", "m"}});
 /// What the field calls the parts of a bench and the errors of an axis of rotation (ISO 230-7).
 constexpr auto kNames = std::to_array<std::pair<std::string_view, std::string_view>>(
-    {{"target", "Table under test"}, {"reference", "Reference table"}, {"turntable", "Turntable"}, {"multitooth", "Multi-tooth table"},
-     {"device", "Device under test"}, {"polygon", "Polygon"}, {"encoder", "Encoder"}, {"ez", "index error EZ"}, {"ex", "tilt error EX"},
-     {"ey", "tilt error EY"}, {"dx", "radial error DX"}, {"dy", "radial error DY"}, {"dz", "axial error DZ"}});
+    {{"target", "table under test"}, {"reference", "reference table"}, {"multitooth", "multi-tooth table"}, {"device", "device under test"},
+     {"ez", "index error EZ"}, {"ex", "tilt error EX"}, {"ey", "tilt error EY"}, {"dx", "radial error DX"}, {"dy", "radial error DY"},
+     {"dz", "axial error DZ"}});
 constexpr std::array kPlaces = {"separation.", "results.", "values."};
 
 /// "terms[]" are the terms.
@@ -100,6 +101,7 @@ std::string CurveTitle(const std::string& path, const std::string& name) {
       if (word == key) word = spoken;
     title += (title.empty() ? "" : " ") + word;
   }
+  if (!title.empty()) title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
   return title;
 }
 

@@ -55,10 +55,11 @@ void AddScore(const json& score, std::vector<PageTile>& tiles) {
   double worst = -1.0;
   std::string of;
   ForEachObject(score, [&](const std::string& path, const json& object) {
-    if (const double mean = NumberAt(object, "mean_chi2"); std::isfinite(mean) && mean > worst) worst = mean, of = path;
+    for (const char* key : {"mean_chi2", "mean_normed_square", "chi2_over_rank"})
+      if (const double mean = NumberAt(object, key); std::isfinite(mean) && mean > worst) worst = mean, of = path;
   });
   if (worst < 0.0) return;
-  tiles.push_back({"Worst (error/u)²", fmt::format("{:.2f}", worst), CurveTitle(of, "") + "; 1 is expected",
+  tiles.push_back({"Worst (error/u)²", fmt::format("{:.2f}", worst), (of.empty() ? "" : CurveTitle(of, "") + "; ") + "1 is expected",
                    worst > kTooLarge ? VerdictTone::kBad : VerdictTone::kGood});
 }
 
