@@ -9,13 +9,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// One axis at an instant: where it is, which way it goes, and how far it has come since it turned round.
-struct AxisMotion {
-  double at_m, sense, since_turn_m, since_turn_s;
-};
-
 /// @param quarters  0: x goes with the cosine, 1: y with the sine.
-AxisMotion MotionOf(const CirclePoint& p, double lag_s, double commanded_rad, int quarters) {
+AxisMotion MotionOf(const CirclePoint& p, const CircleConstants& known, double lag_s, double commanded_rad, int quarters) {
   const double lag = p.rate_rad_s * lag_s;
   const double amplitude_m = p.radius_m / std::sqrt(1.0 + lag * lag);
   const double angle_rad = commanded_rad - std::atan(lag) - quarters * 0.5 * units::kPi;
@@ -23,28 +18,37 @@ AxisMotion MotionOf(const CirclePoint& p, double lag_s, double commanded_rad, in
   const double along_rad = std::remainder(p.direction * angle_rad, units::turn);
   const bool down = along_rad >= 0.0;
   const double since_rad = down ? along_rad : along_rad + units::kPi;
-  return {amplitude_m * std::cos(angle_rad), down ? -1.0 : 1.0, amplitude_m * (1.0 - std::cos(since_rad)),
-          p.rate_rad_s == 0.0 ? -1.0 : since_rad / std::abs(p.rate_rad_s)};
+  AxisMotion axis{amplitude_m * std::cos(angle_rad), down ? -1.0 : 1.0, amplitude_m * (1.0 - std::cos(since_rad)),
+                  p.rate_rad_s == 0.0 ? -1.0 : since_rad / std::abs(p.rate_rad_s)};
+  const double wave_rad = units::turn * axis.at_m / known.pitch_m;
+  axis.wave_sine = std::sin(wave_rad);
+  axis.wave_cosine = std::cos(wave_rad);
+  axis.spike_times = axis.since_turn_s / known.spike_time_s;
+  axis.spike_decay = std::exp(1.0 - axis.spike_times);
+  return axis;
 }
 
 double AxisError_m(const CircleErrors& e, const CircleConstants& known, std::size_t k, const AxisMotion& axis,
                    double other_m, double above_K) {
-  const double u = other_m / known.span_m, wave_rad = units::turn * axis.at_m / known.pitch_m;
+  const double u = other_m / known.span_m;
   double error_m = (e.scale[k] + e.expansion_per_K[k] * above_K) * axis.at_m + e.drift_m_per_K[k] * above_K;
   error_m += e.bow_m[k] * (1.5 * u * u - 0.5) + e.s_shape_m[k] * (2.5 * u * u - 1.5) * u;
-  error_m += e.cyclic_sine_m[k] * std::sin(wave_rad) + e.cyclic_cosine_m[k] * std::cos(wave_rad);
+  error_m += e.cyclic_sine_m[k] * axis.wave_sine + e.cyclic_cosine_m[k] * axis.wave_cosine;
   const double width_m = std::abs(e.backlash_m[k]);
   const double taken_up_m = std::copysign(std::min(axis.since_turn_m, width_m), e.backlash_m[k]);
   error_m += axis.sense * (0.5 * e.backlash_m[k] - taken_up_m);
   if (axis.since_turn_s < 0.0) return error_m;
-  const double f = axis.since_turn_s / known.spike_time_s;
-  return error_m - axis.sense * e.spike_m[k] * f * std::exp(1.0 - f);
+  return error_m - axis.sense * e.spike_m[k] * axis.spike_times * axis.spike_decay;
 }
 
 /// Of the spindle from the commanded centre, so much before the reading.
-Vector2d Position_m(const CirclePoint& p, const CircleErrors& e, const CircleConstants& known, double before_s) {
+Vector2d Position_m(const CirclePoint& p, const CircleErrors& e, const CircleConstants& known, double before_s,
+                    CircleMemo::Axes& memo) {
   const double commanded_rad = p.commanded_rad - p.rate_rad_s * before_s;
-  const AxisMotion x = MotionOf(p, e.lag_s[0], commanded_rad, 0), y = MotionOf(p, e.lag_s[1], commanded_rad, 1);
+  const auto motion = [&](std::size_t k) -> const AxisMotion& {
+    return memo[k].At({e.lag_s[k], before_s}, [&] { return MotionOf(p, known, e.lag_s[k], commanded_rad, static_cast<int>(k)); });
+  };
+  const AxisMotion &x = motion(0), &y = motion(1);
   return {x.at_m + AxisError_m(e, known, 0, x, y.at_m, p.above_K) - e.squareness_rad * y.at_m,
           y.at_m + AxisError_m(e, known, 1, y, x.at_m, p.above_K)};
 }
@@ -65,10 +69,13 @@ double Azimuth_rad(const Vector2d& v_m) {
   return std::atan2(v_m.y(), v_m.x());
 }
 
+TiltTurns TurnsOf(const CircleConstants& known) {
+  return {std::cos(known.tilt_rad[0]), std::sin(known.tilt_rad[0]), std::cos(known.tilt_rad[1]), std::sin(known.tilt_rad[1])};
+}
+
 /// As the encoder sees it whose axis is tilted: azimuth of [Ry Rx]^T (v, height).
-double SeenAzimuth_rad(const Vector2d& v_m, const CircleConstants& known) {
-  const double cx = std::cos(known.tilt_rad[0]), sx = std::sin(known.tilt_rad[0]);
-  const double cy = std::cos(known.tilt_rad[1]), sy = std::sin(known.tilt_rad[1]);
+double SeenAzimuth_rad(const Vector2d& v_m, const CircleConstants& known, const TiltTurns& tilt) {
+  const auto& [cx, sx, cy, sy] = tilt;
   const double along_m = sy * v_m.x() + cy * known.height_m;  // after Ry: (cy x - sy h, y, sy x + cy h)
   return std::atan2(cx * v_m.y() + sx * along_m, cy * v_m.x() - sy * known.height_m);
 }
@@ -79,13 +86,20 @@ double BarLength_m(const CirclePoint& p, const CircleErrors& e, const CircleMoun
 }
 
 Vector2d BarShown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
-                    const CircleConstants& known) {
+                    const CircleConstants& known, CircleMemo& memo) {
   const Vector2d offset_m(m.offset_m[0], m.offset_m[1]);
-  const Vector2d v_m = offset_m + Position_m(p, e, known, known.bar_latency_s);
-  const double longer_m =
-      std::hypot(v_m.norm(), known.height_m) - BarLength_m(p, e, m) + BallForm_m(e, Azimuth_rad(v_m));
-  const double azimuth_rad = SeenAzimuth_rad(offset_m + Position_m(p, e, known, e.encoder_latency_s), known);
-  const double shown_rad = azimuth_rad + ScaleError_rad(e, azimuth_rad) + m.rotation_rad;
+  const Vector2d v_m = offset_m + Position_m(p, e, known, known.bar_latency_s, memo.when_bar_is_read);
+  const double ball_rad = Azimuth_rad(v_m);
+  const double form_m = memo.ball_form_m.At({ball_rad, e.ball2_m[0], e.ball2_m[1], e.ball3_m[0], e.ball3_m[1]},
+                                            [&] { return BallForm_m(e, ball_rad); });
+  const double longer_m = std::hypot(v_m.norm(), known.height_m) - BarLength_m(p, e, m) + form_m;
+  const double azimuth_rad =
+      SeenAzimuth_rad(offset_m + Position_m(p, e, known, e.encoder_latency_s, memo.when_encoder_is_read), known,
+                      memo.tilt.At(known.tilt_rad, [&] { return TurnsOf(known); }));
+  const double scale_rad = memo.scale_error_rad.At(
+      {azimuth_rad, e.eccentricity_rad[0], e.eccentricity_rad[1], e.ellipticity_rad[0], e.ellipticity_rad[1]},
+      [&] { return ScaleError_rad(e, azimuth_rad); });
+  const double shown_rad = azimuth_rad + scale_rad + m.rotation_rad;
   return {longer_m * (1.0 + e.bar_gain + e.bar_cubic_per_m2 * longer_m * longer_m),
           p.radius_m * std::remainder(shown_rad - p.commanded_rad, units::turn)};
 }
@@ -111,9 +125,9 @@ Vector2d Subdivision_m(const Vector2d& place_m, const CircleConstants& known) {
 }
 
 Vector2d GridShown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
-                     const CircleConstants& known) {
+                     const CircleConstants& known, CircleMemo::Axes& memo) {
   const Vector2d offset_m(m.offset_m[0], m.offset_m[1]);
-  Vector2d shown_m = Turned(OnPlate_m(Position_m(p, e, known, 0.0), known), m.rotation_rad) + offset_m;
+  Vector2d shown_m = Turned(OnPlate_m(Position_m(p, e, known, 0.0, memo), known), m.rotation_rad) + offset_m;
   shown_m += Subdivision_m(shown_m, known);
   return Turned(shown_m - p.Commanded_m(), -p.commanded_rad);
 }
@@ -125,7 +139,7 @@ Vector2d FromBar_m(const CirclePoint& p, const CircleErrors& e, const CircleMoun
   const double shown_rad = p.commanded_rad + p.tangential_m / p.radius_m - m.rotation_rad;
   double azimuth_rad = shown_rad - ScaleError_rad(e, shown_rad);
   azimuth_rad -=
-      std::remainder(SeenAzimuth_rad(Turned({p.radius_m, 0.0}, azimuth_rad), known) - azimuth_rad, units::turn);
+      std::remainder(SeenAzimuth_rad(Turned({p.radius_m, 0.0}, azimuth_rad), known, TurnsOf(known)) - azimuth_rad, units::turn);
   azimuth_rad += p.rate_rad_s * (e.encoder_latency_s - known.bar_latency_s);  // where it was when the bar was read
   const double length_m = BarLength_m(p, e, m) + longer_m - BallForm_m(e, azimuth_rad);
   const double flat_m = std::sqrt(length_m * length_m - known.height_m * known.height_m);
@@ -183,8 +197,13 @@ CircleConstants ConstantsOf(const CircularSettings& s) {
 }
 
 Vector2d Shown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
-                 const CircleConstants& known) {
-  return p.is_bar ? BarShown_m(p, e, m, known) : GridShown_m(p, e, m, known);
+                 const CircleConstants& known, CircleMemo& memo) {
+  return p.is_bar ? BarShown_m(p, e, m, known, memo) : GridShown_m(p, e, m, known, memo.when_bar_is_read);
+}
+
+Vector2d Shown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m, const CircleConstants& known) {
+  CircleMemo memo;
+  return Shown_m(p, e, m, known, memo);
 }
 
 Vector2d Deviation_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,

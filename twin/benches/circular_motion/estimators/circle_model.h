@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -59,7 +60,49 @@ struct CircleMounting {
   double length_m = 0.0;      // of the bar
 };
 
+/// What a function of some numbers came to last. Slopes are differenced over one unknown at a time, and most unknowns leave most of
+/// the model as it is.
+template <class Value, std::size_t kInputs>
+class LastValue {
+ public:
+  template <class Make>
+  const Value& At(const std::array<double, kInputs>& inputs, const Make& make) {
+    if (is_empty_ || inputs != inputs_) value_ = make();
+    is_empty_ = false;
+    inputs_ = inputs;
+    return value_;
+  }
+
+ private:
+  std::array<double, kInputs> inputs_{};
+  Value value_{};
+  bool is_empty_ = true;
+};
+
+/// One axis at an instant: where it is, which way it goes, and how far it has come since it turned round.
+struct AxisMotion {
+  double at_m, sense, since_turn_m, since_turn_s;
+  double wave_sine = 0.0, wave_cosine = 1.0;  // of its place in the screw's pitch
+  double spike_times = 0.0, spike_decay = 0.0;  // since it turned, in times of the spike, and e^(1 - that)
+};
+
+/// Cosine and sine of the angles by which the encoder's axis is tilted.
+struct TiltTurns {
+  double cx, sx, cy, sy;
+};
+
+/// What was computed last of one point.
+struct CircleMemo {
+  using Axes = std::array<LastValue<AxisMotion, 2>, 2>;
+  Axes when_bar_is_read, when_encoder_is_read;
+  LastValue<double, 5> ball_form_m, scale_error_rad;
+  LastValue<TiltTurns, 2> tilt;
+};
+
 /// Radial and tangential deviation that would be shown [m].
+/// @param memo  Of this point and these constants.
+Eigen::Vector2d Shown_m(const CirclePoint& point, const CircleErrors& errors, const CircleMounting& mounting,
+                        const CircleConstants& known, CircleMemo& memo);
 Eigen::Vector2d Shown_m(const CirclePoint& point, const CircleErrors& errors, const CircleMounting& mounting,
                         const CircleConstants& known);
 

@@ -69,7 +69,7 @@ std::vector<CirclePath> RigorousPaths(const std::vector<CirclePoint>& points, co
                      {p.u_radial_m, p.u_tangential_m},
                      p.of_machine,
                      p.of_steps,
-                     SlopeOf(Deviation_m, p, fit, known)};
+                     SlopeOfDeviation(p, fit, known)};
   });
 }
 

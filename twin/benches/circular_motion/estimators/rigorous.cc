@@ -80,6 +80,35 @@ std::vector<Index> OfWhatTheBarShows(const CircleFit& fit) {
   return unknowns;
 }
 
+/// @param of  A function of errors and mounting; a grid knows nothing of bar and encoder.
+template <class Function>
+Eigen::Matrix2Xd SlopeOf(const Function& of, const CirclePoint& p, const CircleFit& fit) {
+  using enum CircleUnknown::Needs;
+  Eigen::Matrix2Xd slope = Eigen::Matrix2Xd::Zero(2, UnknownsOf(fit));
+  const CircleMounting& mounting = fit.MountingOf(p.setup);
+  CircleErrors errors = fit.errors;
+  for (std::size_t k = 0; k < fit.fitted.size(); ++k) {
+    const CircleUnknown& unknown = CircleUnknowns()[fit.fitted[k]];
+    if (!p.is_bar && unknown.needs != kNothing && unknown.needs != kTemperature) continue;
+    double& one = unknown.in(errors);
+    const double at = one;
+    one = at + unknown.step;
+    const Eigen::Vector2d above = of(errors, mounting);
+    one = at - unknown.step;
+    const Eigen::Vector2d below = of(errors, mounting);
+    one = at;
+    slope.col(static_cast<Index>(k)) = (above - below) / (2.0 * unknown.step);
+  }
+  const Index first = fit.UnknownOf(p.setup);
+  for (Index k = 0; k < kOfSetup; ++k) {
+    CircleMounting above = mounting, below = mounting;
+    MountingUnknown(above, k) += kMountingStep;
+    MountingUnknown(below, k) -= kMountingStep;
+    slope.col(first + k) = (of(fit.errors, above) - of(fit.errors, below)) / (2.0 * kMountingStep);
+  }
+  return slope;
+}
+
 /// The equations of one round: normal matrix of unit columns, and their lengths.
 struct Equations {
   MatrixXd normal, of_machine, of_steps;  // the latter with each row by its share of the variance
@@ -102,7 +131,7 @@ Equations EquationsAt(const std::vector<CirclePoint>& points, const CircleFit& f
     left.segment<2>(row) = weight.cwiseProduct(Eigen::Vector2d(p.radial_m, p.tangential_m) - shown_m);
     of_machine.segment<2>(row) = p.of_machine;
     of_steps.segment<2>(row) = p.of_steps;
-    slope.middleRows<2>(row) = weight.asDiagonal() * SlopeOf(Shown_m, p, fit, known);
+    slope.middleRows<2>(row) = weight.asDiagonal() * SlopeOfShown(p, fit, known);
   }
   slope(Eigen::all, held).setZero();
   Equations equations;
@@ -191,27 +220,13 @@ Eigen::Index CircleFit::UnknownOf(int setup) const {
   return std::ssize(fitted) + kOfSetup * (std::ranges::find(setups, setup) - setups.begin());
 }
 
-Eigen::Matrix2Xd SlopeOf(decltype(&Shown_m) of, const CirclePoint& p, const CircleFit& fit,
-                         const CircleConstants& known) {
-  Eigen::Matrix2Xd slope = Eigen::Matrix2Xd::Zero(2, UnknownsOf(fit));
-  const CircleMounting& mounting = fit.MountingOf(p.setup);
-  for (std::size_t k = 0; k < fit.fitted.size(); ++k) {
-    const CircleUnknown& unknown = CircleUnknowns()[fit.fitted[k]];
-    CircleErrors above = fit.errors, below = fit.errors;
-    unknown.in(above) += unknown.step;
-    unknown.in(below) -= unknown.step;
-    slope.col(static_cast<Index>(k)) =
-        (of(p, above, mounting, known) - of(p, below, mounting, known)) / (2.0 * unknown.step);
-  }
-  const Index first = fit.UnknownOf(p.setup);
-  for (Index k = 0; k < kOfSetup; ++k) {
-    CircleMounting above = mounting, below = mounting;
-    MountingUnknown(above, k) += kMountingStep;
-    MountingUnknown(below, k) -= kMountingStep;
-    slope.col(first + k) =
-        (of(p, fit.errors, above, known) - of(p, fit.errors, below, known)) / (2.0 * kMountingStep);
-  }
-  return slope;
+Eigen::Matrix2Xd SlopeOfShown(const CirclePoint& p, const CircleFit& fit, const CircleConstants& known) {
+  CircleMemo memo;
+  return SlopeOf([&](const CircleErrors& e, const CircleMounting& m) { return Shown_m(p, e, m, known, memo); }, p, fit);
+}
+
+Eigen::Matrix2Xd SlopeOfDeviation(const CirclePoint& p, const CircleFit& fit, const CircleConstants& known) {
+  return SlopeOf([&](const CircleErrors& e, const CircleMounting& m) { return Deviation_m(p, e, m, known); }, p, fit);
 }
 
 CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstants& known) {

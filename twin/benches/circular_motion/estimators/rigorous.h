@@ -57,9 +57,8 @@ struct CircleFit {
 /// @throws InputError if there are fewer values than unknowns.
 CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstants& known);
 
-/// Slope of a function of errors and mounting with respect to every unknown of the fit: 2 x unknowns.
-/// @param of  Any of Shown_m and Deviation_m.
-Eigen::Matrix2Xd SlopeOf(decltype(&Shown_m) of, const CirclePoint& point, const CircleFit& fit,
-                         const CircleConstants& known);
+/// Slope of Shown_m and Deviation_m with respect to every unknown of the fit: 2 x unknowns.
+Eigen::Matrix2Xd SlopeOfShown(const CirclePoint& point, const CircleFit& fit, const CircleConstants& known);
+Eigen::Matrix2Xd SlopeOfDeviation(const CirclePoint& point, const CircleFit& fit, const CircleConstants& known);
 
 }  // namespace twinbench::separate::circular
