@@ -67,21 +67,39 @@ Sweep CollectSweep(const std::vector<Reading>& readings, const BenchGeometry& ge
   return sweep;
 }
 
+/// By the way from the unknowns to the shown spots: only the mounting constants move the spots.
+class Shown {
+ public:
+  Shown(const SweepPoint& point, const BenchGeometry& geometry)
+      : geometry_(geometry),
+        turn_((Eigen::AngleAxisd(point.yaw_rad, Vector3::UnitZ()) * Eigen::AngleAxisd(point.tilt_rad, Vector3::UnitX()))
+                  .toRotationMatrix()) {}
+  Vector4 Spots_m(const Unknowns& x) const {
+    const Vector4 mount = x.tail<kDofs>();
+    return PredictSpots(turn_ * MotionRotation(mount), mount[3], geometry_);
+  }
+  static Vector4 At(const Vector4& spots_m, const Unknowns& x) { return ShownSpots(spots_m, x.head<4>(), x.segment<2>(4)); }
+
+ private:
+  const BenchGeometry& geometry_;
+  Matrix3 turn_;
+};
+
 Vector4 Predict(const Unknowns& x, const SweepPoint& point, const BenchGeometry& geometry) {
-  const Vector4 mount = x.tail<kDofs>();
-  const Matrix3 turn =
-      (Eigen::AngleAxisd(point.yaw_rad, Vector3::UnitZ()) * Eigen::AngleAxisd(point.tilt_rad, Vector3::UnitX()))
-          .toRotationMatrix();
-  const Vector4 spots_m = PredictSpots(turn * MotionRotation(mount), mount[3], geometry);
-  return ShownSpots(spots_m, x.head<4>(), x.segment<2>(4));
+  return Shown::At(Shown(point, geometry).Spots_m(x), x);
 }
 
 Block PredictJacobian(const Unknowns& x, const SweepPoint& point, const BenchGeometry& geometry) {
   constexpr double kStep = 1e-5;
+  const Shown shown(point, geometry);
+  const Vector4 spots_m = shown.Spots_m(x);
   Block jacobian;
   for (int i = 0; i < kUnknowns; ++i) {
-    const Unknowns step = kStep * Unknowns::Unit(i);
-    jacobian.col(i) = (Predict(x + step, point, geometry) - Predict(x - step, point, geometry)) / (2.0 * kStep);
+    const Unknowns step = kStep * Unknowns::Unit(i), above = x + step, below = x - step;
+    const bool moves = i >= kCalibrationParameters;
+    jacobian.col(i) = (Shown::At(moves ? shown.Spots_m(above) : spots_m, above) -
+                       Shown::At(moves ? shown.Spots_m(below) : spots_m, below)) /
+                      (2.0 * kStep);
   }
   return jacobian;
 }
