@@ -7,6 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <bit>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -15,6 +17,7 @@
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/names.h"
+#include "twin/core/kept_readings.h"
 
 namespace twinbench {
 namespace {
@@ -82,6 +85,26 @@ TEST(RunRecord, GivesBackWhatItWasGivenInMemoryToo) {
   for (int k = 0; k < 20; ++k) one->Append(ReadingOf(k), {});
   ExpectReadingsOf(one->Readings(), 20);
   EXPECT_TRUE(other->Readings().empty()) << "two records in memory are one";
+}
+
+TEST(KeptReadings, AreThoseOfARecordToTheSameBits) {
+  Reading odd = ReadingOf(1);
+  odd.target_rad = -0.0;
+  odd.measured_rad = -0.0;
+  odd.quantities = {{"radius_m", 0.15}, {"feed_m_s", 0.1}, {"bar_m", kNaN}};
+  const auto record = RunRecord::CreateInMemory(AnyProvenance());
+  KeptReadings kept;
+  for (const Reading& reading : {ReadingOf(0), odd, ReadingOf(2)}) {
+    record->Append(reading, {});
+    kept.Append(reading, {});
+  }
+  const std::vector<Reading> of_record = record->Readings(), all = kept.Take();
+  ASSERT_EQ(all.size(), of_record.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    EXPECT_EQ(all[k].quantities, of_record[k].quantities);
+    for (const auto number : {&Reading::target_rad, &Reading::reference_rad, &Reading::measured_rad, &Reading::temperature_degC})
+      EXPECT_TRUE(std::isnan(all[k].*number) || std::bit_cast<std::uint64_t>(all[k].*number) == std::bit_cast<std::uint64_t>(of_record[k].*number));
+  }
 }
 
 TEST(RunRecord, KeepsEventsAndRawBlocksWithWhereTheyStoodInTheConvertersCount) {

@@ -131,14 +131,14 @@ class Twin : public BenchTwin {
     return {{"x_um", RunoutOf(scenario_).x_m / um}, {"y_um", RunoutOf(scenario_).y_m / um}};
   }
 
-  void CarryOut(RunRecord& record, const std::function<void(const procedure::Progress&)>&) override {
+  void CarryOut(ReadingSink& sink, const std::function<void(const procedure::Progress&)>&, RunLog*) override {
     Stream noise(scenario_.seed, "gauge.noise");
     std::vector<Reading> readings = Schedule(scenario_);
     for (Reading& r : readings) {
       kGauge_m(r) = Shown_m(scenario_, r);
       if (!scenario_.noise_free) kGauge_m(r) += RunoutOf(scenario_).noise_m * noise.Normal();
     }
-    record.AppendAll(readings);
+    sink.AppendAll(readings);
   }
 
  private:

@@ -3,14 +3,14 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/registry.h"
-#include "twin/core/run_record.h"
+#include "twin/core/kept_readings.h"
 
 namespace twinbench::tools {
 
 std::vector<Reading> ReadingsOfTwin(const Scenario& scenario) {
-  const auto record = RunRecord::CreateInMemory({TWINBENCH_VERSION, "twin", scenario.seed, "", scenario.bench});
-  BenchOf(scenario).make_twin(scenario)->CarryOut(*record, {});
-  return record->Readings();
+  KeptReadings kept;
+  BenchOf(scenario).make_twin(scenario)->CarryOut(kept, {});
+  return kept.Take();
 }
 
 }  // namespace twinbench::tools

@@ -38,7 +38,7 @@ void RunOnTwin(const Scenario& scenario, const RunFolder& folder, bool images, L
   record->SpareTheDisk();
   ProgressLine progress;
   page.Watch(*record, scenario, folder.path);
-  twin->CarryOut(*record, UnlessStopped(page.ShownToo(ShownOn(progress))));
+  twin->CarryOut(*record, UnlessStopped(page.ShownToo(ShownOn(progress))), record.get());
   record->Finish();
   if (!images) return;
   std::filesystem::create_directories(folder.images());

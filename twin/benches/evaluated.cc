@@ -16,7 +16,7 @@ report::ScoredRun ScoreOf(const Scenario& scenario, const std::vector<Reading>& 
                           Estimator estimator) {
   const report::Evaluation evaluation = EvaluationOf(scenario, readings, estimator);
   if (evaluation.IsRefuted()) throw InputError("the run", evaluation.not_separated, "readings of the bench in the scenario");
-  report::ScoredRun score = BenchOf(scenario).score(scenario, readings, truth, estimator);
+  report::ScoredRun score = evaluation.score ? evaluation.score(truth) : BenchOf(scenario).score(scenario, readings, truth, estimator);
   score.text = report::WithoutNoNumbers(score.text);
   score.positions = report::WithoutNoNumbers(score.positions);
   return score;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <exception>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/registry.h"
-#include "twin/core/run_record.h"
-#include "twin/procedure/options.h"
+#include "twin/core/kept_readings.h"
 #include "twin/report/evaluation.h"
 #include "twin/uncertainty/budget.h"
 #include "twin/uncertainty/standards.h"
@@ -14,23 +14,23 @@
 namespace twinbench::campaign {
 namespace {
 
-std::vector<TrialResult> Scored(const Bench& bench, const Scenario& scenario, const std::vector<Reading>& readings,
-                                const nlohmann::json& truth, Estimator estimator) {
+using ScoredValues = std::vector<report::ScoredValue>;
+
+std::vector<TrialResult> ResultsOf(const ScoredValues& values) {
   std::vector<TrialResult> results;
-  for (const report::ScoredValue& v : bench.score(scenario, readings, truth, estimator).values)
+  for (const report::ScoredValue& v : values)
     results.push_back({"score." + v.name, v.value, v.u, v.value - v.truth, uncertainty::CoverageFactor(v.dof)});
   return results;
 }
 
 /// The same with what the scenario's standards add to the uncertainty of each.
-std::vector<TrialResult> ScoredWithStandards(const Bench& bench, const Scenario& scenario,
-                                             const std::vector<Reading>& readings, const nlohmann::json& truth,
-                                             Estimator estimator) {
-  std::vector<TrialResult> results = Scored(bench, scenario, readings, truth, estimator);
+std::vector<TrialResult> WithStandards(const Scenario& scenario, const std::function<ScoredValues(const Scenario&)>& score) {
+  std::vector<TrialResult> results;
   const uncertainty::Evaluate evaluate = [&](const Scenario& changed) {
+    const ScoredValues values = score(changed);
+    if (results.empty()) results = ResultsOf(values);  // the first are those of the scenario as it stands
     std::vector<uncertainty::Quantity> quantities;
-    for (const report::ScoredValue& v : bench.score(changed, readings, truth, estimator).values)
-      quantities.push_back({"score." + v.name, v.value, v.u, v.dof});
+    for (const report::ScoredValue& v : values) quantities.push_back({"score." + v.name, v.value, v.u, v.dof});
     return quantities;
   };
   const std::vector<uncertainty::Budget> budgets = uncertainty::Budgets(scenario, evaluate);
@@ -45,15 +45,19 @@ std::vector<TrialResult> ScoredWithStandards(const Bench& bench, const Scenario&
 void CarryOut(const Study& study, const Scenario& scenario, const Scenario& believed, TrialRow& row) {
   const Bench& bench = BenchOf(scenario);
   const auto twin = bench.make_twin(scenario);
-  const auto record = RunRecord::CreateInMemory({"", "twin", scenario.seed, "", scenario.bench});
-  twin->CarryOut(*record, [](const procedure::Progress&) {});
-  const std::vector<Reading> readings = record->Readings();
+  KeptReadings kept;
+  twin->CarryOut(kept, {});
+  const std::vector<Reading> readings = kept.Take();
   const report::Evaluation evaluation = bench.evaluate(believed, readings, study.estimator);
   for (const uncertainty::Quantity& q : uncertainty::StatedQuantities(evaluation.results))
     row.results.push_back({q.name, q.value, q.u, kNaN});
   if (evaluation.Separated()) {
-    const auto score = study.standards ? ScoredWithStandards : Scored;
-    const std::vector<TrialResult> scored = score(bench, believed, readings, twin->Truth(), study.estimator);
+    const nlohmann::json truth = twin->Truth();
+    const auto score = [&](const Scenario& changed) {
+      const bool is_analysed = evaluation.score && &changed == &believed;
+      return is_analysed ? evaluation.score(truth).values : bench.score(changed, readings, truth, study.estimator).values;
+    };
+    const std::vector<TrialResult> scored = study.standards ? WithStandards(believed, score) : ResultsOf(score(believed));
     row.results.insert(row.results.end(), scored.begin(), scored.end());
   }
   std::ranges::stable_sort(row.results, {}, &TrialResult::name);
@@ -61,18 +65,26 @@ void CarryOut(const Study& study, const Scenario& scenario, const Scenario& beli
     row.verdict = diagnose::VerdictName(diagnose::Diagnose(readings, believed).diagnosis.verdict);
 }
 
+Scenario Drawn(const Study& study, Scenario scenario, std::int64_t trial) {
+  return study.standards ? uncertainty::StandardsDrawn(std::move(scenario), study.seed, trial) : scenario;
+}
+
+bool HidesNothing(const Study& study) {
+  return std::ranges::none_of(study.vary, &Variation::hidden);
+}
+
 }  // namespace
 
 Scenario TwinOf(const Study& study, const Design& design, std::int64_t trial) {
-  Scenario scenario = study.With(design.OverridesOf(trial));
-  return study.standards ? uncertainty::StandardsDrawn(std::move(scenario), study.seed, trial) : scenario;
+  return Drawn(study, study.With(design.OverridesOf(trial)), trial);
 }
 
 TrialRow RunTrial(const Study& study, const Design& design, std::int64_t trial) {
   TrialRow row;
   row.trial = trial;
   try {
-    CarryOut(study, TwinOf(study, design, trial), study.With(design.BelievedOf(trial)), row);
+    const Scenario believed = study.With(design.BelievedOf(trial));
+    CarryOut(study, HidesNothing(study) ? Drawn(study, believed, trial) : TwinOf(study, design, trial), believed, row);
   } catch (const std::exception& error) {
     row.failure = error.what();
     row.results.clear();

@@ -10,7 +10,7 @@
 
 namespace twinbench {
 
-class RunRecord;
+class RunLog;
 class MachineDevices;
 class ReadingSink;
 struct MachineBench;
@@ -49,8 +49,10 @@ class BenchTwin {
   virtual ~BenchTwin() = default;
   /// truth.json.
   virtual nlohmann::json Truth() const = 0;
-  /// Carries the scenario's procedure out, every reading into `record`.
-  virtual void CarryOut(RunRecord& record, const std::function<void(const procedure::Progress&)>& progress) = 0;
+  /// Carries the scenario's procedure out.
+  /// @param log  Keeps what is asked of the devices, where the procedure writes it down; none: nobody does.
+  virtual void CarryOut(ReadingSink& readings, const std::function<void(const procedure::Progress&)>& progress,
+                        RunLog* log = nullptr) = 0;
   /// Writes the light as the run has left it into an existing folder; only where the bench can be pictured.
   virtual void WriteImages(const std::string& /*folder*/) {}
 };

@@ -4,7 +4,6 @@
 
 #include "twin/core/bench.h"
 #include "twin/core/machine.h"
-#include "twin/core/run_record.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::sim {
@@ -18,9 +17,9 @@ class SimulatedMachine : public BenchTwin {
   explicit SimulatedMachine(const Scenario& scenario) : scenario_(scenario), twin_(scenario) {}
 
   nlohmann::json Truth() const override { return twin_.Truth(); }
-  void CarryOut(RunRecord& record, const std::function<void(const procedure::Progress&)>& progress) override {
+  void CarryOut(ReadingSink& readings, const std::function<void(const procedure::Progress&)>& progress, RunLog* /*log*/) override {
     MachineBench bench = twin_.Devices();
-    kDrive(bench, scenario_, record, progress, {});
+    kDrive(bench, scenario_, readings, progress, {});
   }
 
  private:

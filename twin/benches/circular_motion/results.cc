@@ -245,6 +245,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   evaluation.tables = {{"polar.txt", PolarsOf(a)}};
   if (a.IsFitted() && a.fit.dof > 0) evaluation.misfits = {{"the joint fit of the circles", a.fit.chi}};
   if (a.IsFitted()) evaluation.joints = [fit = a.fit] { return std::vector<uncertainty::Joint>{JointOf(fit)}; };
+  evaluation.score = [a](const json& truth) { return ScoreOf(a, truth); };
   return evaluation;
 }
 

@@ -90,9 +90,7 @@ json ErrorScores(const CircleFit& fit, const json& truth, report::ScoredRun& sco
 
 }  // namespace
 
-report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings, const json& truth,
-                           Estimator estimator) {
-  const CircleAnalysis a = Analyse(scenario, readings, estimator);
+report::ScoredRun ScoreOf(const CircleAnalysis& a, const json& truth) {
   report::ScoredRun scored;
   const PathScore path = ScorePaths(a, truth, scored);
   if (path.readings == 0) throw InputError("the run", "none of its passes is in the truth", "a run of the twin");
@@ -104,6 +102,11 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
                             path.largest_m / units::um);
   if (a.IsFitted()) scored.json["errors"] = ErrorScores(a.fit, truth.at("errors"), scored);
   return scored;
+}
+
+report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings, const json& truth,
+                           Estimator estimator) {
+  return ScoreOf(Analyse(scenario, readings, estimator), truth);
 }
 
 }  // namespace twinbench::benches::circular

@@ -1,7 +1,13 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "twin/benches/freeform_five_axis/estimators/volumetric.h"
 #include "twin/core/scenario.h"
+
+namespace twinbench::report {
+struct ScoredRun;
+}
 
 namespace twinbench::benches::freeform {
 
@@ -11,6 +17,10 @@ std::vector<estimators::PoseRead> SeenPoses(const Scenario& scenario, const std:
 
 estimators::Identification IdentifyBy(const FreeformSettings& bench, const std::vector<estimators::PoseRead>& poses,
                                       Estimator estimator);
+
+/// Poses and what was identified by them against the truth of a run.
+report::ScoredRun ScoreOf(const FreeformSettings& bench, const std::vector<estimators::PoseRead>& seen,
+                          const estimators::Identification& found, const nlohmann::json& truth, Estimator estimator);
 
 /// Root mean square of the lengths of columns.
 double RmsLength(const Eigen::Matrix3Xd& vectors);

@@ -271,7 +271,8 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
            {"volumetric_grid.csv", VolumetricCsv(map.poses, map.errors)},
            {"compensation.csv", CompensationCsv(bench, seen, found)}},
           joints,
-          MisfitsOf(found)};
+          MisfitsOf(found),
+          [bench, seen, found, estimator](const nlohmann::json& truth) { return ScoreOf(bench, seen, found, truth, estimator); }};
 }
 
 }  // namespace twinbench::benches::freeform

@@ -132,12 +132,10 @@ ScoredGrids ScoreGrids(const FreeformSettings& bench, const std::vector<PoseRead
 
 }  // namespace
 
-report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
-                           const nlohmann::json& truth, Estimator estimator) {
+report::ScoredRun ScoreOf(const FreeformSettings& bench, const std::vector<PoseRead>& seen, const Identification& found,
+                          const nlohmann::json& truth, Estimator estimator) {
   constexpr int kPoses = 1000;
-  const FreeformSettings& bench = FreeformOf(scenario);
-  const std::vector<PoseRead> seen = SeenPoses(scenario, readings), unseen = UnseenPoses(seen, bench, kPoses);
-  const Identification found = IdentifyBy(bench, seen, estimator);
+  const std::vector<PoseRead> unseen = UnseenPoses(seen, bench, kPoses);
   const Eigen::VectorXd true_x = TruthOf(truth, found);
   const Compensated at = CompensatedAt(bench, unseen, PredictBy(bench, seen, unseen, found, estimator), true_x);
   const Eigen::Matrix3Xd& actual = at.actual_um;
@@ -161,6 +159,13 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
                   unseen.size(), RmsLength(actual), RmsLength(left.error_um), most, RmsLength(left.u_um), pulls) +
           grids.text,
       VolumetricCsv(unseen, left), ValuesOf(at)};
+}
+
+report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
+                           const nlohmann::json& truth, Estimator estimator) {
+  const FreeformSettings& bench = FreeformOf(scenario);
+  const std::vector<PoseRead> seen = SeenPoses(scenario, readings);
+  return ScoreOf(bench, seen, IdentifyBy(bench, seen, estimator), truth, estimator);
 }
 
 }  // namespace twinbench::benches::freeform

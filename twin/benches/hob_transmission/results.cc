@@ -294,20 +294,7 @@ report::Misfit MisfitOf(const separate::hob::HeadSeparation& separation) {
   return {"the separation of transmission and table encoder", std::sqrt(chi2 / dof)};
 }
 
-}  // namespace
-
-report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
-  const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
-  const nlohmann::json separation =
-      analysis.separation ? SeparationJson(analysis, HobOf(scenario)) : nlohmann::json();
-  report::Evaluation evaluation{ResultsOf(analysis, HobOf(scenario)), separation, analysis.not_separated, SummaryOf(analysis)};
-  if (analysis.separation) evaluation.misfits = {MisfitOf(*analysis.separation)};
-  return evaluation;
-}
-
-report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
-                           const nlohmann::json& truth, Estimator estimator) {
-  const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
+report::ScoredRun ScoreOf(const HobAnalysis& analysis, const nlohmann::json& truth) {
   if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with complete turns");
   const auto transmission = TruthOf(truth.at("transmission")), encoder = TruthOf(truth.at("table_encoder"));
   std::vector<report::CurveScore> curves;
@@ -329,6 +316,23 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
       "against the truth: both parts of every order; orders that are not told apart have the encoder's share\n" +
           report::ScoreTable(curves),
       report::PositionTable(curves), report::ValuesOf(curves)};
+}
+
+}  // namespace
+
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
+  const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
+  const nlohmann::json separation =
+      analysis.separation ? SeparationJson(analysis, HobOf(scenario)) : nlohmann::json();
+  report::Evaluation evaluation{ResultsOf(analysis, HobOf(scenario)), separation, analysis.not_separated, SummaryOf(analysis)};
+  if (analysis.separation) evaluation.misfits = {MisfitOf(*analysis.separation)};
+  evaluation.score = [analysis](const nlohmann::json& truth) { return ScoreOf(analysis, truth); };
+  return evaluation;
+}
+
+report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
+                           const nlohmann::json& truth, Estimator estimator) {
+  return ScoreOf(AnalyseHob(readings, scenario, estimator), truth);
 }
 
 }  // namespace twinbench::benches::hob

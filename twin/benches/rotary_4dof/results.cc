@@ -44,6 +44,17 @@ std::vector<report::Misfit> MisfitsOf(const separate::Separation& s) {
   return misfits;
 }
 
+report::ScoredRun ScoreOf(const Analysis& analysis, const nlohmann::json& truth) {
+  if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with a full-circle test");
+  const Score score =
+      CompareWithTruth(*analysis.separation, ErrorsOf(truth, "target"), ErrorsOf(truth, "reference"));
+  std::string text = fmt::format("{} estimator against the truth; what cannot be separated is taken out of both\n",
+                                 EstimatorName(analysis.estimator)) +
+                     ScoreTable(score);
+  for (const auto& lost : analysis.separation->not_separable) text += fmt::format("not separable: {}\n", lost.what);
+  return {ToJson(score), text, PositionTable(score, *analysis.separation), ValuesOf(score)};
+}
+
 }  // namespace
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
@@ -56,6 +67,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   if (!analysis.separation) return evaluation;
   evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
   evaluation.misfits = MisfitsOf(*analysis.separation);
+  evaluation.score = [analysis](const nlohmann::json& truth) { return ScoreOf(analysis, truth); };
   const report::ErrorMotionTexts motions = EvaluateErrorMotions(*analysis.separation, analysis.motions);
   evaluation.results["iso230_7"] = motions.json;
   evaluation.summary += motions.text;
@@ -64,15 +76,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
 
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
                            const nlohmann::json& truth, Estimator estimator) {
-  const Analysis analysis = Analyse(scenario, readings, estimator);
-  if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with a full-circle test");
-  const Score score =
-      CompareWithTruth(*analysis.separation, ErrorsOf(truth, "target"), ErrorsOf(truth, "reference"));
-  std::string text = fmt::format("{} estimator against the truth; what cannot be separated is taken out of both\n",
-                                 EstimatorName(estimator)) +
-                     ScoreTable(score);
-  for (const auto& lost : analysis.separation->not_separable) text += fmt::format("not separable: {}\n", lost.what);
-  return {ToJson(score), text, PositionTable(score, *analysis.separation), ValuesOf(score)};
+  return ScoreOf(Analyse(scenario, readings, estimator), truth);
 }
 
 }  // namespace twinbench::benches::rotary

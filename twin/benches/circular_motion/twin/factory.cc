@@ -6,7 +6,6 @@
 #include "twin/benches/circular_motion/twin/driven.h"
 #include "twin/benches/circular_motion/twin/follow.h"
 #include "twin/benches/circular_motion/twin/live.h"
-#include "twin/core/run_record.h"
 
 namespace twinbench::benches::circular {
 namespace {
@@ -16,10 +15,10 @@ class Twin : public BenchTwin {
   explicit Twin(const Scenario& scenario) : scenario_(scenario) {}
   nlohmann::json Truth() const override { return sim::CircleRun(scenario_).Truth(); }
 
-  void CarryOut(RunRecord& record, const procedure::ProgressCallback& progress) override {
+  void CarryOut(ReadingSink& readings, const procedure::ProgressCallback& progress, RunLog* /*log*/) override {
     const auto devices = MakeDevices(scenario_);
     MachineBench bench = devices->Devices();
-    procedure::DriveCircles(bench, scenario_, record, progress, {});
+    procedure::DriveCircles(bench, scenario_, readings, progress, {});
   }
 
  private:

@@ -7,7 +7,6 @@
 #include "twin/benches/encoder_comparison/twin/driven.h"
 #include "twin/benches/encoder_comparison/twin/follow.h"
 #include "twin/benches/encoder_comparison/twin/twin.h"
-#include "twin/core/run_record.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::benches::encoder {
@@ -19,12 +18,12 @@ class Twin : public BenchTwin {
   nlohmann::json Truth() const override { return twin_.Truth(); }
   /// Stops are driven to as on a bench of devices; in motion the device is a function of its schedule's times, which
   /// driven sweeps come to as well.
-  void CarryOut(RunRecord& record, const procedure::ProgressCallback& progress) override {
+  void CarryOut(ReadingSink& readings, const procedure::ProgressCallback& progress, RunLog* /*log*/) override {
     if (EncoderOf(scenario_).encoder_procedure.kind != "stops")
-      return procedure::CarryOut(twin_, scenario_, record, progress);
+      return procedure::CarryOut(twin_, scenario_, readings, progress);
     const auto devices = MakeDevices(scenario_);
     MachineBench bench = devices->Devices();
-    procedure::DriveComparison(bench, scenario_, record, progress, {});
+    procedure::DriveComparison(bench, scenario_, readings, progress, {});
   }
 
  private:

@@ -6,7 +6,6 @@
 #include "twin/benches/freeform_five_axis/twin/driven.h"
 #include "twin/benches/freeform_five_axis/twin/follow.h"
 #include "twin/benches/freeform_five_axis/twin/twin.h"
-#include "twin/core/run_record.h"
 
 namespace twinbench::benches::freeform {
 namespace {
@@ -16,10 +15,10 @@ class Twin : public BenchTwin {
   explicit Twin(const Scenario& scenario) : scenario_(scenario) {}
   nlohmann::json Truth() const override { return sim::FreeformTruth(scenario_, sim::Draw(scenario_)); }
 
-  void CarryOut(RunRecord& record, const procedure::ProgressCallback& progress) override {
+  void CarryOut(ReadingSink& readings, const procedure::ProgressCallback& progress, RunLog* /*log*/) override {
     const auto devices = MakeDevices(scenario_);
     MachineBench bench = devices->Devices();
-    procedure::DriveFreeform(bench, scenario_, record, progress, {});
+    procedure::DriveFreeform(bench, scenario_, readings, progress, {});
   }
 
  private:

@@ -5,7 +5,6 @@
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/twin/follow.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/core/run_record.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::benches::rotary {
@@ -15,11 +14,11 @@ class Twin : public BenchTwin {
  public:
   explicit Twin(const Scenario& scenario) : scenario_(scenario), twin_(scenario) {}
   nlohmann::json Truth() const override { return ToJson(twin_.TheTruth()); }
-  void CarryOut(RunRecord& record, const procedure::ProgressCallback& progress) override {
+  void CarryOut(ReadingSink& readings, const procedure::ProgressCallback& progress, RunLog* log) override {
     RotaryBench bench = twin_.Bench();
     procedure::Options options;
-    options.log = &record;
-    procedure::CarryOut(bench, scenario_, record, progress, options);
+    options.log = log;
+    procedure::CarryOut(bench, scenario_, readings, progress, options);
   }
   void WriteImages(const std::string& folder) override { twin_.WriteIrradiance(folder + "/irradiance.exr"); }
 
