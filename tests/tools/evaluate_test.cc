@@ -112,6 +112,22 @@ TEST_F(Evaluate, ScorePrintsEveryComponentAndIsWithinItsUncertainty) {
   EXPECT_THAT(Succeed({"score", "run", "--positions"}), HasSubstr("position_deg"));
 }
 
+TEST_F(Evaluate, AUsersOwnResultIsScoredInTheProgramsTable) {
+  Succeed({"separate", "run", "--tables", "mine.csv"});
+  Succeed({"separate", "run", "--tables", "tables"});
+  EXPECT_EQ(Read("mine.csv"), Read("tables/errors.csv"));
+  EXPECT_THAT(Read("mine.csv"), HasSubstr("\ntarget.ez_arcsec[1],30,position_deg,"));
+  const nlohmann::json same = Json({"score", "run", "--against", "mine.csv", "--json", "-"});
+  EXPECT_NEAR(same.at("yours target").at("ez").at("rms_error_arcsec").get<double>(),
+              same.at("twinbench target").at("ez").at("rms_error_arcsec").get<double>(), 1e-9);
+  Write("other.csv", "result,value\ntarget.ez_arcsec[0],1e3\n");
+  EXPECT_THAT(Succeed({"score", "run", "--against", "other.csv"}), HasSubstr("yours target      ez_arcsec"));
+  Write("none.csv", "result,value\ntarget.ez_arcsek[0],1\n");
+  ExpectRefused({"score", "run", "--against", "none.csv"}, "target.ez_arcsec[0]");
+  Write("bare.csv", "name,value\ntarget.ez_arcsec[0],1\n");
+  ExpectRefused({"score", "run", "--against", "bare.csv"}, "bare.csv:1");
+}
+
 TEST_F(Evaluate, ScoreNeedsATruth) {
   Succeed({"import", "readings.csv", "--scenario", "small.toml", "-o", "imported"});
   ExpectRefused({"score", "imported"}, "imported/truth.json");

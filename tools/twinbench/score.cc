@@ -11,6 +11,7 @@
 #include "twin/benches/evaluated.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
+#include "twin/report/error_table.h"
 #include "twin/report/evaluation.h"
 #include "twin/report/page/scored.h"
 
@@ -18,13 +19,13 @@ namespace twinbench::tools {
 namespace {
 
 struct ScoreOptions {
-  std::string folder, estimator = "rigorous";
+  std::string folder, against, estimator = "rigorous";
   bool positions = false;
 };
 
 void PrintScore(const ScoreOptions& options, JsonAnswer& answer) {
   const RunFolder folder{options.folder};
-  RequireOutput(answer.to(), {folder.truth(), folder.scenario()});
+  RequireOutput(answer.to(), {folder.truth(), folder.scenario(), options.against});
   if (!std::filesystem::exists(folder.record()))
     throw InputError(folder.path, "there is no record.sqlite in it", "the folder of a run");
   if (!std::filesystem::exists(folder.truth()))
@@ -32,8 +33,8 @@ void PrintScore(const ScoreOptions& options, JsonAnswer& answer) {
                      "a run of the twin: what was measured or imported has no truth");
   const nlohmann::json truth = ReadJson(folder.truth());
   const RecordedRun run = LoadPlausibleRun(folder.path, "", {});
-  const report::ScoredRun score =
-      ScoreOf(run.scenario, run.readings, truth, EstimatorNamed(options.estimator));
+  report::ScoredRun score = ScoreOf(run.scenario, run.readings, truth, EstimatorNamed(options.estimator));
+  if (!options.against.empty()) score = report::ScoreAgainst(score.values, options.against);
   answer.Write(ScoreJson(score));
   if (answer.IsOnStdout()) return;
   if (options.positions) fmt::print("{}\n", score.positions);
@@ -55,6 +56,7 @@ void AddScore(CLI::App& app) {
   command->add_option("--estimator", options->estimator, "published or rigorous")
       ->check(CLI::IsMember({"published", "rigorous"}))
       ->capture_default_str();
+  command->add_option("--against", options->against, "score your own result: CSV with columns result, value and u, as separate --tables writes them");
   command->add_flag("--positions", options->positions, "also list every position");
   AnswerWith(*command, "the score", [options](JsonAnswer& answer) { PrintScore(*options, answer); });
 }

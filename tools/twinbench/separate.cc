@@ -7,6 +7,7 @@
 #include "twin/benches/evaluated.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
+#include "twin/report/error_table.h"
 #include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
@@ -17,6 +18,15 @@ struct SeparateOptions {
   std::vector<std::string> overrides;
 };
 
+/// Every table into a folder, or the errors alone into a file of that name.
+void WriteAsked(const std::string& to, const report::Evaluation& evaluation) {
+  if (to.empty()) return;
+  std::vector<report::ResultTable> tables = {report::ErrorTable(evaluation)};
+  if (to.ends_with(".csv")) return WriteFileAtOnce(to, tables.front().text);
+  tables.insert(tables.end(), evaluation.tables.begin(), evaluation.tables.end());
+  WriteTables(to, tables);
+}
+
 void Separate(const SeparateOptions& options, JsonAnswer& answer) {
   RequireOutput(answer.to(), {options.source, options.scenario});
   const RecordedRun run = LoadPlausibleRun(options.source, options.scenario, options.overrides);
@@ -25,7 +35,7 @@ void Separate(const SeparateOptions& options, JsonAnswer& answer) {
   if (!evaluation.Separated())
     throw InputError(options.source, evaluation.not_separated, "readings of a full-circle test");
   answer.Write(evaluation.separation);
-  if (!options.tables.empty()) WriteTables(options.tables, evaluation.tables);
+  WriteAsked(options.tables, evaluation);
   if (!answer.IsOnStdout()) fmt::print("{}", evaluation.summary);
 }
 
@@ -38,7 +48,7 @@ void AddSeparate(CLI::App& app) {
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
   command->add_option("--tables", options->tables,
-                      "write the results' tables (CSV) into this folder, if there are any");
+                      "write errors by position with u (errors.csv) and the bench's other tables into this folder, or the errors alone into this FILE.csv");
   command->add_option("--estimator", options->estimator, "published: the paper's equations; rigorous: ours")
       ->check(CLI::IsMember({"published", "rigorous"}))
       ->capture_default_str();
