@@ -6,6 +6,7 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/passing_run.h"
+#include "tools/twinbench/progress.h"
 #include "twin/benches/evaluated.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -55,11 +56,13 @@ Answer BudgetOf(const Scenario& scenario, const std::string& source, const std::
   if (!bench.contributions)
     throw InputError(source, "nobody has written down what moves the readings of " + scenario.bench,
                      BenchesWhere([](const Bench& b) { return b.contributions != nullptr; }));
-  const uncertainty::OneAtATime found =
-      uncertainty::RunOneAtATime(scenario, bench.contributions(scenario), [&](const Scenario& s) {
-        if (between) between();
-        return FiguresOf(s, figures);
-      });
+  const std::vector<uncertainty::Contribution> contributions = bench.contributions(scenario);
+  std::size_t runs = 0;
+  const uncertainty::OneAtATime found = uncertainty::RunOneAtATime(scenario, contributions, [&](const Scenario& s) {
+    if (between) between();
+    Doing(fmt::format("run {} of at most {}, one source after the other off", ++runs, 2 + 2 * contributions.size()));
+    return FiguresOf(s, figures);
+  });
   if (found.total.empty())
     throw InputError("--of " + figures, "results.json has no number there",
                      "a place of results.json, as stability.range");

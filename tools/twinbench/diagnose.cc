@@ -15,6 +15,7 @@
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/follow.h"
 #include "tools/twinbench/json_answer.h"
+#include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/terminal.h"
 #include "twin/benches/diagnosis_json.h"
@@ -125,6 +126,7 @@ void WriteExtended(const DiagnoseOptions& options, const RecordedRun& run, const
   WriteFileAtOnce(options.extended, toml);
   std::string left;
   try {
+    Doing("a second diagnosis, with what was found");
     const Scenario extended = ParseScenario(toml, options.extended, ".");
     if (WriteScenario(extended) == WriteScenario(run.scenario)) return;
     const diagnose::Diagnosis again = diagnose::Diagnose(run.readings, extended, how).diagnosis;
@@ -144,7 +146,9 @@ void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
   how.model = EstimatorNamed(options.model);
   how.excluded = options.excluded;
   how.cache_folder = CacheFolder(options.cache);
+  Doing(fmt::format("searching {} readings for the causes of the catalogue", run.readings.size()));
   diagnose::DiagnosisRun found = diagnose::Diagnose(run.readings, run.scenario, how);
+  Doing("");
   const diagnose::Disagreement disagreement = diagnose::DisagreementOf(found);
   if (!disagreement.line.empty()) fmt::print("{}", plausible::InLines({{!disagreement.is_plausible, disagreement.line}}));
   if (!options.extended.empty()) WriteExtended(options, run, how, found);

@@ -109,6 +109,7 @@ JsonAnswer::~JsonAnswer() {
 }
 
 void JsonAnswer::Write(const nlohmann::json& json) {
+  Doing("");
   if (!IsWanted()) return;
   Require(!is_written_, "a command answers once");
   is_written_ = true;

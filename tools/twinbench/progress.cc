@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 
@@ -24,6 +25,13 @@ void Say(const std::string& text) {
   std::fputs(text.c_str(), stderr);
   std::fflush(stderr);
 }
+
+/// What StillWorking is to show; one program does one thing at a time.
+struct {
+  std::mutex mutex;
+  std::string what;
+  bool line_open = false;
+} doing;
 
 }  // namespace
 
@@ -73,14 +81,30 @@ void TrialsLine::Show(std::int64_t done, std::int64_t planned, std::int64_t lost
   line_open_ = on_terminal_;
 }
 
+void Doing(const std::string& what) {
+  const std::lock_guard lock(doing.mutex);
+  doing.what = what;
+  if (what.empty() && doing.line_open) Say("\r\033[K");
+  if (what.empty()) doing.line_open = false;
+}
+
 StillWorking::StillWorking(std::chrono::milliseconds quiet)
     : thread_([this, quiet](const std::stop_token& stop) {
         const auto begin = Steady::now();
+        const bool on_terminal = isatty(fileno(stderr)) != 0;
         std::unique_lock lock(mutex_);
-        while (!ends_.wait_for(lock, stop, quiet / 4, [&stop] { return stop.stop_requested(); })) {
+        const std::chrono::milliseconds pause = on_terminal ? std::min(quiet / 4, std::chrono::milliseconds(500)) : quiet / 4;
+        while (!ends_.wait_for(lock, stop, pause, [&stop] { return stop.stop_requested(); })) {
           const auto now = Steady::now();
-          if (now - Steady::time_point(Steady::duration(last_said)) < quiet) continue;
-          Say(fmt::format("still working, {}\n", Clock(std::chrono::duration<double>(now - begin).count())));
+          const std::string since = Clock(std::chrono::duration<double>(now - begin).count());
+          const std::lock_guard what_lock(doing.mutex);
+          if (on_terminal && !doing.what.empty()) {
+            if (now - begin < std::chrono::milliseconds(900)) continue;
+            doing.line_open = true;
+            Say("\r\033[K" + doing.what + ", " + since);
+          } else if (now - Steady::time_point(Steady::duration(last_said)) >= quiet) {
+            Say(fmt::format("still working{}, {}\n", doing.what.empty() ? "" : " (" + doing.what + ")", since));
+          }
         }
       }) {}
 

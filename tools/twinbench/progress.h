@@ -46,11 +46,16 @@ class TrialsLine {
   bool line_open_ = false;
 };
 
-/// Says on stderr that the work goes on once nothing was said for kQuiet or a little longer, as long as this lives.
+/// What the program computes now, "run 3 of 9: other dwells": StillWorking shows it. Empty: it is about to write.
+void Doing(const std::string& what);
+
+/// Says on stderr that the work goes on, what it is and how long it has taken: on a terminal in one line that is rewritten from the
+/// first second on, else once nothing was said for kQuiet or a little longer, as long as this lives.
 class StillWorking {
  public:
   static constexpr std::chrono::seconds kQuiet{10};
   explicit StillWorking(std::chrono::milliseconds quiet = kQuiet);
+  ~StillWorking() { Doing(""); }
 
  private:
   std::mutex mutex_;

@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <atomic>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -7,6 +9,7 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
+#include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/evaluated.h"
 #include "twin/core/errors.h"
@@ -26,7 +29,9 @@ struct UncertaintyOptions {
 };
 
 uncertainty::Evaluate EvaluationOf(const RecordedRun& run, const std::string& estimator) {
-  return [&run, estimator](const Scenario& scenario) {
+  const auto evaluations = std::make_shared<std::atomic<int>>(0);
+  return [&run, estimator, evaluations](const Scenario& scenario) {
+    Doing(fmt::format("evaluation {} of the readings, each with other constants", ++*evaluations));
     return uncertainty::QuantitiesOf(
         EvaluationOf(scenario, run.readings, EstimatorNamed(estimator)).results);
   };
