@@ -86,7 +86,8 @@ std::vector<EffectSettings> DrawnConstants(const Scenario& scenario, std::uint64
 
 Isolability ForetoldOf(hidden::Design design) {
   const Scenario believed = hidden::Believed(design);
-  return *tools::SeenUnderChance(believed, hidden::TakeReadings(believed)).isolability;
+  tools::Patience without_end;
+  return *tools::SeenUnderChance(believed, hidden::TakeReadings(believed), without_end).isolability;
 }
 
 TieCase DiagnoseHidden(const hidden::Placement& at, std::uint64_t seed, double rho, const hidden::SignatureScale& scale,

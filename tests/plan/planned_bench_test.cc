@@ -19,6 +19,8 @@
 namespace twinbench::tools {
 namespace {
 
+Patience without_end;
+
 using diagnose::Isolability;
 
 /// 12 stops, two set-ups, on the quick twin.
@@ -56,7 +58,7 @@ TEST(Mendings, AreConfirmedByTheTwinEachAndEvery) {
   const LookedAt own = LookAtOwn(scenario);
   EXPECT_THAT(own.planned.outlook.lost, testing::Contains("target dy"));
   EXPECT_FALSE(HasRadial(own.results));
-  const std::vector<report::Mending> mendings = Mendings(scenario, own);
+  const std::vector<report::Mending> mendings = Mendings(scenario, own, without_end);
   ASSERT_GE(mendings.size(), 5u);
   EXPECT_EQ(mendings.front().run.name, "reseated");  // takes no more time
   EXPECT_NEAR(mendings.front().more_minutes, 0.0, 0.5);
@@ -83,12 +85,12 @@ TEST(Mendings, AreConfirmedByTheTwinEachAndEvery) {
 /// A half turn shows the reference's rotor in opposite azimuths only.
 TEST(Mendings, DoNotNameWhatDoesNotMend) {
   const Scenario scenario = SmallRotary("reclamp");
-  for (const report::Mending& mending : Mendings(scenario, LookAtOwn(scenario))) EXPECT_NE(mending.run.name, "shift-6");
+  for (const report::Mending& mending : Mendings(scenario, LookAtOwn(scenario), without_end)) EXPECT_NE(mending.run.name, "shift-6");
 }
 
 TEST(Mendings, AreNotNeededByARunThatSeparatesAllThatCanBe) {
   const Scenario scenario = SmallRotary("reseat");
-  EXPECT_TRUE(Mendings(scenario, LookAtOwn(scenario)).empty());
+  EXPECT_TRUE(Mendings(scenario, LookAtOwn(scenario), without_end).empty());
 }
 
 /// Both scale the same angle of diffraction; a gain of one channel scales that channel alone.
@@ -184,7 +186,7 @@ TEST(UnseenEffects, MoveResults) {
   const diagnose::ShownCause distance = one.causes[IndexOf(one, "psd_distance")];
   one.causes = {distance};
   seen.isolability = std::make_shared<const Isolability>(one);
-  const std::vector<plan::Unseen> unseen = UnseenEffects(scenario, seen);
+  const std::vector<plan::Unseen> unseen = UnseenEffects(scenario, seen, without_end);
   ASSERT_EQ(unseen.size(), 1u);
   EXPECT_EQ(unseen.front().not_known, "");
   ASSERT_FALSE(unseen.front().biases.empty());
@@ -251,7 +253,7 @@ TEST(EffectsIn, SaysWhyNothingWouldBeFound) {
   Scenario scenario = SmallRotary("reclamp");
   RotaryOf(scenario).procedure.positions = 36;
   RotaryOf(scenario).procedure.passes = {1};
-  const report::PlannedEffects effects = EffectsIn(scenario, ReadingsOfTwin(scenario));
+  const report::PlannedEffects effects = EffectsIn(scenario, ReadingsOfTwin(scenario), without_end);
   EXPECT_THAT(effects.refused, testing::HasSubstr("degrees of freedom"));
   EXPECT_THAT(PlannedEffectsText(effects), testing::StartsWith("No cause would be found"));
 }
@@ -259,7 +261,7 @@ TEST(EffectsIn, SaysWhyNothingWouldBeFound) {
 TEST(AdviceOf, IsInOrderOfWhatItBuysAndAProgrammeKeepsItsBudget) {
   const Scenario scenario = SmallRotary("reseat");
   const LookedAt own = LookAtOwn(scenario);
-  const std::vector<LookedAt> others = LookAtOthers(scenario, 2);
+  const std::vector<LookedAt> others = LookAtOthers(scenario, 2, without_end);
   const std::vector<plan::Advice> advice = AdviceOf(own, others, "target.ez");
   ASSERT_GT(advice.size(), 5u);
   for (std::size_t k = 1; k < advice.size(); ++k) EXPECT_GE(advice[k - 1].PerMinute(), advice[k].PerMinute());

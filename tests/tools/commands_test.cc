@@ -48,6 +48,26 @@ TEST_F(Commands, AScenarioThatCannotBeIsNotFine) {
   EXPECT_EQ(Json({"check", "small.toml", "--json", "-"}).at("readings"), 124);
 }
 
+TEST_F(Commands, ACheckSaysDurationLossesAndWhichUTheRunStates) {
+  Write("small.toml", kSmall);
+  const nlohmann::json expected = Json({"check", "small.toml", "--json", "-"}).at("expected");
+  EXPECT_EQ(expected.at("readings"), 124);
+  EXPECT_GT(expected.at("minutes"), 1.0);
+  Succeed({"run", "small.toml", "-o", "run"});
+  const nlohmann::json results = nlohmann::json::parse(Read("run/results.json"));
+  EXPECT_EQ(expected.at("not_separable").size(), results.at("separation").at("not_separable").size());
+  const auto u = std::ranges::find(expected.at("results"), "separation.target.ez_arcsec", [](const nlohmann::json& r) { return r.at("name"); });
+  ASSERT_NE(u, expected.at("results").end());
+  const double stated = results.at("separation").at("target").at("u_ez_arcsec")[0];
+  EXPECT_NEAR(u->at("rms_u").get<double>() / stated, 1.0, 0.2);
+  EXPECT_THAT(Succeed({"check", "small.toml"}), HasSubstr("U = 2 u"));
+}
+
+TEST_F(Commands, APlanForAResultThatIsNoneIsRefusedAtOnceWithThoseThereAre) {
+  Write("small.toml", kSmall);
+  ExpectRefused({"plan", "small.toml", "--goal", "target.rz"}, "separation.target.ez_arcsec");
+}
+
 TEST_F(Commands, TheListHasEveryBenchAndEffect) {
   const nlohmann::json benches = Json({"list", "--json"}).at("benches");
   ASSERT_EQ(benches.size(), BenchFormats().size());

@@ -57,5 +57,12 @@ TEST_F(OnTerminal, ProgressIsOneLineWithTheTimeLeft) {
   EXPECT_THAT(piped.err, HasSubstr("124 of 124 readings")) << "a line each tenth";
 }
 
+TEST_F(OnTerminal, WhatTakesLongSaysWhatItDoesAndLeavesNoTraceOfIt) {
+  Write("small.toml", kSmall);
+  const std::string seen = Seen({"plan", "small.toml", "--cpu", "1"}, "NO_COLOR=1");
+  EXPECT_THAT(seen, testing::ContainsRegex("\r\033.K[a-z].*, 0:01\r\033.K"));
+  EXPECT_THAT(Call({"plan", "small.toml", "--cpu", "1"}).err, Not(HasSubstr(kEscape)));
+}
+
 }  // namespace
 }  // namespace twinbench::test

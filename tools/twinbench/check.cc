@@ -1,11 +1,16 @@
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/json_answer.h"
+#include "tools/twinbench/planned_run.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
+#include "twin/core/errors.h"
+#include "twin/report/plan_text.h"
+#include "twin/report/sound.h"
 
 namespace twinbench::tools {
 namespace {
@@ -15,6 +20,40 @@ struct CheckOptions {
   std::vector<std::string> overrides;
 };
 
+/// What the run would give; nothing but why, where its readings come to nothing.
+struct Expected {
+  std::optional<plan::Outlook> outlook;
+  std::string why_not;
+};
+
+Expected ExpectedOf(const Scenario& scenario) {
+  try {
+    return {OutlookAtOnce(scenario), ""};
+  } catch (const InputError& refusal) {
+    return {{}, refusal.what()};
+  } catch (const BenchError& failure) {
+    return {{}, failure.what()};
+  }
+}
+
+nlohmann::json JsonOf(const CheckOptions& options, const Scenario& scenario, int readings, const Expected& expected) {
+  nlohmann::json json = {{"scenario", options.scenario},
+                         {"bench", scenario.bench},
+                         {"title", scenario.title},
+                         {"readings", readings},
+                         {"effects", scenario.effects.size()},
+                         {"stated_uncertainties", scenario.uncertainties.size()}};
+  if (expected.outlook)
+    json["expected"] = report::OutlookJson({"as the scenario says", {}, *expected.outlook});
+  else
+    json["no_results"] = expected.why_not;
+  return json;
+}
+
+std::string Counted(std::size_t count, const std::string& what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 /// Loading is the check: whatever is wrong is told with its line. The twin is built as well, for a scenario may name
 /// parts that do not go together.
 void Check(const CheckOptions& options, JsonAnswer& answer) {
@@ -23,22 +62,21 @@ void Check(const CheckOptions& options, JsonAnswer& answer) {
   const Bench& bench = BenchOf(scenario);
   static_cast<void>(bench.make_twin(scenario));
   const int readings = bench.planned_readings(scenario);
-  answer.Write({{"scenario", options.scenario},
-                {"bench", scenario.bench},
-                {"title", scenario.title},
-                {"readings", readings},
-                {"effects", scenario.effects.size()},
-                {"stated_uncertainties", scenario.uncertainties.size()}});
+  const Expected expected = ExpectedOf(scenario);
+  answer.Write(JsonOf(options, scenario, readings, expected));
   if (answer.IsOnStdout()) return;
-  fmt::print("{}: fine. Bench {}, {} readings, {} effect{}, {} constant{} with a stated uncertainty\n", options.scenario,
-             scenario.bench, readings, scenario.effects.size(), scenario.effects.size() == 1 ? "" : "s",
-             scenario.uncertainties.size(), scenario.uncertainties.size() == 1 ? "" : "s");
+  fmt::print("{}: fine. Bench {}, {}, {}, {} with a stated uncertainty\n", options.scenario, scenario.bench,
+             Counted(static_cast<std::size_t>(readings), "reading"), Counted(scenario.effects.size(), "effect"),
+             Counted(scenario.uncertainties.size(), "constant"));
+  if (!expected.outlook) return fmt::print("It would come to no result: {}\n", expected.why_not);
+  fmt::print("{:.0f} minutes by the procedure's clock\n\n{}", expected.outlook->minutes,
+             report::WithoutNoNumbers(report::OutlookText(*expected.outlook)));
 }
 
 }  // namespace
 
 void AddCheck(CLI::App& app) {
-  auto* command = app.add_subcommand("check", "Say whether a scenario can be carried out, without doing it");
+  auto* command = app.add_subcommand("check", "Say whether a scenario can be simulated, how long it takes, which u to expect and what is not separable");
   auto options = std::make_shared<CheckOptions>();
   command->add_option("scenario", options->scenario, "scenario file (TOML)")->required();
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")

@@ -1,7 +1,9 @@
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -12,6 +14,7 @@
 #include "tools/twinbench/plan_advice.h"
 #include "tools/twinbench/planned_run.h"
 #include "tools/twinbench/planning.h"
+#include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -34,6 +37,7 @@ struct Planned {
   std::vector<report::Mending> mendings;
   std::vector<plan::Advice> advice;
   std::vector<report::PlannedProgramme> programme;  // one or none
+  std::map<std::string, int> left_out;              // for want of time, how often
 };
 
 /// How many set-ups there shall be; 0: nothing is shifted on this bench.
@@ -56,8 +60,8 @@ int SetupsOf(const PlanWish& options, const Scenario& scenario) {
 
 /// The scenario's own run, and beside it the one at the shifts that tell most.
 std::vector<report::PlannedRun> RunsOf(const Scenario& scenario, const std::vector<Reading>& readings, int setups,
-                                       const std::vector<LookedAt>& others) {
-  std::vector<report::PlannedRun> runs = {LookAt("as the scenario says", scenario, readings)};
+                                       const std::vector<LookedAt>& others, Patience& patience) {
+  std::vector<report::PlannedRun> runs = {LookAt("as the scenario says", scenario, readings, patience)};
   const std::optional<plan::ShiftDesign> design = ShiftDesignOf(scenario);
   if (!design) return runs;
   runs.front().shifts = plan::Judged(design->positions, design->shifts);
@@ -65,7 +69,7 @@ std::vector<report::PlannedRun> RunsOf(const Scenario& scenario, const std::vect
   if (best == others.end()) return runs;
   const plan::ShiftSet shifts = plan::BestShifts(design->positions, setups);
   const Scenario quick = Quick(Altered(scenario, best->run.sets));
-  runs.push_back(LookAt("shifts " + report::ShiftList(shifts.shifts), quick, ReadingsOfTwin(quick)));
+  runs.push_back(LookAt("shifts " + report::ShiftList(shifts.shifts), quick, ReadingsOfTwin(quick), patience));
   runs.back().shifts = shifts;
   return runs;
 }
@@ -74,18 +78,31 @@ report::PlanBudget BudgetOf(const PlanWish& options) {
   return options.readings > 0.0 ? report::PlanBudget{options.readings, true} : report::PlanBudget{options.minutes, false};
 }
 
+/// @throws InputError if no result of the run is the one that shall count, naming those there are.
+void RequireGoal(const std::string& goal, const LookedAt& own) {
+  if (!plan::GainsOf(own.results, own.results, goal).empty()) return;
+  std::vector<std::string> kinds;
+  for (const plan::Gain& gain : plan::GainsOf(own.results, own.results, "")) kinds.push_back(gain.name);
+  if (!goal.empty()) throw InputError("--goal " + goal, "the run gives no such result", fmt::format("one of {}", fmt::join(kinds, ", ")));
+}
+
 Planned PlanOf(const PlanWish& options, const Scenario& scenario) {
+  Patience patience = options.cpu_s > 0.0 ? Patience(options.cpu_s) : Patience();
   const int setups = SetupsOf(options, scenario);
+  Doing("the run as the scenario says");
+  LookedAt own = ResultsOfOwn(scenario);
+  RequireGoal(options.goal, own);
   const std::vector<Reading> readings = ReadingsOfTwin(scenario);
-  const LookedAt own = LookAtOwn(scenario);
-  const std::vector<LookedAt> others = LookAtOthers(scenario, setups);
   Planned planned;
-  planned.runs = RunsOf(scenario, readings, setups, others);
-  planned.effects = EffectsIn(scenario, readings);
-  planned.mendings = Mendings(scenario, own);
+  planned.effects = EffectsIn(scenario, readings, patience);
+  own.isolability = planned.effects.seen.isolability;
+  planned.mendings = Mendings(scenario, own, patience);
+  const std::vector<LookedAt> others = LookAtOthers(scenario, setups, patience);
+  planned.runs = RunsOf(scenario, readings, setups, others, patience);
   planned.advice = AdviceOf(own, others, options.goal);
   const report::PlanBudget budget = BudgetOf(options);
   if (budget.amount > 0.0) planned.programme.push_back(ProgrammeOf(own, others, budget, options.goal));
+  planned.left_out = patience.left_out();
   return planned;
 }
 
@@ -150,6 +167,7 @@ nlohmann::json JsonOf(const Planned& planned, const std::vector<plan::NextRun>& 
   json["mendings"] = report::MendingJson(planned.mendings);
   json["advice"] = report::PlanAdviceJson(planned.advice);
   if (!planned.programme.empty()) json["programme"] = report::ProgrammeJson(planned.programme.front());
+  json["left_out"] = planned.left_out;
   json["next"] = next.front().name;
   for (const plan::NextRun& run : next) json["next_runs"].push_back(run.name);
   return json;
@@ -160,6 +178,7 @@ std::string TextOf(const Planned& planned) {
   if (!planned.mendings.empty()) text += "\n";
   text += report::PlanAdviceText(planned.advice);
   if (!planned.programme.empty()) text += "\n" + report::ProgrammeText(planned.programme.front());
+  for (const auto& [what, times] : planned.left_out) text += fmt::format("Left out for want of time: {} ({} times). --cpu 0 leaves out nothing.\n", what, times);
   return text;
 }
 
@@ -197,6 +216,10 @@ void AddPlan(CLI::App& app) {
   command->add_option("--readings", options->readings, "budget for further runs, in readings")
       ->check(CLI::PositiveNumber)
       ->excludes(minutes);
+  options->cpu_s = 5.0;
+  command->add_option("--cpu", options->cpu_s, "CPU time [s] from which on less is looked at, and what is left out is said; 0: no end")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command->add_option("--goal", options->goal, "the result that counts: target.ez; left out: all");
   command->add_option("-o,--output", options->next, "write the scenario of the run to be made next here; of a programme all, as next-1-of-3-NAME.toml");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")

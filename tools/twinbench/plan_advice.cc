@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "tools/twinbench/passing_run.h"
+#include "tools/twinbench/progress.h"
 #include "twin/benches/evaluated.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -57,11 +58,12 @@ LookedAt LookAtResults(const plan::NextRun& run, const Scenario& scenario) {
 }
 
 /// @throws InputError if the bench refuses the run.
-LookedAt Look(const plan::NextRun& run, const Scenario& scenario) {
+constexpr double kOfCauses = 0.9;  // of a plan's time
+LookedAt Look(const plan::NextRun& run, const Scenario& scenario, Patience& patience) {
   const Scenario quick = Quick(Altered(scenario, run.sets));
   const std::vector<Reading> readings = ReadingsOfTwin(quick);
   LookedAt looked = ResultsOfRun(run, quick, readings);
-  looked.isolability = ShownBy(quick, readings);
+  if (patience.Allows(kOfCauses, "what another run would tell of causes")) looked.isolability = ShownBy(quick, readings);
   return looked;
 }
 
@@ -156,10 +158,10 @@ std::vector<plan::Gain> AddedBy(const LookedAt& own, const LookedAt& other) {
 }
 
 /// The run at a good set of shifts: what it does not separate no shifts do.
-LookedAt LookAtGood(const Scenario& scenario, const plan::ShiftDesign& design) {
+plan::NextRun GoodRun(const plan::ShiftDesign& design) {
   constexpr int kGoodSetups = 4;
   const int setups = std::min(kGoodSetups, design.positions);
-  return LookAtResults(WithShifts("good", design, plan::BestShifts(design.positions, setups).shifts), scenario);
+  return WithShifts("good", design, plan::BestShifts(design.positions, setups).shifts);
 }
 
 /// How well the added results are known together; nothing added comes last.
@@ -212,6 +214,27 @@ plan::Advice AdviceOf(const LookedAt& own, const LookedAt& other, const std::str
   return advice;
 }
 
+plan::NextRun OnceMore() {
+  return {"again", "the same run once more", {}, plan::kSameKind};
+}
+
+/// Each run as `look` sees it, until that share of the patience is gone; what bench, twin or evaluation refuse is left out.
+template <class Look>
+std::vector<LookedAt> EachThatCanBe(const std::vector<plan::NextRun>& runs, const std::string& what, double share, Patience& patience,
+                                    const Look& look) {
+  std::vector<LookedAt> looked;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (!patience.Allows(share, what)) continue;
+    Doing(fmt::format("{} {} of {}: {}", what, k + 1, runs.size(), runs[k].words));
+    try {
+      looked.push_back(look(runs[k]));
+    } catch (const InputError&) {  // not on this bench as it stands
+    } catch (const BenchError&) {
+    }
+  }
+  return looked;
+}
+
 }  // namespace
 
 std::optional<plan::ShiftDesign> ShiftDesignOf(const Scenario& scenario) {
@@ -222,10 +245,15 @@ std::optional<plan::ShiftDesign> ShiftDesignOf(const Scenario& scenario) {
 }
 
 LookedAt LookAtOwn(const Scenario& scenario) {
-  return Look({"again", "the same run once more", {}, plan::kSameKind}, scenario);
+  Patience without_end;
+  return Look(OnceMore(), scenario, without_end);
 }
 
-std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups) {
+LookedAt ResultsOfOwn(const Scenario& scenario) {
+  return LookAtResults(OnceMore(), scenario);
+}
+
+std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups, Patience& patience) {
   const Bench& bench = BenchOf(scenario);
   std::vector<plan::NextRun> runs;
   if (const auto design = ShiftDesignOf(scenario)) {
@@ -235,29 +263,24 @@ std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups) {
   if (bench.next_runs) {
     for (plan::NextRun& run : bench.next_runs(scenario)) runs.push_back(std::move(run));
   }
-  std::vector<LookedAt> looked;
-  for (const plan::NextRun& run : runs) {
-    try {
-      looked.push_back(Look(run, scenario));
-    } catch (const InputError&) {  // not on this bench as it stands
-    }
-  }
-  return looked;
+  return EachThatCanBe(runs, "another run", 1.0, patience, [&](const plan::NextRun& run) { return Look(run, scenario, patience); });
 }
 
-std::vector<report::Mending> Mendings(const Scenario& scenario, const LookedAt& own) {
+std::vector<report::Mending> Mendings(const Scenario& scenario, const LookedAt& own, Patience& patience) {
   const std::optional<plan::ShiftDesign> design = ShiftDesignOf(scenario);
   if (!design) return {};
-  const LookedAt good = LookAtGood(scenario, *design);
-  if (MendedBy(own, good).empty()) return {};
+  constexpr double kOfMendings = 0.75;
+  const auto results_of = [&](const plan::NextRun& run) { return LookAtResults(run, scenario); };
+  const std::vector<LookedAt> good = EachThatCanBe({GoodRun(*design)}, "good shifts", kOfMendings, patience, results_of);
+  if (good.empty() || MendedBy(own, good.front()).empty()) return {};
   std::vector<report::Mending> mendings;
-  for (const plan::NextRun& run : Additions(*design)) {
-    const LookedAt other = LookAtResults(run, scenario);
+  const auto looked = EachThatCanBe(Additions(*design), "an addition that may separate what is lost", kOfMendings, patience, results_of);
+  for (const LookedAt& other : looked) {
     report::Mending mending;
-    mending.run = run;
+    mending.run = other.run;
     mending.minutes = other.planned.outlook.minutes;
     mending.more_minutes = mending.minutes - own.planned.outlook.minutes;
-    mending.mended = WhollyMendedBy(own, other, good);
+    mending.mended = WhollyMendedBy(own, other, good.front());
     mending.certain = AddedBy(own, other);
     if (!mending.mended.empty()) mendings.push_back(std::move(mending));
   }

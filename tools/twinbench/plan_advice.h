@@ -28,17 +28,18 @@ struct LookedAt {
   std::shared_ptr<const diagnose::Isolability> isolability;  // null: its evaluation tells of no causes
 };
 
-/// The scenario's own run on the quick twin.
+/// The scenario's own run on the quick twin; its results alone.
 LookedAt LookAtOwn(const Scenario& scenario);
+LookedAt ResultsOfOwn(const Scenario& scenario);
 
 /// All that the bench could do next: its own list, the same once more, and other shifts where something is shifted.
 /// What bench or evaluation refuse is left out.
 /// @param setups  So many, where the bench's shifts are chosen anew.
-std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups);
+std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups, Patience& patience);
 
 /// Additions that tell apart what the scenario's own run does not and a good set of shifts would: each on the quick
 /// twin, those that take the fewest minutes more first, of equal ones those that know it best.
-std::vector<report::Mending> Mendings(const Scenario& scenario, const LookedAt& own);
+std::vector<report::Mending> Mendings(const Scenario& scenario, const LookedAt& own, Patience& patience);
 
 /// What each buys, the most per minute first.
 std::vector<plan::Advice> AdviceOf(const LookedAt& own, const std::vector<LookedAt>& others, const std::string& goal);

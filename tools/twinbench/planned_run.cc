@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/passing_run.h"
+#include "tools/twinbench/progress.h"
 #include "twin/benches/evaluated.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -17,6 +18,9 @@
 
 namespace twinbench::tools {
 namespace {
+
+/// Shares of a plan's time from which on these are left out: other runs come first, the mean over many runs last.
+constexpr double kOfUnseen = 0.5, kOfRooms = 0.35, kOfAveraging = 0.6;
 
 nlohmann::json ResultsOf(const Scenario& scenario, const std::vector<Reading>& readings) {
   return EvaluationOf(scenario, readings, Estimator::kRigorous).results;
@@ -71,12 +75,18 @@ Scenario Quick(const Scenario& scenario) {
   return quick;
 }
 
-report::PlannedRun LookAt(const std::string& words, const Scenario& scenario,
-                          const std::vector<Reading>& readings) {
+plan::Outlook OutlookAtOnce(const Scenario& scenario) {
+  const Scenario quick = Quick(scenario);
+  return OutlookOf(quick, ReadingsOfTwin(quick));
+}
+
+report::PlannedRun LookAt(const std::string& words, const Scenario& scenario, const std::vector<Reading>& readings,
+                          Patience& patience) {
   constexpr double kSame = 0.02;                   // of u: it does not depend on the run's own noise
   constexpr std::size_t kMost = 16, kEnough = 4;  // u that scatters by 15 % is known to 4 % after the most, by 4 % to 2 % after enough
   std::vector<plan::Outlook> outlooks = {OutlookOf(scenario, readings)};
   for (Scenario other = Quick(scenario); outlooks.size() < kMost;) {
+    if (!patience.Allows(kOfAveraging, "the mean of uncertainties over more runs with other noise")) break;
     ++other.seed;
     outlooks.push_back(OutlookOf(other, ReadingsOfTwin(other)));
     if (plan::LargestDifference(outlooks[0], outlooks[1]) < kSame) break;
@@ -109,15 +119,18 @@ diagnose::DiagnosisRun SeenBy(const Scenario& scenario, const std::vector<Readin
   return BenchOf(scenario).diagnose(readings, scenario, options);
 }
 
-diagnose::DiagnosisRun SeenUnderChance(const Scenario& scenario, const std::vector<Reading>& readings) {
+diagnose::DiagnosisRun SeenUnderChance(const Scenario& scenario, const std::vector<Reading>& readings, Patience& patience) {
   constexpr std::array kDrift_K_h = {0.0, 0.2, -0.2};  // more than stated: few rooms stand still
+  Doing(fmt::format("what {} readings would show of causes", readings.size()));
   diagnose::DiagnosisRun seen = SeenBy(scenario, readings);
   const auto [coolest, warmest] = std::ranges::minmax(readings, {}, &Reading::temperature_degC);
   if (!seen.isolability || !(warmest.temperature_degC > coolest.temperature_degC)) return seen;
   auto surely = std::make_shared<diagnose::Isolability>(*seen.isolability);
   Scenario other = Quick(scenario);
   for (const double drift_K_h : kDrift_K_h) {
+    if (!patience.Allows(kOfRooms, "ties under another course of the room's temperature")) continue;
     ++other.seed;
+    Doing(fmt::format("the same under another course of the room's temperature, {} of {}", other.seed - scenario.seed, kDrift_K_h.size()));
     other.environment.drift_K_h = scenario.environment.drift_K_h + drift_K_h;
     const diagnose::DiagnosisRun of_other = SeenBy(other, ReadingsOfTwin(other));
     diagnose::KeepSurelyTold(*of_other.isolability, *surely);
@@ -126,22 +139,24 @@ diagnose::DiagnosisRun SeenUnderChance(const Scenario& scenario, const std::vect
   return seen;
 }
 
-report::PlannedEffects EffectsIn(const Scenario& scenario, const std::vector<Reading>& readings) {
+report::PlannedEffects EffectsIn(const Scenario& scenario, const std::vector<Reading>& readings, Patience& patience) {
   report::PlannedEffects effects;
   try {
-    effects.seen = SeenUnderChance(scenario, readings);
-    effects.unseen = UnseenEffects(scenario, effects.seen);
+    effects.seen = SeenUnderChance(scenario, readings, patience);
+    effects.unseen = UnseenEffects(scenario, effects.seen, patience);
   } catch (const InputError& refusal) {
     effects.refused = refusal.what();
   }
   return effects;
 }
 
-std::vector<plan::Unseen> UnseenEffects(const Scenario& scenario, const diagnose::DiagnosisRun& seen) {
+std::vector<plan::Unseen> UnseenEffects(const Scenario& scenario, const diagnose::DiagnosisRun& seen, Patience& patience) {
   const Plain quick(Quick(scenario));
   std::vector<plan::Unseen> all;
   for (const diagnose::ShownCause& cause : seen.isolability->causes) {
-    if (!cause.at_smallest.empty()) all.push_back(UnseenBy(cause, quick, scenario));
+    Doing(fmt::format("what {} would move unseen, cause {} of {}", cause.effect, &cause - seen.isolability->causes.data() + 1, seen.isolability->causes.size()));
+    if (cause.at_smallest.empty() || !patience.Allows(kOfUnseen, "what a cause would move unseen")) continue;
+    all.push_back(UnseenBy(cause, quick, scenario));
   }
   return all;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/twinbench/patience.h"
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 #include "twin/diagnose/diagnose.h"
@@ -15,9 +16,14 @@ namespace twinbench::tools {
 /// below the noise.
 Scenario Quick(const Scenario& scenario);
 
+/// Of one run of the quickest twin: what the scenario's run states, but for the noise that it finds in its own readings.
+/// @throws InputError if the readings cannot be evaluated.
+plan::Outlook OutlookAtOnce(const Scenario& scenario);
+
 /// What the scenario's run on the twin would give: uncertainties as the mean over runs with other noise, where they depend
 /// on it.
-report::PlannedRun LookAt(const std::string& words, const Scenario& scenario, const std::vector<Reading>& readings);
+report::PlannedRun LookAt(const std::string& words, const Scenario& scenario, const std::vector<Reading>& readings,
+                          Patience& patience);
 
 /// What readings of that design could tell of causes (DiagnosisRun::isolability).
 /// @throws InputError as a diagnosis does, and for more than 20 000 readings.
@@ -25,13 +31,13 @@ diagnose::DiagnosisRun SeenBy(const Scenario& scenario, const std::vector<Readin
 
 /// The same over runs under other chance: what a cause that goes with the room's temperature looks like depends on the
 /// course that the room takes.
-diagnose::DiagnosisRun SeenUnderChance(const Scenario& scenario, const std::vector<Reading>& readings);
+diagnose::DiagnosisRun SeenUnderChance(const Scenario& scenario, const std::vector<Reading>& readings, Patience& patience);
 
-/// All that such a run would show of causes; why not, where its design has no redundancy.
-report::PlannedEffects EffectsIn(const Scenario& scenario, const std::vector<Reading>& readings);
+/// All that such a run would show of causes, but what they move unseen; why not, where its design has no redundancy.
+report::PlannedEffects EffectsIn(const Scenario& scenario, const std::vector<Reading>& readings, Patience& patience);
 
 /// Each cause in the smallest size that would be found, carried out on the twin, and what that moves: the same
 /// noise in both runs. A cause that the quick twin does not show is asked of the scenario's own.
-std::vector<plan::Unseen> UnseenEffects(const Scenario& scenario, const diagnose::DiagnosisRun& seen);
+std::vector<plan::Unseen> UnseenEffects(const Scenario& scenario, const diagnose::DiagnosisRun& seen, Patience& patience);
 
 }  // namespace twinbench::tools

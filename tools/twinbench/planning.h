@@ -13,6 +13,7 @@ struct PlanWish {
   int setups = 0;                        // how many there may be; 0: as many as the scenario has
   double minutes = 0.0, readings = 0.0;  // budget for further runs, by one of the two; 0: none
   std::string goal;                      // the result that counts: "target.ez"; empty: all
+  double cpu_s = 0.0;                    // from which on less is looked at; 0: no end
 };
 
 struct PlanMade {

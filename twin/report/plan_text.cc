@@ -114,6 +114,40 @@ Json HarmonicsJson(const Outlook& outlook) {
   return list;
 }
 
+std::string NotSeparableText(const Outlook& outlook) {
+  std::string text;
+  for (const std::string& lost : outlook.not_separable) text += Paragraph("Not separable: ", lost, 4, kPlanWidth);
+  return text;
+}
+
+}  // namespace
+
+std::string ShiftList(const std::vector<int>& shifts) {
+  return fmt::format("{}", fmt::join(shifts, ", "));
+}
+
+std::string PlanText(const std::vector<PlannedRun>& runs, const PlannedEffects& effects) {
+  std::string text = RunsTable(runs);
+  const bool shifted = std::ranges::any_of(runs, [](const PlannedRun& run) { return run.shifts.has_value(); });
+  if (shifted)
+    text += "variance: of one table's harmonic over that of the mean of all set-ups\n";
+  text += "\n" + CertaintyTable(runs) + "\n" + HarmonicsOfRun(runs.front().outlook);
+  return text + NotSeparableText(runs.front().outlook) + "\n" + PlannedEffectsText(effects);
+}
+
+std::string OutlookText(const Outlook& outlook) {
+  std::vector<std::vector<std::string>> rows;
+  bool has_phases = false;
+  for (const Certainty& result : outlook.results) {
+    const bool is_phase = result.name.find("phase") != std::string::npos || result.name.find("azimuth") != std::string::npos;
+    has_phases = has_phases || is_phase;
+    rows.push_back({result.name, fmt::format("{}", result.values), is_phase ? "-" : fmt::format("{:.2g}", result.rms_u),
+                    is_phase ? "-" : fmt::format("{:.2g}", 2.0 * result.rms_u)});
+  }
+  const std::string table = TextTable({{"result"}, {"values", true}, {"expected u (rms)", true}, {"U = 2 u", true}}, rows, kPlanWidth);
+  return table + (has_phases ? "-: u of a phase follows from the amplitude that the run finds\n" : "") + NotSeparableText(outlook);
+}
+
 Json OutlookJson(const PlannedRun& run) {
   Json results = Json::array();
   for (const Certainty& result : run.outlook.results)
@@ -135,23 +169,6 @@ Json OutlookJson(const PlannedRun& run) {
                     {"lost_harmonics", run.shifts->lost},
                     {"every_set_looked_at", run.shifts->exhaustive}};
   return json;
-}
-
-}  // namespace
-
-std::string ShiftList(const std::vector<int>& shifts) {
-  return fmt::format("{}", fmt::join(shifts, ", "));
-}
-
-std::string PlanText(const std::vector<PlannedRun>& runs, const PlannedEffects& effects) {
-  std::string text = RunsTable(runs);
-  const bool shifted = std::ranges::any_of(runs, [](const PlannedRun& run) { return run.shifts.has_value(); });
-  if (shifted)
-    text += "variance: of one table's harmonic over that of the mean of all set-ups\n";
-  text += "\n" + CertaintyTable(runs) + "\n" + HarmonicsOfRun(runs.front().outlook);
-  for (const std::string& lost : runs.front().outlook.not_separable)
-    text += Paragraph("Not separable: ", lost, 4, kPlanWidth);
-  return text + "\n" + PlannedEffectsText(effects);
 }
 
 Json PlanJson(const std::vector<PlannedRun>& runs, const PlannedEffects& effects) {

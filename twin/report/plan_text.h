@@ -23,6 +23,11 @@ struct PlannedRun {
 std::string PlanText(const std::vector<PlannedRun>& runs, const PlannedEffects& effects);
 nlohmann::json PlanJson(const std::vector<PlannedRun>& runs, const PlannedEffects& effects);
 
+/// What one run would give: u and U = 2 u of each result, and what is not separable.
+std::string OutlookText(const plan::Outlook& outlook);
+/// An entry of `runs`.
+nlohmann::json OutlookJson(const PlannedRun& run);
+
 /// "0, 1, 10, 28"
 std::string ShiftList(const std::vector<int>& shifts);
 
