@@ -4,9 +4,11 @@
 #include <exception>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "twin/benches/registry.h"
 #include "twin/core/kept_readings.h"
+#include "twin/core/last_answer.h"
 #include "twin/report/evaluation.h"
 #include "twin/uncertainty/budget.h"
 #include "twin/uncertainty/standards.h"
@@ -69,6 +71,16 @@ Scenario Drawn(const Study& study, Scenario scenario, std::int64_t trial) {
   return study.standards ? uncertainty::StandardsDrawn(std::move(scenario), study.seed, trial) : scenario;
 }
 
+/// What evaluation and diagnosis believe. Where nothing varies but the seed, the scenario is read once for all trials.
+Scenario Believed(const Study& study, const Design& design, std::int64_t trial) {
+  if (!study.vary.empty()) return study.With(design.BelievedOf(trial));
+  using Text = std::tuple<std::string, std::string, std::vector<std::string>>;
+  static LastAnswer<Text, Scenario> base;
+  Scenario scenario = *base.To(Text(study.scenario_text, study.scenario_folder, study.set), [&] { return study.With({}); });
+  scenario.seed = design.SeedOf(trial);
+  return scenario;
+}
+
 bool HidesNothing(const Study& study) {
   return std::ranges::none_of(study.vary, &Variation::hidden);
 }
@@ -83,7 +95,7 @@ TrialRow RunTrial(const Study& study, const Design& design, std::int64_t trial) 
   TrialRow row;
   row.trial = trial;
   try {
-    const Scenario believed = study.With(design.BelievedOf(trial));
+    const Scenario believed = Believed(study, design, trial);
     CarryOut(study, HidesNothing(study) ? Drawn(study, believed, trial) : TwinOf(study, design, trial), believed, row);
   } catch (const std::exception& error) {
     row.failure = error.what();
