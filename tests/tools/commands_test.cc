@@ -68,6 +68,14 @@ TEST_F(Commands, APlanForAResultThatIsNoneIsRefusedAtOnceWithThoseThereAre) {
   ExpectRefused({"plan", "small.toml", "--goal", "target.rz"}, "separation.target.ez_arcsec");
 }
 
+TEST_F(Commands, APlanWithoutTimeSaysWhatItLeavesOutAndStillProposesARun) {
+  Write("small.toml", kSmall);
+  const nlohmann::json plan = Json({"plan", "small.toml", "--cpu", "0.001", "-o", "next.toml", "--json", "-"});
+  EXPECT_TRUE(plan.at("left_out").contains("another run"));
+  Succeed({"check", "next.toml"});
+  EXPECT_THAT(Succeed({"plan", "small.toml", "--cpu", "0.001"}), HasSubstr("With --cpu 0 all is."));
+}
+
 TEST_F(Commands, TheListHasEveryBenchAndEffect) {
   const nlohmann::json benches = Json({"list", "--json"}).at("benches");
   ASSERT_EQ(benches.size(), BenchFormats().size());

@@ -92,7 +92,7 @@ Planned PlanOf(const PlanWish& options, const Scenario& scenario) {
   Doing("the run as the scenario says");
   LookedAt own = ResultsOfOwn(scenario);
   RequireGoal(options.goal, own);
-  const std::vector<Reading> readings = ReadingsOfTwin(scenario);
+  const std::vector<Reading> readings = ReadingsOfTwin(Quick(scenario));
   Planned planned;
   planned.effects = EffectsIn(scenario, readings, patience);
   own.isolability = planned.effects.seen.isolability;
@@ -173,13 +173,19 @@ nlohmann::json JsonOf(const Planned& planned, const std::vector<plan::NextRun>& 
   return json;
 }
 
+std::string LeftOutText(const std::map<std::string, int>& left_out) {
+  std::vector<std::string> parts;
+  for (const auto& [what, times] : left_out) parts.push_back(times == 1 ? what : fmt::format("{} ({} times)", what, times));
+  if (parts.empty()) return "";
+  return fmt::format("\nNot looked at within --cpu seconds of CPU time: {}. With --cpu 0 all is.\n", fmt::join(parts, "; "));
+}
+
 std::string TextOf(const Planned& planned) {
   std::string text = report::PlanText(planned.runs, planned.effects) + "\n" + report::MendingText(planned.mendings);
   if (!planned.mendings.empty()) text += "\n";
   text += report::PlanAdviceText(planned.advice);
   if (!planned.programme.empty()) text += "\n" + report::ProgrammeText(planned.programme.front());
-  for (const auto& [what, times] : planned.left_out) text += fmt::format("Left out for want of time: {} ({} times). --cpu 0 leaves out nothing.\n", what, times);
-  return text;
+  return text + LeftOutText(planned.left_out);
 }
 
 void Plan(const PlanOptions& options, JsonAnswer& answer) {
@@ -216,7 +222,7 @@ void AddPlan(CLI::App& app) {
   command->add_option("--readings", options->readings, "budget for further runs, in readings")
       ->check(CLI::PositiveNumber)
       ->excludes(minutes);
-  options->cpu_s = 5.0;
+  options->cpu_s = 4.0;
   command->add_option("--cpu", options->cpu_s, "CPU time [s] from which on less is looked at, and what is left out is said; 0: no end")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -58,7 +58,7 @@ LookedAt LookAtResults(const plan::NextRun& run, const Scenario& scenario) {
 }
 
 /// @throws InputError if the bench refuses the run.
-constexpr double kOfCauses = 0.9;  // of a plan's time
+constexpr double kOfCauses = 0.75;  // of a plan's time
 LookedAt Look(const plan::NextRun& run, const Scenario& scenario, Patience& patience) {
   const Scenario quick = Quick(Altered(scenario, run.sets));
   const std::vector<Reading> readings = ReadingsOfTwin(quick);
@@ -271,7 +271,7 @@ std::vector<report::Mending> Mendings(const Scenario& scenario, const LookedAt& 
   if (!design) return {};
   constexpr double kOfMendings = 0.75;
   const auto results_of = [&](const plan::NextRun& run) { return LookAtResults(run, scenario); };
-  const std::vector<LookedAt> good = EachThatCanBe({GoodRun(*design)}, "good shifts", kOfMendings, patience, results_of);
+  const std::vector<LookedAt> good = EachThatCanBe({GoodRun(*design)}, "the run at a good set of shifts", kOfMendings, patience, results_of);
   if (good.empty() || MendedBy(own, good.front()).empty()) return {};
   std::vector<report::Mending> mendings;
   const auto looked = EachThatCanBe(Additions(*design), "an addition that may separate what is lost", kOfMendings, patience, results_of);

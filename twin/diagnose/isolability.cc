@@ -120,8 +120,10 @@ struct ShapeOfCause {
 };
 
 /// Of each cause the shape that shows most, and some others of the grids of its families, evenly spread.
-std::vector<ShapeOfCause> ShapesOf(const Scanner& scanner, const FamiliesByCause& causes) {
-  constexpr std::size_t kMostOthers = 6;
+/// @param rows  Of the design: of long records fewer, for each is weighed against the whole catalogue.
+std::vector<ShapeOfCause> ShapesOf(const Scanner& scanner, const FamiliesByCause& causes, Eigen::Index rows) {
+  constexpr Eigen::Index kManyRows = 4000;
+  const std::size_t most_others = rows > kManyRows ? 2 : 6;
   std::vector<ShapeOfCause> shapes;
   for (std::size_t k = 0; k < causes.size(); ++k) {
     const auto& [cause, best] = causes[k];
@@ -137,7 +139,7 @@ std::vector<ShapeOfCause> ShapesOf(const Scanner& scanner, const FamiliesByCause
         if (!is_best && smallest_SI <= cause.largest_SI) others.push_back({k, {f, g}, false, smallest_SI});
       }
     }
-    const std::size_t count = std::min(kMostOthers, others.size());
+    const std::size_t count = std::min(most_others, others.size());
     for (std::size_t i = 0; i < count; ++i) shapes.push_back(others[(2 * i + 1) * others.size() / (2 * count)]);
   }
   return shapes;
@@ -222,7 +224,7 @@ std::vector<Confusable> ConfusableOf(const std::vector<ShapeOfCause>& shapes, co
 
 std::vector<Confusable> ConfusableOf(const LinearRun& run, const Analysis& analysis, const FamiliesByCause& causes) {
   const Scanner& scanner = *analysis.scanner;
-  const std::vector<ShapeOfCause> shapes = ShapesOf(scanner, causes);
+  const std::vector<ShapeOfCause> shapes = ShapesOf(scanner, causes, run.Rows());
   const std::vector<Trial> trials = TrialsOf(causes, shapes);
   if (trials.empty()) return {};
   std::vector<BestShown> at;
