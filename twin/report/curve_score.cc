@@ -48,10 +48,12 @@ std::string UnitSuffix(const CurveScore& curve) {
 }  // namespace
 
 std::string ScoreTable(const std::vector<CurveScore>& curves) {
-  std::string text = "curve             value         truth rms  error rms  worst error  stated u  (error/u)^2\n";
+  std::size_t width = 16;
+  for (const CurveScore& curve : curves) width = std::max(width, curve.name.size());
+  std::string text = fmt::format("{:{}}  value         truth rms  error rms  worst error  stated u  (error/u)^2\n", "curve", width);
   for (const CurveScore& curve : curves) {
     const Sizes s = SizesOf(curve);
-    text += fmt::format("{:16}  {:12}  {:9.4f}  {:9.4f}  {:11.4f}  {:8.4f}  {:11.3f}\n", curve.name, curve.value,
+    text += fmt::format("{:{}}  {:12}  {:9.4f}  {:9.4f}  {:11.4f}  {:8.4f}  {:11.3f}\n", curve.name, width, curve.value,
                         s.rms_truth, s.rms_error, s.worst_error, s.rms_u, s.mean_chi2);
   }
   return text;

@@ -55,14 +55,15 @@ std::size_t PlaceIn(const std::string& name) {
   return name.ends_with(']') ? std::stoul(name.substr(name.rfind('[') + 1)) : std::size_t(-1);
 }
 
-void AddRows(const nlohmann::json& document, std::set<std::string>& written, std::string& text) {
+/// @param before  Stands before the names.
+void AddRows(const nlohmann::json& document, const std::string& before, std::set<std::string>& written, std::string& text) {
   for (const uncertainty::Quantity& q : uncertainty::StatedQuantities(document)) {
     const std::string name = q.name.starts_with(kOfSeparation) ? q.name.substr(kOfSeparation.size()) : q.name;
     if (!written.insert(name).second) continue;
     const Places places = PlacesOf(document, uncertainty::ListOf(q.name));
     const std::size_t at = PlaceIn(q.name);
     const bool is_placed = at < places.list.size() && places.list[at].is_number();
-    text += fmt::format("{},{},{},{},{}\n", QuoteCsv(name), is_placed ? NumberText(places.list[at].get<double>()) : "", is_placed ? places.of : "",
+    text += fmt::format("{},{},{},{},{}\n", QuoteCsv(before + name), is_placed ? NumberText(places.list[at].get<double>()) : "", is_placed ? places.of : "",
                         NumberText(q.value), NumberText(q.u));
   }
 }
@@ -124,8 +125,8 @@ void TakeOutMean(CurveScore& curve) {
 ResultTable ErrorTable(const Evaluation& evaluation) {
   std::string text = "result,position,position_of,value,u\n";
   std::set<std::string> written;
-  AddRows(evaluation.separation, written, text);
-  AddRows(evaluation.results, written, text);
+  AddRows(evaluation.separation, "", written, text);
+  AddRows(evaluation.results, "results.", written, text);
   return {"errors.csv", text};
 }
 

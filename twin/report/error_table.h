@@ -9,7 +9,7 @@
 namespace twinbench::report {
 
 /// "errors.csv": a row for each number that has a stated uncertainty, `result,position,position_of,value,u`. A result is named as in
-/// separation.json ("target.ez_arcsec[3]"), behind those that results.json alone has; its position is the entry of the list beside its
+/// separation.json ("target.ez_arcsec[3]"), and what results.json alone has "results.calibration.gain.psd_a_x"; its position is the entry of the list beside its
 /// own that says where, as `position_deg` or `order`, and empty where none does.
 ResultTable ErrorTable(const Evaluation& evaluation);
 
