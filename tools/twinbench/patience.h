@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <ctime>
 #include <limits>
 #include <map>
@@ -14,20 +15,29 @@ class Patience {
   Patience() = default;
   explicit Patience(double cpu_s) : cpu_s_(cpu_s) {}
 
-  /// Whether that share of the time is still to be had; else `what` is counted among those that are left out.
+  /// Whether another step of that name, as long as the longest of its kind up to now, ends within that share of the time; else it is
+  /// counted among those that are left out. A step lasts until the next one is asked for.
   bool Allows(double share, const std::string& what) {
     const double taken_s = static_cast<double>(std::clock() - began_) / CLOCKS_PER_SEC;
-    if (taken_s <= share * cpu_s_) return true;
-    ++left_out_[what];
-    return false;
+    if (!step_.empty()) longest_s_[step_] = std::max(longest_s_[step_], taken_s - step_began_s_);
+    step_.clear();
+    if (taken_s + longest_s_[what] > share * cpu_s_) {
+      ++left_out_[what];
+      return false;
+    }
+    step_ = what;
+    step_began_s_ = taken_s;
+    return true;
   }
-  double cpu_s() const { return cpu_s_; }
   const std::map<std::string, int>& left_out() const { return left_out_; }
 
  private:
   double cpu_s_ = std::numeric_limits<double>::infinity();
   std::clock_t began_ = std::clock();
   std::map<std::string, int> left_out_;
+  std::map<std::string, double> longest_s_;
+  std::string step_;
+  double step_began_s_ = 0.0;
 };
 
 }  // namespace twinbench::tools

@@ -222,7 +222,7 @@ void AddPlan(CLI::App& app) {
   command->add_option("--readings", options->readings, "budget for further runs, in readings")
       ->check(CLI::PositiveNumber)
       ->excludes(minutes);
-  options->cpu_s = 4.0;
+  options->cpu_s = 7.0;
   command->add_option("--cpu", options->cpu_s, "CPU time [s] from which on less is looked at, and what is left out is said; 0: no end")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -91,6 +91,7 @@ void Doing(const std::string& what) {
 StillWorking::StillWorking(std::chrono::milliseconds quiet)
     : thread_([this, quiet](const std::stop_token& stop) {
         const auto begin = Steady::now();
+        last_said = begin.time_since_epoch().count();
         const bool on_terminal = isatty(fileno(stderr)) != 0;
         std::unique_lock lock(mutex_);
         const std::chrono::milliseconds pause = on_terminal ? std::min(quiet / 4, std::chrono::milliseconds(500)) : quiet / 4;
