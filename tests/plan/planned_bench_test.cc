@@ -261,7 +261,8 @@ TEST(EffectsIn, SaysWhyNothingWouldBeFound) {
 TEST(AdviceOf, IsInOrderOfWhatItBuysAndAProgrammeKeepsItsBudget) {
   const Scenario scenario = SmallRotary("reseat");
   const LookedAt own = LookAtOwn(scenario);
-  const std::vector<LookedAt> others = LookAtOthers(scenario, 2, without_end);
+  std::vector<LookedAt> others = LookAtOthers(scenario, 2, 1.0, without_end);
+  LookAtCauses(scenario, without_end, others);
   const std::vector<plan::Advice> advice = AdviceOf(own, others, "target.ez");
   ASSERT_GT(advice.size(), 5u);
   for (std::size_t k = 1; k < advice.size(); ++k) EXPECT_GE(advice[k - 1].PerMinute(), advice[k].PerMinute());

@@ -87,6 +87,7 @@ void RequireGoal(const std::string& goal, const LookedAt& own) {
 }
 
 Planned PlanOf(const PlanWish& options, const Scenario& scenario) {
+  constexpr double kOfOtherRuns = 0.15;  // of the time, before causes are weighed: most take little
   Patience patience = options.cpu_s > 0.0 ? Patience(options.cpu_s) : Patience();
   const int setups = SetupsOf(options, scenario);
   Doing("the run as the scenario says");
@@ -94,10 +95,11 @@ Planned PlanOf(const PlanWish& options, const Scenario& scenario) {
   RequireGoal(options.goal, own);
   const std::vector<Reading> readings = ReadingsOfTwin(Quick(scenario));
   Planned planned;
+  std::vector<LookedAt> others = LookAtOthers(scenario, setups, kOfOtherRuns, patience);
   planned.effects = EffectsIn(scenario, readings, patience);
   own.isolability = planned.effects.seen.isolability;
   planned.mendings = Mendings(scenario, own, patience);
-  const std::vector<LookedAt> others = LookAtOthers(scenario, setups, patience);
+  LookAtCauses(scenario, patience, others);
   planned.runs = RunsOf(scenario, readings, setups, others, patience);
   planned.advice = AdviceOf(own, others, options.goal);
   const report::PlanBudget budget = BudgetOf(options);

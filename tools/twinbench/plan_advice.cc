@@ -57,16 +57,6 @@ LookedAt LookAtResults(const plan::NextRun& run, const Scenario& scenario) {
   return ResultsOfRun(run, quick, ReadingsOfTwin(quick));
 }
 
-/// @throws InputError if the bench refuses the run.
-constexpr double kOfCauses = 0.75;  // of a plan's time
-LookedAt Look(const plan::NextRun& run, const Scenario& scenario, Patience& patience) {
-  const Scenario quick = Quick(Altered(scenario, run.sets));
-  const std::vector<Reading> readings = ReadingsOfTwin(quick);
-  LookedAt looked = ResultsOfRun(run, quick, readings);
-  if (patience.Allows(kOfCauses, "what another run would tell of causes")) looked.isolability = ShownBy(quick, readings);
-  return looked;
-}
-
 plan::NextRun WithShifts(const std::string& name, const plan::ShiftDesign& design, std::vector<int> shifts) {
   return {name, design.words + " " + report::ShiftList(shifts), design.sets(shifts), plan::kSameKind};
 }
@@ -245,15 +235,17 @@ std::optional<plan::ShiftDesign> ShiftDesignOf(const Scenario& scenario) {
 }
 
 LookedAt LookAtOwn(const Scenario& scenario) {
-  Patience without_end;
-  return Look(OnceMore(), scenario, without_end);
+  LookedAt own = ResultsOfOwn(scenario);
+  const Scenario quick = Quick(scenario);
+  own.isolability = ShownBy(quick, ReadingsOfTwin(quick));
+  return own;
 }
 
 LookedAt ResultsOfOwn(const Scenario& scenario) {
   return LookAtResults(OnceMore(), scenario);
 }
 
-std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups, Patience& patience) {
+std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups, double share, Patience& patience) {
   const Bench& bench = BenchOf(scenario);
   std::vector<plan::NextRun> runs;
   if (const auto design = ShiftDesignOf(scenario)) {
@@ -263,7 +255,16 @@ std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups, Patienc
   if (bench.next_runs) {
     for (plan::NextRun& run : bench.next_runs(scenario)) runs.push_back(std::move(run));
   }
-  return EachThatCanBe(runs, "another run", 1.0, patience, [&](const plan::NextRun& run) { return Look(run, scenario, patience); });
+  return EachThatCanBe(runs, "another run", share, patience, [&](const plan::NextRun& run) { return LookAtResults(run, scenario); });
+}
+
+void LookAtCauses(const Scenario& scenario, Patience& patience, std::vector<LookedAt>& others) {
+  for (LookedAt& other : others) {
+    if (!patience.Allows(1.0, "what another run would tell of causes")) continue;
+    Doing("what another run would tell of causes: " + other.run.words);
+    const Scenario quick = Quick(Altered(scenario, other.run.sets));
+    other.isolability = ShownBy(quick, ReadingsOfTwin(quick));
+  }
 }
 
 std::vector<report::Mending> Mendings(const Scenario& scenario, const LookedAt& own, Patience& patience) {

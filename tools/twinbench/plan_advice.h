@@ -34,8 +34,11 @@ LookedAt ResultsOfOwn(const Scenario& scenario);
 
 /// All that the bench could do next: its own list, the same once more, and other shifts where something is shifted.
 /// What bench or evaluation refuse is left out.
+/// Results alone: LookAtCauses adds what each would tell of causes, which takes far longer.
 /// @param setups  So many, where the bench's shifts are chosen anew.
-std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups, Patience& patience);
+/// @param share   Of the patience, until which runs are looked at.
+std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups, double share, Patience& patience);
+void LookAtCauses(const Scenario& scenario, Patience& patience, std::vector<LookedAt>& others);
 
 /// Additions that tell apart what the scenario's own run does not and a good set of shifts would: each on the quick
 /// twin, those that take the fewest minutes more first, of equal ones those that know it best.
