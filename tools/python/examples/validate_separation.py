@@ -27,4 +27,4 @@ def chi2(run: tb.Run, estimator: str) -> float:
 
 for estimator in ("rigorous", "published"):
     values = [chi2(run, estimator) for run in runs]
-    print(f"{estimator:10}: (error / u)^2 of ez = {np.mean(values):.2f} +- {np.std(values) / np.sqrt(len(values)):.2f}")
+    print(f"{estimator:10}: (error / u)^2 of ez = {np.mean(values):.2f} ± {np.std(values) / np.sqrt(len(values)):.2f}")

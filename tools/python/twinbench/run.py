@@ -166,7 +166,7 @@ def diagnose(
     exclude: Iterable[str] = (),
     cache_folder: str | os.PathLike = "",
 ) -> Diagnosis:
-    """What the scenario gets wrong about the readings, and what causes it.
+    """Identifies the causes by which the readings differ from the scenario.
 
     exclude: effects left out of the catalogue. cache_folder: where calibrations of thresholds are kept; "" keeps none.
     """
