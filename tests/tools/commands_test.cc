@@ -1,4 +1,5 @@
 #include <regex>
+#include <sstream>
 
 #include "tests/tools/program_here.h"
 #include "twin/core/bench_format.h"
@@ -133,6 +134,8 @@ TEST_F(Commands, TheSchemaKnowsTheKeysOfEveryBench) {
 TEST_F(Commands, HelpExplainsKeysEffectsExitCodesAndWhatABenchFileHas) {
   const std::pair<std::vector<std::string>, std::vector<const char*>> cases[] = {
       {{"help", "scenario"}, {"[[fixture]]"}},
+      {{"help", "scenario", "hob_transmission"}, {"# ---- bench hob_transmission ----", "[hob_procedure]"}},
+      {{"help", "scenario", "laser"}, {"# ---- bench rotary_4dof ----\n[laser]\nwavelength_nm = 650\n"}},
       {{"help", "effects"}, {"psd_gain"}},
       {{"--help"}, {"Exit codes"}},
       {{"help", "bench"}, {"[adc]", "[goniometer]", "in_position_arcsec", "timeout_s", "attempts = 3"}},
@@ -140,6 +143,18 @@ TEST_F(Commands, HelpExplainsKeysEffectsExitCodesAndWhatABenchFileHas) {
   for (const auto& [command, words] : cases) {
     const std::string text = Succeed(command);
     for (const char* word : words) EXPECT_THAT(text, HasSubstr(word));
+  }
+  EXPECT_THAT(Succeed({"help", "scenario", "laser"}), testing::Not(HasSubstr("[grating]")));
+  ExpectRefused({"help", "scenario", "lasr"}, "the nearest is laser");
+}
+
+TEST_F(Commands, HelpOfACommandOpensWithWhatItAnswersAndTwoExamples) {
+  std::istringstream script(Succeed({"completion"}));
+  for (std::string line; std::getline(script, line);) {
+    const std::size_t end = line.find(") words=");
+    if (end == line.npos) continue;
+    const std::string command = line.substr(4, end - 4), one = "  twinbench " + command + "[^\n]*\n";
+    EXPECT_TRUE(std::regex_search(Succeed({command, "--help"}), std::regex("It answers:\n[A-Z][^\n]*\\?\n\nExamples:\n" + one + one))) << command;
   }
 }
 
@@ -149,6 +164,12 @@ TEST_F(Commands, BashCompletesCommandsAndOptions) {
                            "COMP_WORDS=(twinbench measure --all); COMP_CWORD=2; _twinbench; echo \"${COMPREPLY[*]}\"\n");
   ASSERT_EQ(std::system(("bash " + At("complete.sh") + " > " + At("said")).c_str()), 0);
   EXPECT_EQ(Read("said"), "diagnose\n--allow-homing\n");
+}
+
+TEST_F(Commands, ZshAndFishCompleteToo) {
+  EXPECT_THAT(Succeed({"completion", "zsh"}), HasSubstr("bashcompinit\n# eval"));
+  EXPECT_THAT(Succeed({"completion", "fish"}), HasSubstr("complete -c twinbench -n '__fish_seen_subcommand_from measure' -l allow-homing\n"));
+  ExpectRefused({"completion", "tcsh"});
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ Watched Seen(const diagnose::LinearRun& run, const diagnose::WatchOptions& how) 
 std::string AlarmText(const diagnose::Alarm& alarm, const Watched& watched) {
   const diagnose::ChannelUnit& unit = watched.UnitOf(alarm.series);
   const std::string since = alarm.lasting ? fmt::format("since reading {}", alarm.since) : "in this reading";
-  return fmt::format("alarm at reading {}: {} deviates by {:.3g} +- {:.2g} {}, {} (statistic {:.1f}, limit {:.1f})",
+  return fmt::format("alarm at reading {}: {} deviates by {:.3g} ± {:.2g} {}, {} (statistic {:.1f}, limit {:.1f})",
                      alarm.reading, alarm.series, alarm.size / unit.to_SI, alarm.u_size / unit.to_SI, unit.name, since,
                      alarm.z, alarm.limit);
 }

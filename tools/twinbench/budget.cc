@@ -54,7 +54,7 @@ Answer BudgetOf(const Scenario& scenario, const std::string& source, const std::
                 const std::function<void()>& between) {
   const Bench& bench = BenchOf(scenario);
   if (!bench.contributions)
-    throw InputError(source, "nobody has written down what moves the readings of " + scenario.bench,
+    throw InputError(source, "there is no list of the sources that move the readings of " + scenario.bench,
                      BenchesWhere([](const Bench& b) { return b.contributions != nullptr; }));
   const std::vector<uncertainty::Contribution> contributions = bench.contributions(scenario);
   std::size_t runs = 0;
@@ -71,7 +71,7 @@ Answer BudgetOf(const Scenario& scenario, const std::string& source, const std::
 
 void AddBudget(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "budget", "Run a scenario on its twin with one cause after the other silent: which share comes from what");
+      "budget", "Variance contribution of each source of a simulated bench, switched off one at a time");
   auto options = std::make_shared<BudgetOptions>();
   command->add_option("scenario", options->scenario, "TOML file")->required();
   command->add_option("--of", options->figures, "the place in results.json of the figures to be shared out")

@@ -109,15 +109,15 @@ void Campaign(const CampaignOptions& options, JsonAnswer& answer) {
 }  // namespace
 
 void AddCampaign(CLI::App& app) {
-  auto* command = app.add_subcommand("campaign", "Carry a scenario out many times with other keys and seeds");
+  auto* command = app.add_subcommand("campaign", "Simulate a scenario many times with other keys and seeds, and summarise the trials");
   auto options = std::make_shared<CampaignOptions>();
   command->add_option("study", options->study, "study file (TOML)")->required();
   command->add_option("-o,--output", options->table, "table of the results (SQLite), made by the command");
   command->add_option("--threads", options->threads, "trials at a time in this process; default: one for each core")
       ->check(CLI::Range(1, 4096));
   command->add_flag("--resume", options->resume, "go on with a table; trials that are in it are not done again");
-  command->add_flag("--mpi", options->mpi, "share the trials with the other ranks; told by itself below mpirun");
-  command->add_option("--csv", options->csv, "also write the table here, a line a trial");
+  command->add_flag("--mpi", options->mpi, "share the trials with the other ranks; the default under mpirun");
+  command->add_option("--csv", options->csv, "also write the table here, one line per trial");
   command->add_option("--trial", options->trial, "print the scenario of this trial, and do no more");
   AddWebOption(*command, options->web);
   command->add_option("--show", options->show, "result whose mean the page shows, as the summary names it; left out: the first few")->allow_extra_args(false);

@@ -60,7 +60,7 @@ Certified CertifiedOf(const RunFolder& folder, const nlohmann::json& results, co
   if (!certified.quantities.empty()) return certified;
   std::string why;
   if (!certified.left_out.empty()) why = ": " + certified.left_out.front().what + ", " + certified.left_out.front().why;
-  throw InputError(folder.results(), "nothing in it can be certified" + why, "results with uncertainties that are told apart");
+  throw InputError(folder.results(), "nothing in it can be certified" + why, "separable results with uncertainties");
 }
 
 CertificateContent ContentOf(const std::string& run, const std::string& laboratory, const std::string& laboratory_file) {
@@ -147,7 +147,7 @@ void AddCertificate(CLI::App& app) {
   auto* command = app.add_subcommand("certificate", "Write a run's results as a digital calibration certificate (DCC 3.3.0, XML)");
   auto options = std::make_shared<CertificateOptions>();
   command->add_option("run", options->run, "folder of a run that is finished");
-  command->add_option("--with", options->laboratory, "TOML file of what only the laboratory knows");
+  command->add_option("--with", options->laboratory, "TOML file of the laboratory, its customer and the item");
   command->add_option("-o,--output", options->output, "file to write, - for stdout")->capture_default_str();
   command->add_option("--schema", options->schema, "folder with dcc.xsd and the schemas that it imports: validate with xmllint first, and write nothing if it fails");
   command->add_flag("--template", options->wants_template, "write the TOML file to fill in instead");

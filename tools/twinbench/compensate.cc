@@ -78,14 +78,14 @@ CompensationMade CompensationOf(const RecordedRun& run, const std::string& sourc
 
 void AddCompensate(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "compensate", "Turn the index error of a table into the corrections that its controller should add");
+      "compensate", "Compute from the index error of a table the corrections that its controller should add");
   auto options = std::make_shared<CompensateOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
   command->add_option("-o,--output", options->table, "write the table here");
   command->add_option("--form", options->form, FormsText())->capture_default_str();
   command->add_option("--axis", options->axis, "what the controller calls the axis")->capture_default_str();
-  command->add_option("--points", options->how.points, "entries a turn; 0: as the orders and the form need")
+  command->add_option("--points", options->how.points, "entries per turn; 0: as the orders and the form need")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
   command->add_option("--highest-order", options->how.search.highest_order, "lines above it are taken not to exist")

@@ -39,13 +39,36 @@ std::string ForBash(const CLI::App& app) {
       commands, cases);
 }
 
+/// zsh reads what bash does.
+std::string ForZsh(const CLI::App& app) {
+  return "# eval \"$(twinbench completion zsh)\" in ~/.zshrc\nautoload -Uz compinit bashcompinit && compinit && bashcompinit\n" + ForBash(app);
+}
+
+std::string ForFish(const CLI::App& app) {
+  std::string text = "# twinbench completion fish > ~/.config/fish/completions/twinbench.fish\n";
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    text += fmt::format("complete -c twinbench -n __fish_use_subcommand -f -a {}\n", command->get_name());
+    for (const CLI::Option* option : command->get_options()) {
+      for (const std::string& name : option->get_lnames())
+        text += fmt::format("complete -c twinbench -n '__fish_seen_subcommand_from {}' -l {}\n", command->get_name(), name);
+    }
+  }
+  return text;
+}
+
+std::string For(const std::string& shell, const CLI::App& app) {
+  return shell == "fish" ? ForFish(app) : shell == "zsh" ? ForZsh(app) : ForBash(app);
+}
+
 }  // namespace
 
 void AddCompletion(CLI::App& app) {
-  auto* command = app.add_subcommand("completion", "Print what bash needs to complete commands and options");
-  AnswerWith(*command, "it", [&app](JsonAnswer& answer) {
-    if (!answer.IsOnStdout()) fmt::print("{}", ForBash(app));
-    answer.Write({{"shell", "bash"}, {"script", ForBash(app)}});
+  auto* command = app.add_subcommand("completion", "Print the completion of commands and options for bash, zsh or fish");
+  auto shell = std::make_shared<std::string>("bash");
+  command->add_option("shell", *shell, "bash, zsh or fish")->check(CLI::IsMember({"bash", "zsh", "fish"}))->capture_default_str();
+  AnswerWith(*command, "it", [&app, shell](JsonAnswer& answer) {
+    if (!answer.IsOnStdout()) fmt::print("{}", For(*shell, app));
+    answer.Write({{"shell", *shell}, {"script", For(*shell, app)}});
   });
 }
 

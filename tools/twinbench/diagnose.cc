@@ -134,7 +134,7 @@ void WriteExtended(const DiagnoseOptions& options, const RecordedRun& run, const
   } catch (const InputError& refusal) {
     left = refusal.what();
   }
-  if (!left.empty()) found.diagnosis.notes.push_back("the written scenario does not leave these readings silent. A second diagnosis with it: " + left);
+  if (!left.empty()) found.diagnosis.notes.push_back("the written scenario does not explain these readings. A second diagnosis with it: " + left);
 }
 
 void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
@@ -177,22 +177,22 @@ void Diagnose(const DiagnoseOptions& options, JsonAnswer& answer) {
 }  // namespace
 
 void AddDiagnose(CLI::App& app) {
-  auto* command = app.add_subcommand("diagnose", "Find what a scenario gets wrong about the readings, and name it");
+  auto* command = app.add_subcommand("diagnose", "Identify the causes by which readings differ from a scenario");
   auto options = std::make_shared<DiagnoseOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
   command->add_option("-o,--output", options->extended, "write the scenario extended by what was found");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
-  command->add_option("--model", options->model, "sensitivities believed: published equations, or rigorous")
+  command->add_option("--model", options->model, "rigorous: the exact model; published: the paper's equations")
       ->check(CLI::IsMember({"published", "rigorous"}))
       ->capture_default_str();
-  command->add_option("--strike", options->excluded, "take an effect out of the catalogue")
+  command->add_option("--strike", options->excluded, "exclude an effect of the catalogue")
       ->allow_extra_args(false);
   command->add_option("--cache", options->cache, "folder that keeps calibrated thresholds; else the user's cache");
-  command->add_flag("--verbose", options->verbose, "print all there is to be said, not what matters first");
+  command->add_flag("--verbose", options->verbose, "print every block, not only the summary");
   command->add_flag("--follow", options->follow, "watch a run while it is recorded and raise alarms");
-  command->add_option("--false-alarm-rate", options->false_alarm_rate, "of --follow, a run")->capture_default_str();
+  command->add_option("--false-alarm-rate", options->false_alarm_rate, "of --follow, per run")->capture_default_str();
   AnswerWith(*command, "diagnosis.json", [options](JsonAnswer& answer) { Diagnose(*options, answer); });
 }
 

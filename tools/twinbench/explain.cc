@@ -264,7 +264,7 @@ void ExplainEverywhere(const ExplainOptions& options, JsonAnswer& answer) {
 }  // namespace
 
 void AddExplain(CLI::App& app) {
-  auto* command = app.add_subcommand("explain", "Say what an effect is, and show what it does to readings");
+  auto* command = app.add_subcommand("explain", "Explain an effect, and show what it does to readings");
   auto options = std::make_shared<ExplainOptions>();
   command->add_option("effect", options->effect, "its name, as `twinbench list` has it")->required();
   command->add_option("--bench", options->bench, "on this bench only");

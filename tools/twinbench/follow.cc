@@ -72,7 +72,7 @@ class Follower {
                                options.overrides)) {}
 
   void Run() {
-    fmt::print(stderr, "watching {} with a false-alarm rate of {:g} % a run\n", options_.folder,
+    fmt::print(stderr, "watching {} with a false-alarm rate of {:g} % per run\n", options_.folder,
                100.0 * options_.false_alarm_rate);
     while (!complete_ && interrupted == 0) {
       const auto before = WallClock::now();
@@ -121,7 +121,7 @@ class Follower {
   void Close() const {
     answer_.Write(ToJson(last_, options_, seen_, complete_));
     if (answer_.IsOnStdout()) return;
-    fmt::print("{} readings, {}; {} judged by those before them; {} at a false-alarm rate of {:g} % a run\n", seen_,
+    fmt::print("{} readings, {}; {} judged by those before them; {} at a false-alarm rate of {:g} % per run\n", seen_,
                complete_ ? "complete" : "not complete", last_.report.judged,
                alarms_ == 0 ? "no alarm" : fmt::format("{} alarm{}", alarms_, alarms_ == 1 ? "" : "s"),
                100.0 * options_.false_alarm_rate);

@@ -133,7 +133,7 @@ Imported ImportedFrom(const ImportWish& wish) {
 }
 
 void AddImport(CLI::App& app) {
-  auto* command = app.add_subcommand("import", "Make a run folder from anybody's recording or readings.csv");
+  auto* command = app.add_subcommand("import", "Import a recording of any layout, or a readings.csv, as a run");
   auto options = std::make_shared<ImportOptions>();
   command->add_option("files", options->files, "readings.csv, or recordings of any layout")->required();
   command->add_option("--scenario", options->scenario, "the bench that made them; left out: its usual one");

@@ -112,28 +112,28 @@ void Investigate(const InvestigateOptions& options, LivePage& page, JsonAnswer& 
 
 void AddInvestigate(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "investigate", "Measure, diagnose and choose the run that tells most next, until the causes are told apart");
+      "investigate", "Measure, diagnose and choose the most informative next run, until the cause is identified");
   auto options = std::make_shared<InvestigateOptions>();
   command->add_option("scenario", options->scenario, "what is believed of the bench (TOML)")->required();
   command->add_option("--twin", options->twin, "scenario of a twin that has something hidden");
   command->add_option("--bench", options->bench, "bench file (TOML): devices, the own twin, a program");
   command->add_option("--goal", options->goal, "how certain a result shall be: \"target.ez 0.1arcsec\"");
   command->add_option("--budget", options->budget, "of measuring: 2h, 90min")->capture_default_str();
-  command->add_option("--conclusive", options->conclusive, "probability from which a cause is told")
+  command->add_option("--conclusive", options->conclusive, "probability from which a cause counts as identified")
       ->check(CLI::Range(0.5, 0.9999))
       ->capture_default_str();
   command->add_option("--runs", options->most_runs, "no more than so many")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_option("--faint", options->faint,
-                      "where nothing is found, measure on until a cause of so many noise standard deviations in one run "
-                      "would show; 0: believe the first run. 2 unless there is a goal")
+                      "smallest effect to detect: where nothing is found, measure on until a cause of so many noise standard deviations in "
+                      "one run would be found; 0: stop after the first run. 2 unless there is a goal")
       ->check(CLI::Range(0.0, 100.0));
   command->add_option("-o,--output", options->folder, "folder of the investigation; goes on if it was begun");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
   command->add_flag("--ask", options->ask,
-                    "confirm every run; also offers those for which somebody has to change the bench or its room");
+                    "confirm every run; also offers those for which somebody has to change the bench or its temperature");
   AddWebOption(*command, options->web);
   AnswerWith(*command, "investigation.json", [options](JsonAnswer& answer) {
     WithLivePage(options->web, "investigate", [&](LivePage& page) { Investigate(*options, page, answer); });

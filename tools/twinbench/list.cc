@@ -35,7 +35,7 @@ void ListAll(JsonAnswer& answer) {
 }  // namespace
 
 void AddList(CLI::App& app) {
-  auto* command = app.add_subcommand("list", "List the benches and what can be hidden in each");
+  auto* command = app.add_subcommand("list", "List the benches and the effects of each");
   AnswerWith(*command, "the list", ListAll);
 }
 

@@ -111,7 +111,7 @@ std::string Summary(const MachineRehearsal& r, const std::vector<MachineAxis>& a
                     const std::vector<AxisLimits>& limits) {
   const long minutes = std::lround(r.duration_s / 60.0);
   std::string text =
-      fmt::format("rehearsal on the twin: {} readings, {} h {:02} min\n", r.readings, minutes / 60, minutes % 60);
+      fmt::format("rehearsal by simulation: {} readings, {} h {:02} min\n", r.readings, minutes / 60, minutes % 60);
   for (std::size_t k = 0; k < axes.size(); ++k) {
     const bool limited = std::isfinite(limits[k].lower) && std::isfinite(limits[k].upper);
     text += fmt::format("  axis {:<4} {:<34}{}\n", axes[k].name, FromTo(axes[k], r.travel[k]),

@@ -151,7 +151,7 @@ void Measure(const MeasureOptions& o, LivePage& page, JsonAnswer& answer) {
 
 void AddMeasure(CLI::App& app) {
   auto* command =
-      app.add_subcommand("measure", "Carry out a scenario on a real bench, a served one or a recording");
+      app.add_subcommand("measure", "Measure a scenario on a real bench, an emulated one or a recording");
   auto options = std::make_shared<MeasureOptions>();
   command->add_option("scenario", options->scenario, "scenario file (TOML)")->required();
   command->add_option("--bench", options->bench, "bench file (TOML): the devices and how they are reached")
@@ -167,8 +167,8 @@ void AddMeasure(CLI::App& app) {
   command->add_flag("--allow-homing", options->allow_homing,
                     "a table or machine whose controller has lost its origin may be driven to find it");
   command->add_flag("--rehearse", options->rehearse,
-                    "first on the twin: travel, spots on the PSDs, time it will take");
-  command->add_flag("--rehearse-only", options->rehearse_only, "nothing but that");
+                    "simulate it first: travel, spots on the PSDs, duration");
+  command->add_flag("--rehearse-only", options->rehearse_only, "simulate it only");
   AddWebOption(*command, options->web);
   AnswerWith(*command, "what came of the run", [options](JsonAnswer& answer) {
     WithLivePage(options->web, "measure", [&](LivePage& page) { Measure(*options, page, answer); });

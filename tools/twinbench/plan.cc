@@ -213,7 +213,7 @@ PlanMade MakePlan(const Scenario& scenario, const PlanWish& wish) {
 void AddPlan(CLI::App& app) {
   auto* command = app.add_subcommand(
       "plan",
-      "Say what a run would give and what it would not see, and which run would give more for its time");
+      "Expected uncertainty of a run, what it cannot resolve, and which run to make next");
   auto options = std::make_shared<PlanOptions>();
   command->add_option("scenario", options->scenario, "TOML file")->required();
   command->add_option("--setups", options->setups, "how many there may be; left out: as many as the scenario has")

@@ -1,6 +1,7 @@
 #include "tools/twinbench/program.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +13,7 @@
 #endif
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/examples.h"
 #include "tools/twinbench/exit_code.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/terminal.h"
@@ -22,43 +24,48 @@ namespace twinbench::tools {
 namespace {
 
 constexpr const char* kAbout =
-    "A virtual test bench for precision rotary tables: a scenario file goes in, the virtual bench carries out the\n"
-    "measurement, and the same pipeline that evaluates a real bench returns the errors of both tables.";
+    "A virtual test bench for precision rotary tables: it simulates the measurement that a scenario file describes,\n"
+    "evaluates the readings as those of a real bench, and identifies what is wrong with them.";
 
 constexpr const char* kExamples =
     "A first session:\n"
-    "  twinbench run scenarios/rotary_4dof.toml -o runs/first     carry out, measure, separate\n"
+    "  twinbench run scenarios/rotary_4dof.toml -o runs/first     simulate, measure, separate\n"
     "  twinbench score runs/first                                 compare with the truth\n"
     "  twinbench report runs/first                                a page of plots and tables that opens offline\n"
-    "  twinbench diagnose runs/first                              does the scenario describe the bench?\n"
-    "  twinbench export runs/first --readings readings.csv        hand the readings to somebody else\n"
+    "  twinbench diagnose runs/first                              which cause explains the difference?\n"
+    "  twinbench export runs/first --readings readings.csv        readings for other software\n"
     "  twinbench separate readings.csv --scenario scenarios/rotary_4dof.toml --json - --estimator published\n"
     "\n"
     "The same scenario many times:\n"
     "  twinbench campaign study.toml -o study.sqlite              trials in parallel, one table, a summary\n"
     "\n"
-    "With a bench, or with the twin shown as one:\n"
+    "With a bench, here an emulated one:\n"
     "  twinbench serve scenarios/rotary_4dof.toml --speed max --write-bench bench.toml\n"
     "  twinbench measure scenarios/rotary_4dof.toml --bench bench.toml --rehearse -o runs/monday\n"
     "\n"
-    "  twinbench help scenario     every key of a scenario file with unit, default and bounds\n"
-    "  twinbench help effects      every error that can be hidden in the bench\n"
+    "  twinbench help scenario     every key of a scenario file with unit, default and bounds; of one BENCH or TABLE with its name\n"
+    "  twinbench help effects      every effect that a scenario can hide in the bench\n"
     "  twinbench help bench        every key of a bench file\n"
     "  twinbench help map          every key of a map for importing recordings, and the ready maps\n"
-    "\n"
-    "Exit codes: 0 done, 1 the bench, the disk or the network failed, 2 a file or an option is wrong, 3 something was told\n"
-    "to stop and nobody knows whether it stands.";
+    "\n";
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done, 1 the bench, the disk or the network failed, 2 a file or an option is wrong, 3 an axis was told\n"
+    "to stop and it is not known whether it stands.";
+
+std::vector<std::string> NamesOf(const std::vector<const CLI::App*>& commands) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands) names.push_back(command->get_name());
+  return names;
+}
 
 std::string Names(const std::vector<const CLI::App*>& commands) {
-  std::string text;
-  for (const CLI::App* command : commands) text += (text.empty() ? "" : ", ") + command->get_name();
-  return text;
+  return fmt::format("{}", fmt::join(NamesOf(commands), ", "));
 }
 
 /// The first word that a command does not take, with what comes nearest.
 std::string NotTaken(const CLI::App& command, const std::string& word) {
   if (!word.starts_with("-"))
-    return fmt::format("there is no place for \"{}\": an option takes one value, and is given again for another",
+    return fmt::format("unexpected argument \"{}\": an option takes one value, and is given again for another",
                        ForTerminal(word));
   std::vector<std::string> options;
   for (const CLI::Option* option : command.get_options()) {
@@ -79,9 +86,10 @@ std::string Complaint(const CLI::App* app, const CLI::Error& error) {
   const std::vector<CLI::App*> chosen = app->get_subcommands();
   if (chosen.empty()) {
     const std::vector<std::string> words = app->remaining();
-    return fmt::format("twinbench: {}; expected one of {}\n",
-                       words.empty() ? "there is no command" : "unknown command " + words.front(),
-                       Names(app->get_subcommands([](const CLI::App*) { return true; })));
+    const std::vector<const CLI::App*> commands = app->get_subcommands([](const CLI::App*) { return true; });
+    return fmt::format("twinbench: {}; expected one of {}{}\n",
+                       words.empty() ? "there is no command" : "unknown command " + ForTerminal(words.front()), Names(commands),
+                       words.empty() ? "" : "; the nearest is " + Nearest(words.front(), NamesOf(commands)));
   }
   const std::string command = "twinbench " + chosen.front()->get_name();
   return fmt::format("{}: {}; expected what {} --help lists\n", command, InWords(*chosen.front(), error), command);
@@ -104,7 +112,7 @@ void RequireAllSaid() {
 
 int Obey(int argc, char** argv) {
   CLI::App app(kAbout, "twinbench");
-  app.footer(kExamples);
+  app.footer(kExitCodes);  // of the commands too
   app.set_version_flag("--version", std::string(TWINBENCH_VERSION));
   app.require_subcommand(1);
   app.failure_message(Complaint);
@@ -112,6 +120,8 @@ int Obey(int argc, char** argv) {
                          AddCompensate, AddUncertainty, AddBudget, AddPlan, AddInvestigate, AddDiagnose, AddReport, AddCertificate, AddScore, AddNew,
                          AddCheck, AddList, AddExplain, AddHelp, AddSchema, AddCompletion})
     add(app);
+  app.footer(std::string(kExamples) + kExitCodes);
+  OpenWithExamples(app, argc > 1 ? argv[1] : nullptr);
   try {
     app.parse(argc, argv);
     RequireAllSaid();

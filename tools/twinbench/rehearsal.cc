@@ -147,7 +147,7 @@ Rehearsal Rehearse(const Scenario& scenario, const procedure::Options& limits, d
 
 std::string Summary(const Rehearsal& r, const procedure::Options& limits) {
   std::string text =
-      fmt::format("rehearsal on the twin: {} readings, {}\n", r.readings, HoursMinutes(r.duration_s));
+      fmt::format("rehearsal by simulation: {} readings, {}\n", r.readings, HoursMinutes(r.duration_s));
   text += TravelLine("target", r.target, limits.target);
   text += TravelLine("reference", r.reference, limits.reference);
   text += fmt::format("  spots       {:>9.0f} % of half the width of psd_a, {:.0f} % of psd_b at most\n",

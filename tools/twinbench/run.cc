@@ -47,7 +47,7 @@ void ReplaceErrors(Scenario& scenario, const std::string& option) {
 }
 
 std::string SeedOverride(const std::string& seed) {
-  if (!ParseSeed(seed)) throw InputError("--seed " + seed, "this is no seed", "a whole number from 0 to 2^64 - 1");
+  if (!ParseSeed(seed)) throw InputError("--seed " + seed, "invalid seed", "a whole number from 0 to 2^64 - 1");
   return "seed=\"" + seed + "\"";
 }
 
@@ -74,7 +74,7 @@ void Run(const RunOptions& options, LivePage& page, JsonAnswer& answer) {
 }  // namespace
 
 void AddRun(CLI::App& app) {
-  auto* command = app.add_subcommand("run", "Carry out a scenario on the twin, then measure and separate");
+  auto* command = app.add_subcommand("run", "Simulate a scenario, then measure and separate its readings");
   auto options = std::make_shared<RunOptions>();
   command->add_option("scenario", options->scenario, "scenario file (TOML)")->required();
   command->add_option("-o,--output", options->folder, "folder of the run, made by the command")->required();

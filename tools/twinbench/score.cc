@@ -30,7 +30,7 @@ void PrintScore(const ScoreOptions& options, JsonAnswer& answer) {
     throw InputError(folder.path, "there is no record.sqlite in it", "the folder of a run");
   if (!std::filesystem::exists(folder.truth()))
     throw InputError(folder.truth(), "is not there",
-                     "a run of the twin: what was measured or imported has no truth");
+                     "a simulated run: what was measured or imported has no truth");
   const nlohmann::json truth = ReadJson(folder.truth());
   const RecordedRun run = LoadPlausibleRun(folder.path, "", {});
   report::ScoredRun score = ScoreOf(run.scenario, run.readings, truth, EstimatorNamed(options.estimator));
@@ -50,10 +50,10 @@ nlohmann::json ScoreJson(const report::ScoredRun& score) {
 }
 
 void AddScore(CLI::App& app) {
-  auto* command = app.add_subcommand("score", "Compare a run of the twin with its truth");
+  auto* command = app.add_subcommand("score", "Compare a simulated run with its truth");
   auto options = std::make_shared<ScoreOptions>();
   command->add_option("run", options->folder, "folder of the run")->required();
-  command->add_option("--estimator", options->estimator, "published or rigorous")
+  command->add_option("--estimator", options->estimator, "rigorous: weighted least squares (exact model); published: the paper's equations")
       ->check(CLI::IsMember({"published", "rigorous"}))
       ->capture_default_str();
   command->add_option("--against", options->against, "score your own result: CSV with columns result, value and u, as separate --tables writes them");

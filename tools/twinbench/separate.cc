@@ -43,13 +43,13 @@ void Separate(const SeparateOptions& options, JsonAnswer& answer) {
 
 void AddSeparate(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "separate", "Separate readings into the errors of what was measured and of what it was measured with");
+      "separate", "Separate readings into the errors of the table under test and of its reference");
   auto options = std::make_shared<SeparateOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
   command->add_option("--tables", options->tables,
                       "write errors by position with u (errors.csv) and the bench's other tables into this folder, or the errors alone into this FILE.csv");
-  command->add_option("--estimator", options->estimator, "published: the paper's equations; rigorous: ours")
+  command->add_option("--estimator", options->estimator, "rigorous: weighted least squares (exact model); published: the paper's equations")
       ->check(CLI::IsMember({"published", "rigorous"}))
       ->capture_default_str();
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")

@@ -177,12 +177,12 @@ void AddPort(CLI::App& command, const char* name, int& port, const char* what) {
 }  // namespace
 
 void AddServe(CLI::App& app) {
-  auto* command = app.add_subcommand("serve", "Show the twin as hardware on the network, until Ctrl-C");
+  auto* command = app.add_subcommand("serve", "Emulate the bench as network instruments, until Ctrl-C");
   auto arguments = std::make_shared<ServeArguments>();
   command->add_option("scenario", arguments->scenario, "scenario file (TOML)")->required();
   command->add_option("--set", arguments->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
-  command->add_option("--speed", arguments->speed, "bench seconds a real second, or max")->capture_default_str();
+  command->add_option("--speed", arguments->speed, "bench seconds per real second, or max")->capture_default_str();
   command->add_option("--bind", arguments->serve.bind, "address to be reached at")->capture_default_str();
   AddPort(*command, "--iiod-port", arguments->serve.iiod_port, "A/D converter, IIOD; 0: any free port");
   AddPort(*command, "--scpi-port", arguments->serve.scpi_port, "tables and instruments, SCPI");

@@ -84,15 +84,15 @@ Answer UncertaintyOf(const RecordedRun& run, const std::string& source, const st
 void AddUncertainty(CLI::App& app) {
   auto* command = app.add_subcommand(
       "uncertainty",
-      "Say how certain the results of a run are, source by source (GUM), and by trials (supplement 1)");
+      "Uncertainty budget of a run's results (GUM), and by Monte Carlo (Supplement 1)");
   auto options = std::make_shared<UncertaintyOptions>();
   options->trials.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
-  command->add_option("--estimator", options->estimator, "how readings become errors")
+  command->add_option("--estimator", options->estimator, "rigorous: weighted least squares (exact model); published: the paper's equations")
       ->check(CLI::IsMember({"rigorous", "published"}))
       ->capture_default_str();
-  command->add_flag("--monte-carlo", options->monte_carlo, "propagate distributions by trials as well");
+  command->add_flag("--monte-carlo", options->monte_carlo, "propagate distributions by Monte Carlo trials as well (Supplement 1)");
   command->add_option("--trials", options->trials.most_trials, "stop after so many at the latest")
       ->check(CLI::Range(1000, 100000000))
       ->capture_default_str();
