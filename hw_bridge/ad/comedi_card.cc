@@ -63,7 +63,7 @@ unsigned RangeOf(comedi_t* card, const std::string& name, unsigned subdevice, un
     best = k;
     best_V = range->max - range->min;
   }
-  if (!best) RefuseCard(name, "has no range that covers +-" + std::to_string(range_V) + " V");
+  if (!best) RefuseCard(name, "has no range that covers ±" + std::to_string(range_V) + " V");
   return *best;
 }
 

@@ -31,7 +31,7 @@ bool Agree(double a, double b, double tolerance) {
 void RequireNominal(const Negotiated& actual, std::size_t k, const AdcSettings& adc) {
   const double lsb_V = std::ldexp(adc.range_V, 1 - adc.bits), range_V = actual.actual.channels[k].range_V;
   if (!Agree(range_V, adc.range_V, kRangeTolerance)) {
-    Refuse(actual, "range", "+-" + Text(range_V) + " V", "+-" + Text(adc.range_V) + " V");
+    Refuse(actual, "range", "±" + Text(range_V) + " V", "±" + Text(adc.range_V) + " V");
   }
   const double zero_V = actual.calibration[k].coefficients_V.at(0);
   if (std::abs(zero_V) > 0.01 * lsb_V) Refuse(actual, "voltage at code 0", Text(zero_V) + " V", "0 V");
@@ -84,7 +84,7 @@ std::string Describe(const Negotiated& actual) {
   std::string text = actual.identity;
   if (!actual.serial.empty()) text += ", serial " + actual.serial;
   if (!actual.firmware.empty()) text += ", " + actual.firmware;
-  text += ", " + Text(actual.actual.scan_rate_Hz) + " scans/s, " + std::to_string(actual.bits) + " bits, +-" +
+  text += ", " + Text(actual.actual.scan_rate_Hz) + " scans/s, " + std::to_string(actual.bits) + " bits, ±" +
           Text(actual.actual.channels.front().range_V) + " V, skew " + Text(actual.skew_s.back()) + " s";
   if (actual.calibrated) text += ", calibrated";
   return text + (actual.stamps_scans ? ", scans stamped" : ", scans not stamped");
@@ -95,7 +95,7 @@ std::vector<std::string> DescribeChannels(const Negotiated& actual) {
   for (std::size_t k = 0; k < actual.actual.channels.size(); ++k) {
     const ScanChannel& channel = actual.actual.channels[k];
     const CalibrationPolynomial& polynomial = actual.calibration[k];
-    lines.push_back(fmt::format("{}: +-{} V, {}, {} us behind the first; {} volts = {} in powers of (code - {})",
+    lines.push_back(fmt::format("{}: ±{} V, {}, {} us behind the first; {} volts = {} in powers of (code - {})",
                                 channel.id, channel.range_V, channel.reference, 1e6 * actual.skew_s[k],
                                 actual.calibrated ? "calibrated" : "nominal",
                                 fmt::join(polynomial.coefficients_V, ", "), polynomial.origin));

@@ -114,7 +114,7 @@ TEST(CertificateXml, HoldsEveryNumberBitForBit) {
 /// GUM 7.2.6: two digits of the uncertainty, and the value to the same place.
 TEST(CertificateXml, RoundsWhatIsForPeopleOnly) {
   const pugi::xml_document document = Parsed(CertificateXml(Content()));
-  EXPECT_EQ(TextAt(document, "//dcc:result[2]/dcc:description/dcc:content"), "(0.184 +- 0.031) um, k = 1.96, 95 %");
+  EXPECT_EQ(TextAt(document, "//dcc:result[2]/dcc:description/dcc:content"), "(0.184 ± 0.031) um, k = 1.96, 95 %");
 }
 
 TEST(CertificateXml, TakesMarkupOfAScenarioAsText) {
@@ -134,8 +134,8 @@ TEST(CertificateXml, TakesBytesThatAreNoTextAsQuestionMarks) {
 
 TEST(CertificateXml, RepeatsWhatADiagnosisHasFound) {
   CertificateContent content = Content();
-  content.diagnosis = "Named: drift";
-  EXPECT_EQ(TextAt(Parsed(CertificateXml(content)), "//dcc:statement[3]/dcc:declaration/dcc:content"), "Named: drift");
+  content.diagnosis = "Cause identified: drift";
+  EXPECT_EQ(TextAt(Parsed(CertificateXml(content)), "//dcc:statement[3]/dcc:declaration/dcc:content"), "Cause identified: drift");
 }
 
 TEST(CertificateXml, SaysWhatIsSimulatedInEveryPlaceAndClaimsNoTraceability) {

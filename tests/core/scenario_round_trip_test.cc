@@ -206,7 +206,7 @@ EffectSettings AnyEffect(const EffectEntry& entry, Random& random) {
 
 EmpiricalSettings AnyEmpirical(const std::string& bench, Random& random) {
   EmpiricalSettings empirical;
-  empirical.signature = "order 7 locked to the \"reference\" angle";
+  empirical.signature = "order 7 synchronous with the \"reference\" angle";
   const std::vector<std::string>& channels = FormatOf(bench).channels;
   empirical.channel = channels[random() % channels.size()];
   if (random() % 2 == 0) empirical.by = "time";

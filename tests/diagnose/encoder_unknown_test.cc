@@ -56,15 +56,15 @@ TEST(EncoderUnknown, FindsLinesMapsTonesWanderPassesAndWhatGrowsWithTimeOrSpeed)
     return 1e-4 * r.velocity_rad_s * std::sin(4.0 * r.reference_rad);
   };
   const char* map_words =
-      ".*direction times order 3 locked to reference angle, odd in direction, on angle, amplitude 0.0057 deg.*";
+      ".*direction times order 3 synchronous with reference angle, odd in direction, on angle, amplitude 0.0057 deg.*";
   const Structure structures[] = {
       // The next grid point is at most 0.025 away: 0.3 rad of phase at the ends of two turns.
       {"stops", "line", [](const Reading& r) { return 1e-4 * std::cos(4.508 * r.reference_rad); }, 0.15,
-       "line at 4[.](49|50|51|52)[0-9] per turn locked to reference angle, .*deg"},
+       "line at 4[.](49|50|51|52)[0-9] per turn synchronous with reference angle, .*deg"},
       {"stops", "direction harmonic", direction_map, 1e-6, map_words},
       {"sweep", "direction harmonic", direction_map, 1e-6, map_words},
       // Up to a quarter of the resolution away; the engine refines it.
-      {"stops", "tone", tone, 0.5, ".*Hz locked to time.*"},
+      {"stops", "tone", tone, 0.5, ".*Hz, function of time.*"},
       {"stops", "wander", wander, 0.01, ".*"},
       {"stops", "pass", [](const Reading& r) { return r.pass == 2 ? 1e-4 : 0.0; }, 1e-6, ".*"},
       {"stops", "pass harmonic", one_pass, 1e-6, ".*"},
@@ -72,7 +72,7 @@ TEST(EncoderUnknown, FindsLinesMapsTonesWanderPassesAndWhatGrowsWithTimeOrSpeed)
       {"sweep", "speed", [](const Reading& r) { return 1e-4 * std::abs(r.velocity_rad_s); }, 1e-6, ".*"},
       {"sweep", "speed harmonic", with_speed, 1e-6, ".*"},
       {"sweep", "harmonic", [](const Reading& r) { return 1e-4 * std::cos(7.0 * r.reference_rad); }, 1e-3,
-       ".*harmonic of order 7 locked to reference angle, same in both directions.*"}};
+       ".*harmonic of order 7 synchronous with reference angle, same in both directions.*"}};
   for (const Structure& structure : structures) {
     const auto [left, words] = BestOfSort(RunWith(structure.kind, structure.signal), structure.sort);
     EXPECT_LT(left, structure.left) << structure.kind << " " << structure.sort;
@@ -89,7 +89,7 @@ TEST(EncoderUnknown, FindsAHysteresisAlsoWithoutItsName) {
     const double offset_alone = BestOfSort(encoder, "direction offset").first;
     // The first pass begins in the middle, not on the other side as all others do; the grid's ways differ by 1.49.
     EXPECT_LT(left, 0.5 * offset_alone) << kind;
-    EXPECT_THAT(words, testing::MatchesRegex("offset locked to direction that is reached over .* deg behind each "
+    EXPECT_THAT(words, testing::MatchesRegex("offset, function of direction that is reached over .* deg behind each "
                                              "reversal, odd in direction, on angle, .*"));
   }
 }

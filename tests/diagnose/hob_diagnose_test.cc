@@ -140,7 +140,7 @@ TEST(HobDiagnosis, RaisesHardlyAnyAlarmOnCleanRuns) {
 TEST(HobDiagnosis, FindsStructureWithoutANameAsUnknown) {
   const std::vector<std::pair<HiddenCause, std::string>> unlisted = {
       {{"unlisted_order", "", {{"order", 7.0}, {"amplitude", 0.1 * arcsec}}},
-       "harmonic of order 7 locked to table"},
+       "harmonic of order 7 synchronous with table"},
       {{"unlisted_order", "", {{"order", 5.4}, {"amplitude", 0.1 * arcsec}}}, "line at 5.4"},
       {{"unlisted_direction", "", {{"order", 3.0}, {"amplitude", 0.1 * arcsec}}}, "direction times order 3"}};
   for (const auto& [cause, signature] : unlisted) {

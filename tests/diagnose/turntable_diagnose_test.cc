@@ -228,16 +228,16 @@ TEST(TurntableDiagnosis, FindsStructureWithoutAName) {
       {[](const Reading& r) {
          return Eigen::Vector2d(0.15 * arcsec * r.direction * std::cos(3.0 * r.target_rad + 0.3), 0.0);
        },
-       "direction times order 3 locked to target angle, odd in direction, on x"},
+       "direction times order 3 synchronous with target angle, odd in direction, on x"},
       {[](const Reading& r) {
          return Eigen::Vector2d(0.0, 0.15 * arcsec * ToSeconds(r.time) / 1000.0 * std::cos(4.0 * r.target_rad));
        },
-       "order 4 locked to target angle that grows with time, on y"},
+       "order 4 synchronous with target angle that grows with time, on y"},
       {[](const Reading& r) {
          const double each[] = {0.3, -1.0, 0.8, -0.4, 0.0};
          return Eigen::Vector2d(0.3 * arcsec * each[(r.pass + 2 * r.setup) % 5], 0.0);
        },
-       "offset of each pass, locked to the pass (time), on x"}};
+       "offset of each pass, function of the pass (time), on x"}};
   for (const auto& [signal, words] : structures) {
     const Diagnosis d = DiagnosisOf(CarefulScenario(), {.other = signal}).diagnosis;
     EXPECT_EQ(d.verdict, Verdict::kUnknown) << words;

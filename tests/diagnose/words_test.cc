@@ -20,16 +20,16 @@ TEST(WithUncertainty, HasTwoDigitsOfTheUncertainty) {
   const auto text = [](double value, double u) {
     return WithUncertainty({"roll", "mrad", 1.0, value, u, kNaN, kNaN});
   };
-  EXPECT_EQ(text(12.3456, 0.123), "12.35 +- 0.12 mrad");
-  EXPECT_EQ(text(180000.0, 2345.0), "180000 +- 2345 mrad");
-  EXPECT_EQ(text(0.01, 8e-6), "0.0100000 +- 0.0000080 mrad");
-  EXPECT_EQ(text(0.01, 8e-12), "0.01 +- 8e-12 mrad");
+  EXPECT_EQ(text(12.3456, 0.123), "12.35 ± 0.12 mrad");
+  EXPECT_EQ(text(180000.0, 2345.0), "180000 ± 2345 mrad");
+  EXPECT_EQ(text(0.01, 8e-6), "0.0100000 ± 0.0000080 mrad");
+  EXPECT_EQ(text(0.01, 8e-12), "0.01 ± 8e-12 mrad");
   EXPECT_EQ(text(1.5, kNaN), "1.5 mrad");
 }
 
 TEST(WithUncertainty, TellsSmallLengthsInMicrometres) {
-  EXPECT_EQ(WithUncertainty({"width", "mm", 1e-3, 0.0004136e-3, 2.4e-9, kNaN, kNaN}), "0.4136 +- 0.0024 um");
-  EXPECT_EQ(WithUncertainty({"width", "mm", 1e-3, 0.25e-3, 0.01e-3, kNaN, kNaN}), "0.250 +- 0.010 mm");
+  EXPECT_EQ(WithUncertainty({"width", "mm", 1e-3, 0.0004136e-3, 2.4e-9, kNaN, kNaN}), "0.4136 ± 0.0024 µm");
+  EXPECT_EQ(WithUncertainty({"width", "mm", 1e-3, 0.25e-3, 0.01e-3, kNaN, kNaN}), "0.250 ± 0.010 mm");
 }
 
 TEST(Percent, TellsLittleFromNothingAndFromUnknown) {
@@ -113,8 +113,8 @@ TEST(Recurrence, InARowAtOneAngleOrAtOneShownValueIsSaidButNotOfTwoValues) {
   const LinearRun run = EightTurns();
   const std::pair<std::vector<int>, const char*> cases[] = {
       {{200, 201, 202, 203, 377}, "in a row"},
-      {{7, 67, 187, 247, 300}, "at 42 deg, locked to reference angle"},
-      {{59, 179, 180, 299, 300, 420}, "at 354 deg, locked to reference angle"},  // on both sides of zero
+      {{7, 67, 187, 247, 300}, "at 42 deg, synchronous with reference angle"},
+      {{59, 179, 180, 299, 300, 420}, "at 354 deg, synchronous with reference angle"},  // on both sides of zero
       // The same crest in other periods: other angles.
       {{27, 75, 123 + 60 * 2, 171 + 60, 219 + 60 * 3, 3 + 60 * 7}, "where angle shows the same"}};
   for (const auto& [rows, words] : cases) EXPECT_THAT(RecurrenceOf(rows, run), HasSubstr(words));

@@ -73,11 +73,11 @@ TEST(Judge, AnUnknownNeedsItsLockAndExactlyItsChannels) {
   hidden.locks = {"spot"};
   hidden.channels = {"psd_b_x"};
   const std::pair<const char*, Grade> signatures[] = {
-      {"periodic, locked to spot, on psd_b_x", Grade::kUnknown},
-      {"wander | periodic, locked to spot, on psd_b_x", Grade::kUnknown},
-      {"periodic, locked to spot, on psd_b_y", Grade::kUnknownMisplaced},
-      {"periodic, locked to spot, on psd_b_y; or the same on psd_a_x, psd_b_x", Grade::kUnknown},
-      {"slow wander locked to time, on psd_b_x", Grade::kUnknownMisplaced}};
+      {"periodic, synchronous with spot, on psd_b_x", Grade::kUnknown},
+      {"wander | periodic, synchronous with spot, on psd_b_x", Grade::kUnknown},
+      {"periodic, synchronous with spot, on psd_b_y", Grade::kUnknownMisplaced},
+      {"periodic, synchronous with spot, on psd_b_y; or the same on psd_a_x, psd_b_x", Grade::kUnknown},
+      {"slow wander, function of time, on psd_b_x", Grade::kUnknownMisplaced}};
   for (const auto& [signature, grade] : signatures)
     EXPECT_EQ(Judge(hidden, AnswerUnknown(signature)).grade, grade) << signature;
   EXPECT_EQ(Judge(hidden, Named({{"tone", "psd_b_x"}})).grade, Grade::kWrong);

@@ -144,7 +144,7 @@ TEST_F(AdConverterTest, CountsScansByTheCardsClockWithThoseBetweenTheBlocksAndTh
 TEST_F(AdConverterTest, DescribesEveryChannelForTheRecord) {
   const auto lines = DescribeChannels(Make()->Actual());
   ASSERT_EQ(lines.size(), 4u);
-  EXPECT_THAT(lines[2], AllOf(HasSubstr("c: +-10 V"), HasSubstr("ground"), HasSubstr("0, 1"))) << lines[2];
+  EXPECT_THAT(lines[2], AllOf(HasSubstr("c: ±10 V"), HasSubstr("ground"), HasSubstr("0, 1"))) << lines[2];
 }
 
 TEST_F(AdConverterTest, RefusesAnotherRateResolutionRangeOrZeroNamingBoth) {

@@ -17,7 +17,7 @@ TEST(TextTable, BreaksTheWidestColumnAtWordsAndKeepsItsIndent) {
 
 TEST(TextTable, KeepsAWholeColumnAsLongAsOthersCanGiveWay) {
   const std::string title = "some thirty letters of a title of";
-  EXPECT_KEPT(TextTable({{"a"}, {"b", false, true}}, {{title, "1.0000000 +- 0.0000001 um"}}, 56));
+  EXPECT_KEPT(TextTable({{"a"}, {"b", false, true}}, {{title, "1.0000000 ± 0.0000001 µm"}}, 56));
 }
 
 TEST(TextTable, LeavesOutColumnsWithoutCells) {

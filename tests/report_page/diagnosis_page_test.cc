@@ -37,7 +37,7 @@ Block BlockIn(const std::vector<PageSection>& sections, const std::string& title
 TEST(VerdictOf, SaysATieWithAllItsMembers) {
   EXPECT_EQ(VerdictOf(kDiagnosis).text, "Ambiguous: eccentricity or tilt at x");
   EXPECT_EQ(VerdictOf({{"verdict", "none"}}).tone, VerdictTone::kGood);
-  EXPECT_EQ(VerdictOf({{"verdict", "named"}, {"in_words", "Named: roll\nmore"}}).text, "Named: roll");
+  EXPECT_EQ(VerdictOf({{"verdict", "named"}, {"in_words", "Cause identified: roll 3 um\nmore"}}).text, "Cause identified: roll 3 µm");
 }
 
 TEST(DiagnosisSections, StateEveryCauseWithItsSizeAndProbability) {
@@ -67,9 +67,9 @@ TEST(DiagnosisSections, NameTheDoublesOfACause) {
 
 TEST(DiagnosisSections, SayWhatIsSeenFromWhichSizeOnAndWhatIsNot) {
   const std::vector<PageSection> sections = DiagnosisSections(kDiagnosis);
-  EXPECT_THAT(BlockIn<PageTable>(sections, "Smallest sizes that this run would show").rows,
+  EXPECT_THAT(BlockIn<PageTable>(sections, "Smallest detectable sizes").rows,
               Contains(ElementsAre("tilt at x", "tilt", "0.25", "mrad")));
-  EXPECT_THAT(BlockIn<PageTable>(sections, "What this run cannot see").rows,
+  EXPECT_THAT(BlockIn<PageTable>(sections, "Not observable in this run").rows,
               Contains(ElementsAre("grating_form at sphere", "nothing")));
 }
 
@@ -81,7 +81,7 @@ TEST(DiagnosisSections, ShowTheLoudestResidualFirstAndAllOthersToo) {
   EXPECT_THAT(choice.figures[0].series[0].y, ElementsAre(0.5, -0.5));
   EXPECT_EQ(choice.figures[0].series[0].role, SeriesRole::kBefore);
   EXPECT_EQ(choice.figures[0].x.unit, "s");
-  EXPECT_EQ(choice.figures[0].y.unit, "um");
+  EXPECT_EQ(choice.figures[0].y.unit, "µm");
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ TEST(PlanPage, ComparesTheRunsOrderByOrder) {
 
 TEST(PlanPage, SaysWhichRunToMakeAndWhatMayBeMistaken) {
   const Page page = PlanPage({}, kPlan);
-  EXPECT_EQ(page.verdict, "Tells most for its time: two more set-ups.");
+  EXPECT_EQ(page.verdict, "Most information per minute: two more set-ups.");
   std::vector<std::vector<std::string>> rows;
   for (const PageTable& table : test::BlocksOf<PageTable>(page.sections)) rows.insert(rows.end(), table.rows.begin(), table.rows.end());
   EXPECT_THAT(rows, Contains(ElementsAre("a at x", "b", "0.002", "1")));
@@ -55,7 +55,7 @@ TEST(InvestigationPage, ShowsProbabilitiesOverTheRuns) {
               {"number": 2, "run": "slow", "words": "slowly", "reason": "tells most", "minutes": 22, "expected_bit": 1.5, "gained_bit": 1.25, "u_goal": 0.05,
                "unlisted": 0.02, "believed": [{"name": "a", "probability": 0.8}, {"name": "b", "probability": 0.18}]}]})");
   const Page page = InvestigationPage({}, investigation);
-  EXPECT_EQ(page.verdict, "Nothing more can be told: a 80 %, b 18 %");
+  EXPECT_EQ(page.verdict, "Not resolvable on this bench: a 80 %, b 18 %");
   const std::vector<Figure> figures = test::BlocksOf<Figure>(page.sections);
   ASSERT_EQ(figures.size(), 3u);
   EXPECT_THAT(figures[0].series[0].y, ElementsAre(0.5, 0.8));

@@ -25,7 +25,7 @@ TEST(ValueTable, GivesValuesWithUnitAndUncertaintyOfTheBudgetWhereThereIsOne) {
   const PageTable table = ValueTable(kEvaluated, {});
   EXPECT_THAT(table.columns, ElementsAre("quantity", "value", "unit", "u", "k", "U"));
   EXPECT_THAT(table.rows, Contains(ElementsAre("calibration roll psd a", "0.06", "mrad", "0.20", "1.972", "0.39")));
-  EXPECT_THAT(table.rows, Contains(ElementsAre("errors machine scale x", "12.35", "um/m", "0.50", "", "")));
+  EXPECT_THAT(table.rows, Contains(ElementsAre("errors machine scale x", "12.35", "µm/m", "0.50", "", "")));
 }
 
 TEST(ValueTable, ShowsTruthBesideAValueThatWasScored) {
@@ -51,7 +51,7 @@ TEST(ObjectTables, HaveARowAnObjectWithItsMeasuredValues) {
   const std::vector<PageTable> tables = ObjectTables(kEvaluated);
   ASSERT_EQ(tables.size(), 1u);
   EXPECT_EQ(tables[0].title, "setups");
-  EXPECT_THAT(tables[0].columns, ElementsAre("offset x [um]", "setup"));
+  EXPECT_THAT(tables[0].columns, ElementsAre("offset x [µm]", "setup"));
   EXPECT_THAT(tables[0].rows[0], ElementsAre("4.772 ± 0.018", "0"));
 }
 
@@ -61,7 +61,7 @@ TEST(ObjectTables, ShowValuesInGroupsWithTheUnitsOfTheirKeys) {
     {"motion": "radial_fixed_y", "values": {"total": {"value_um": 3.0, "u_um": 0.5}}}]})");
   const std::vector<PageTable> tables = ObjectTables(results);
   ASSERT_EQ(tables.size(), 1u);
-  EXPECT_THAT(tables[0].columns, ElementsAre("motion", "synchronous [arcsec]", "total [arcsec]", "total [um]"));
+  EXPECT_THAT(tables[0].columns, ElementsAre("motion", "synchronous [arcsec]", "total [arcsec]", "total [µm]"));
   EXPECT_THAT(tables[0].rows[0], ElementsAre("tilt_fixed_x", "8", "9.51 ± 0.12", ""));
   EXPECT_THAT(tables[0].rows[1], ElementsAre("radial_fixed_y", "", "", "3.00 ± 0.50"));
 }
@@ -73,7 +73,7 @@ TEST(NumberText, HasTwoDigitsOfItsUncertainty) {
 }
 
 TEST(NameAndUnit, TakesTheLongestUnitAtTheEnd) {
-  EXPECT_EQ(NameAndUnit("expansion_um_m_K").unit, "um/m/K");
+  EXPECT_EQ(NameAndUnit("expansion_um_m_K").unit, "µm/m/K");
   EXPECT_EQ(NameAndUnit("ez_arcsec").name, "ez");
   EXPECT_EQ(NameAndUnit("dwell_s").unit, "s");
   EXPECT_EQ(NameAndUnit("setups").unit, "");

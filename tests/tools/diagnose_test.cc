@@ -45,8 +45,8 @@ TEST_F(Diagnose, OfAFolderPutsPlotsAndWordsIntoItsResults) {
   const auto before = nlohmann::json::parse(Read("run/results.json"));
   const std::string text =
       Succeed({"diagnose", "run", "--scenario", "small.toml", "--cache", "cache", "--json", "d.json"});
-  EXPECT_THAT(text, testing::StartsWith("Named: psd_gain at psd_a_x, gain error 0.0"));
-  EXPECT_THAT(text, HasSubstr("What the scenario leaves of psd_a_x [um] against the angle"));
+  EXPECT_THAT(text, testing::StartsWith("Cause identified: psd_gain at psd_a_x, gain error 0.0"));
+  EXPECT_THAT(text, HasSubstr("Residual of psd_a_x [µm] against the angle"));
   EXPECT_THAT(text, Not(HasSubstr("\x1b"))) << "a pipe is no terminal";
   auto results = nlohmann::json::parse(Read("run/results.json"));
   const auto diagnosis = results.at("diagnosis");

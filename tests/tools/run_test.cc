@@ -20,7 +20,7 @@ TEST_F(Run, LeavesScenarioRecordTruthAndResultsAndPrintsThemToStdoutAndProgressT
   EXPECT_EQ(results.at("readings_by_status").at("ok"), 2 * 2 * 13 + 3 * 2 * 12);  // sweeps, then circles
   EXPECT_TRUE(results.at("separation").contains("target"));
   EXPECT_THAT(outcome.out, StartsWith("124 readings\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("target table (laboratory frame)\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("table under test: target (laboratory frame)\n"));
   EXPECT_THAT(outcome.out, Not(HasSubstr("bench time")));
   EXPECT_THAT(outcome.err, HasSubstr("124 of 124 readings, full_circle, bench time"));
   EXPECT_THAT(outcome.err, Not(HasSubstr("target table")));

@@ -90,7 +90,7 @@ TEST_F(Trial, StructureWithoutANameBecomesASignalThatPredictsAnotherRun) {
   Hide("r.csv", lobes);
   const nlohmann::json found = Diagnosis("r.csv");
   EXPECT_EQ(found.at("verdict"), "unknown") << found.dump(2);
-  EXPECT_THAT(found.at("unknown").at("signature").get<std::string>(), HasSubstr("order 3 locked to shaft angle"));
+  EXPECT_THAT(found.at("unknown").at("signature").get<std::string>(), HasSubstr("order 3 synchronous with shaft angle"));
   Hide("second.csv", lobes, 2);
   Write("believed.toml", Read("extended.toml"));
   EXPECT_THAT(Read("believed.toml"), HasSubstr("harmonic"));

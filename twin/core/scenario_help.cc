@@ -78,9 +78,9 @@ std::string DescribeFixture() {
 
 std::string DescribeEmpirical() {
   EmpiricalSettings example;
-  example.signature = "order 7 locked to the reference angle";
+  example.signature = "order 7 synchronous with the reference angle";
   example.channel = "psd_a_y";
-  std::string text = "\n[[empirical]]  # structure without a name, tabulated; a diagnosis writes it\n";
+  std::string text = "\n[[empirical]]  # an unmodelled effect, tabulated; a diagnosis writes it\n";
   for (const ScenarioKey& key : KeysOf(example)) text += DescribeKey(key);
   return text;
 }

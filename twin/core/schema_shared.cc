@@ -14,7 +14,7 @@ void AddComponents(Keys& keys, const std::string& table, std::array<double, kCom
 }
 
 void AddMotion(Table& t, TableSettings& s) {
-  t.Add("half_frequency_order", kPure, {0.3, 0.7}, &s.half_frequency_order, "of the bearing, periods a turn");
+  t.Add("half_frequency_order", kPure, {0.3, 0.7}, &s.half_frequency_order, "of the bearing, periods per turn");
   t.Add("half_frequency_tilt", kArcsec, UpTo(3600), &s.half_frequency_tilt_rad, "amplitude");
   t.Add("half_frequency_radial", kUm, UpTo(10000), &s.half_frequency_radial_m, "amplitude");
   t.Add("backlash", kArcsec, UpTo(36000), &s.backlash_rad, "full width, of the servo's encoder against the rotor");
@@ -62,7 +62,7 @@ void AddEnvironment(Keys& keys, EnvironmentSettings& s) {
 void AddAutocollimator(Keys& keys, AutocollimatorSettings& s) {
   Table t(keys, "autocollimator");
   t.Add("noise", kArcsec, UpTo(100), &s.noise_rad, "of one reading, standard deviation");
-  t.Add("range", kArcsec, Positive(36000), &s.range_rad, "+- this angle");
+  t.Add("range", kArcsec, Positive(36000), &s.range_rad, "± this angle");
   t.Add("gain_error", kPure, Within(0.5), &s.gain_error, "of both axes");
 }
 

@@ -28,12 +28,12 @@ EffectParameter Phase() {
 }
 
 std::vector<EffectParameter> ParametersOf(const std::string& kind, const BenchFormat& bench) {
-  const EffectParameter order = Parameter("order", "1", 1.0, 0.0, 1e5, "periods a turn of what it goes by");
+  const EffectParameter order = Parameter("order", "1", 1.0, 0.0, 1e5, "periods per turn of what it goes by");
   if (kind == "constant") return {Amplitude(bench)};
   if (kind == "harmonic") return {Amplitude(bench), order, Phase()};
   if (kind == "interaction")
     return {Amplitude(bench), order,
-            Signed("with_order", "1", 1.0, 1e5, "periods a turn of the bench's second angle"), Phase()};
+            Signed("with_order", "1", 1.0, 1e5, "periods per turn of the bench's second angle"), Phase()};
   if (kind == "tone")
     return {Amplitude(bench), Parameter("frequency", "Hz", 0.01, 1e-6, 1e6, "of the tone"), Phase()};
   if (kind == "step")
@@ -82,7 +82,7 @@ std::vector<std::string> SignalArguments(const std::string& kind, const BenchFor
 }
 
 EffectEntry SignalEntry(const std::string& kind, const std::string& times, const BenchFormat& bench) {
-  EffectEntry entry{kSignalEffect, "structure without a name: a signal at a point", bench.points,
+  EffectEntry entry{kSignalEffect, "unmodelled effect: a signal at a point", bench.points,
                     ParametersOf(kind, bench)};
   std::ranges::move(FactorParameters(times), std::back_inserter(entry.parameters));
   return entry;

@@ -16,7 +16,7 @@ constexpr int kHighestAlias = 1000;  // finer structure of a turn is averaged by
 constexpr std::size_t kMostAliases = 3;
 constexpr int kAsLikely = 9;  // times the order: with nothing known of its scale, an alias below has more than a tenth of the probability
 
-/// Whole periods a turn; 0 if it has no such parameter.
+/// Whole periods per turn; 0 if it has no such parameter.
 int OrderOf(const Cause& cause, const std::string& bench) {
   const EffectEntry* const entry = FindEffect(cause.effect, bench);
   if (entry == nullptr) return 0;
@@ -24,7 +24,7 @@ int OrderOf(const Cause& cause, const std::string& bench) {
   const auto fitted = std::ranges::find(cause.parameters, "order", &ParameterEstimate::name);
   if (known == entry->parameters.end() || fitted == cause.parameters.end()) return 0;
   const bool is_whole = fitted->value == std::round(fitted->value) && fitted->value <= kHighestAlias;
-  return is_whole && known->meaning.starts_with("periods a turn") ? static_cast<int>(fitted->value) : 0;
+  return is_whole && known->meaning.starts_with("periods per turn") ? static_cast<int>(fitted->value) : 0;
 }
 
 /// By how much a wave of this order is not the same at all readings, as a share of its size.

@@ -93,7 +93,7 @@ std::string RecurrenceOf(const std::vector<int>& rows, const LinearRun& run) {
   std::set<int> far;
   for (const int row : rows) far.insert(run.ReadingOf(row));
   if (far.size() < kFewest) return "";
-  if (StandInARow(far, run.schedule)) return "far values that stand in a row, locked to time";
+  if (StandInARow(far, run.schedule)) return "far values that stand in a row, function of time";
   const auto at_angle = [&](const Eigen::VectorXd& angle_rad) {
     const Eigen::VectorXd turns = TurnsOf(angle_rad);
     return turns.size() > 0 ? CommonPlace(far, turns, true) : kNaN;
@@ -102,7 +102,7 @@ std::string RecurrenceOf(const std::vector<int>& rows, const LinearRun& run) {
        {std::pair{"reference", run.schedule.reference_rad}, std::pair{"target", run.schedule.target_rad}}) {
     const double turns = at_angle(angle_rad);
     if (std::isfinite(turns))
-      return fmt::format("far values that come back at {:.0f} deg, locked to {} angle", 360.0 * turns, name);
+      return fmt::format("far values that come back at {:.0f} deg, synchronous with {} angle", 360.0 * turns, name);
   }
   for (int c = 0; c < run.Channels(); ++c) {
     std::set<int> own;
@@ -111,7 +111,7 @@ std::string RecurrenceOf(const std::vector<int>& rows, const LinearRun& run) {
     }
     const Eigen::VectorXd shares = ShownShares(run, c);
     if (own.size() < kFewest || shares.size() == 0 || !std::isfinite(CommonPlace(own, shares, false))) continue;
-    return fmt::format("far values that come back where {} shows the same, locked to what it shows",
+    return fmt::format("far values that come back where {} shows the same, function of what it shows",
                        run.channels[At(c)]);
   }
   return "";

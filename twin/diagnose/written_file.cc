@@ -118,7 +118,7 @@ void JudgeByFile(const std::vector<Reading>& readings, const Scenario& scenario,
     lost.Tell(result, removed, d.notes);
   } catch (const InputError& refusal) {
     d.gain = MeasureGain(result.run, result.noise, result.accepted, ShownByFit(result.run, result.accepted));
-    d.notes.push_back(fmt::format("the gain is that of the fit, for the written scenario cannot be followed: {}",
+    d.notes.push_back(fmt::format("the held-out improvement is that of the fit, for the written scenario cannot be followed: {}",
                                   refusal.what()));
   }
   Bound(d.gain);

@@ -344,8 +344,8 @@ std::string StoryOf(const std::vector<Recording>& recordings, const Joined& join
   for (const auto* list : {&guessed, &joined.remarks}) {
     for (const std::string& remark : *list) text += "note: " + remark + "\n";
   }
-  return text + fmt::format("{} readings of {} rows, {} set-ups, bench {}\n", imported.readings.size(), tally.rows,
-                            joined.sessions.size(), imported.bench);
+  return text + fmt::format("{} readings of {} rows, {} set-up{}, bench {}\n", imported.readings.size(), tally.rows, joined.sessions.size(),
+                            joined.sessions.size() == 1 ? "" : "s", imported.bench);
 }
 
 void RequireColumns(const BenchFormat& bench, const Map& map, const std::vector<Recording>& recordings) {

@@ -18,7 +18,7 @@ namespace {
 using diagnose::Cause;
 
 constexpr std::size_t kMost = 12;
-constexpr const char* kUnnamed = "structure without a name";
+constexpr const char* kUnnamed = "unmodelled effect";
 
 bool IsSameCause(const Supposed& a, const Supposed& b) {
   return a.name == b.name && a.where == b.where && (a.happened_in == b.happened_in || !HappensOnce(a));

@@ -21,7 +21,7 @@ InFiles PlaceOf(const Stood& stood) {
 }
 
 InFiles DistanceOf(const Stood& stood) {
-  return stood.is_rotary ? InFiles{units::arcsec, "arcsec"} : InFiles{units::um, "um"};
+  return stood.is_rotary ? InFiles{units::arcsec, "arcsec"} : InFiles{units::um, "µm"};
 }
 
 void EnterPlace(Reading& reading, const Stood& stood, const char* when, double at) {

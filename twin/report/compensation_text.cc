@@ -110,7 +110,7 @@ std::string CompensationText(const IndexErrors& errors, const Compensation& comp
   std::string text = fmt::format("index error of {} at {} places{}\n\n", errors.table, errors.Count(),
                                  errors.commanded ? ", a compensation at work" : "");
   text += compensation.lines.empty() ? "no line stands out of the noise\n" : LinesTable(compensation);
-  text += fmt::format("\n{:24}{:8.3f} arcsec rms\n{:24}{:8.3f} +- {:.3f} arcsec rms", "before",
+  text += fmt::format("\n{:24}{:8.3f} arcsec rms\n{:24}{:8.3f} ± {:.3f} arcsec rms", "before",
                       r.before_rms_rad / units::arcsec, "predicted with the table",
                       r.predicted_rms_rad / units::arcsec, r.u_predicted_rms_rad / units::arcsec);
   if (std::isfinite(r.noise_rms_rad))
@@ -122,7 +122,7 @@ std::string CompensationText(const IndexErrors& errors, const Compensation& comp
 std::string CompensationCheckText(const CompensationCheck& check) {
   return fmt::format(
       "\ncheck at {} places: before {:.3f}, predicted {:.3f}, measured again {:.3f} arcsec rms\n"
-      "predicted / measured {:.3f} +- {:.3f}; {}\n",
+      "predicted / measured {:.3f} ± {:.3f}; {}\n",
       check.places, check.before_rms_rad / units::arcsec, check.predicted_rms_rad / units::arcsec,
       check.remeasured_rms_rad / units::arcsec, check.Ratio(), check.u_ratio,
       check.IsBetter() ? "no worse than before" : "WORSE than before: do not use the table");

@@ -62,10 +62,10 @@ std::string ScoreTable(const std::vector<CurveScore>& curves) {
 std::string PositionTable(const std::vector<CurveScore>& curves) {
   std::string text;
   for (const CurveScore& curve : curves) {
-    text += fmt::format("{}: estimate +- standard uncertainty [truth]\n{:>12} {:>27}\n", curve.name,
+    text += fmt::format("{}: estimate ± standard uncertainty [truth]\n{:>12} {:>27}\n", curve.name,
                         curve.position_name, curve.value);
     for (std::size_t k = 0; k < curve.truth.size(); ++k)
-      text += fmt::format("{:12.2f}   {:8.3f} +-{:6.3f} [{:6.2f}]\n", curve.position[k], curve.estimate[k],
+      text += fmt::format("{:12.2f}   {:8.3f} ±{:6.3f} [{:6.2f}]\n", curve.position[k], curve.estimate[k],
                           curve.u[k], curve.truth[k]);
   }
   return text;

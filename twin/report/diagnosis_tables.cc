@@ -43,7 +43,7 @@ std::string SizeOfMember(const std::vector<Cause>& causes, const diagnose::Cause
   const std::string sizes = SizeLines(causes[group[member]]);
   const double overlap = Imitates(causes, group, member);
   if (!sizes.empty() || member == 0 || !std::isfinite(overlap)) return sizes;
-  return fmt::format("can imitate {} of it", Percent(overlap));
+  return fmt::format("aliased: explains {} of it", Percent(overlap));
 }
 
 /// Of whichever of the group was fitted.
@@ -81,12 +81,12 @@ std::string CauseTable(const DiagnosisRun& found, const diagnose::Shown& shown) 
   const Diagnosis& d = found.diagnosis;
   Cells rows;
   if (d.verdict == Verdict::kUnknown)
-    rows.push_back({"structure without a name", SignatureLines(d.unknown.signature), Percent(d.unknown.probability),
+    rows.push_back({"unmodelled effect", SignatureLines(d.unknown.signature), Percent(d.unknown.probability),
                     Percent(shown.share_unnamed)});
   for (const diagnose::CauseGroup& group : GroupsOf(d.causes)) AddGroup(found, group, ShareOf(group, shown.share), rows);
   if (rows.empty()) return "";
   return "Causes (share: of the variance beyond noise)\n" +
-         TextTable({{"cause"}, {"size +- u", false, true}, {"probability", true}, {"share", true}}, rows,
+         TextTable({{"cause"}, {"size ± u", false, true}, {"probability", true}, {"share", true}}, rows,
                    kPageWidth);
 }
 
@@ -115,7 +115,7 @@ std::string HarmonicsTable(const DiagnosisRun& found, bool all) {
   }
   if (rows.empty()) return "";
   return "Harmonics of the error: amplitude * cos(order * angle + phase)\n" +
-         TextTable({{"order", true}, {"amplitude +- u", true}, {"phase +- u", true}, {"what it may mean"}}, rows,
+         TextTable({{"order", true}, {"amplitude ± u", true}, {"phase ± u", true}, {"what it may mean"}}, rows,
                    kPageWidth);
 }
 
@@ -125,14 +125,14 @@ std::string DetectableTable(const Diagnosis& d) {
     if (std::isfinite(seen.smallest.value))
       rows.push_back({diagnose::Place(seen.effect, seen.where), diagnose::NameAndSize(seen.smallest)});
   }
-  return TextTable({{"would have been seen"}, {"from this size on"}}, rows, kPageWidth);
+  return TextTable({{"effect"}, {"smallest detectable size"}}, rows, kPageWidth);
 }
 
 std::string InvisibleTable(const Diagnosis& d) {
   Cells rows;
   for (const diagnose::Invisible& unseen : d.invisible)
     rows.push_back({diagnose::Place(unseen.effect, unseen.where), unseen.could_bias});
-  return TextTable({{"cannot be seen in this run"}, {"what it could bias"}}, rows, kPageWidth);
+  return TextTable({{"not observable in this run"}, {"what it could bias"}}, rows, kPageWidth);
 }
 
 }  // namespace twinbench::report

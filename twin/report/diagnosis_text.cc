@@ -7,6 +7,7 @@
 
 #include "twin/diagnose/words.h"
 #include "twin/report/diagnosis_tables.h"
+#include "twin/report/sound.h"
 #include "twin/report/text_table.h"
 #include "twin/report/verdict_line.h"
 
@@ -35,7 +36,7 @@ std::string CurveOfPage(const DiagnosisPage& page, Letters letters) {
   const bool is_error = page.found.run.Channels() == 1;
   CurveText curve;
   curve.title =
-      WithUnit(is_error ? "Error" : "What the scenario leaves of " + c.channel, c.unit) + " against the " + c.along;
+      WithUnit(is_error ? "Error" : "Residual of " + c.channel, c.unit) + " against the " + c.along;
   curve.x_name = WithUnit(c.along, c.along_unit);
   curve.x = c.x;
   curve.forward = c.forward;
@@ -51,8 +52,8 @@ std::string LoudTests(const std::vector<diagnose::ScreenTest>& screen) {
   std::string names;
   for (std::size_t k = 0; k < std::min(loud.size(), kMostNamed); ++k) names += (k > 0 ? ", " : "") + loud[k].name;
   if (loud.empty()) return "";
-  return Sentence("! ", fmt::format("{} of {} residual tests stand out nevertheless: {}{}", loud.size(),
-                                    screen.size(), names, loud.size() > kMostNamed ? ", ..." : ""));
+  return Sentence("! ", fmt::format("{} of {} residual tests stand{} out nevertheless: {}{}", loud.size(),
+                                    screen.size(), loud.size() == 1 ? "s" : "", names, loud.size() > kMostNamed ? ", ..." : ""));
 }
 
 /// What limits the answer, a line or two each.
@@ -63,7 +64,7 @@ std::string Warnings(const DiagnosisPage& page) {
     text += Sentence("! ", diagnose::GainInWords(d.gain, page.found.run));
   for (const std::string& note : d.notes) text += Sentence("! ", note);
   if (d.left_out > 0)
-    text += Sentence("! ", fmt::format("{} readings without usable values were left out", d.left_out));
+    text += Sentence("! ", fmt::format("{} without usable values left out", d.left_out == 1 ? "1 reading" : fmt::format("{} readings", d.left_out)));
   if (d.verdict == Verdict::kNone) text += LoudTests(page.screen);
   return text;
 }
@@ -106,8 +107,8 @@ std::vector<Remark> RemarksOn(const DiagnosisPage& page, bool verbose) {
       !verbose && all != HarmonicsTable(page.found, false))
     Add("all harmonics", all, remarks);
   Add("noise", NoiseInWords(d), remarks);
-  Add("smallest sizes seen", DetectableTable(d), remarks);
-  Add("what cannot be seen", InvisibleTable(d), remarks);
+  Add("smallest detectable sizes", DetectableTable(d), remarks);
+  Add("what is not observable", InvisibleTable(d), remarks);
   if (!page.screen.empty())
     Add("residual tests", Sentence("", ScreenInWords(page.screen) + " " + page.raw_limits), remarks);
   return remarks;
@@ -136,11 +137,11 @@ std::string Apart(const std::vector<std::string>& blocks) {
 std::string DiagnosisText(const DiagnosisPage& page, const PageStyle& style) {
   const diagnose::DiagnosisRun& found = page.found;
   const diagnose::Gain& gain = found.diagnosis.gain;
-  const std::string gained = gain.positive ? Sentence("Gain: ", GainInWords(gain, found.run)) : "";
-  return Apart({VerdictLine(found.diagnosis, page.source) + "\n",
-                CauseTable(found, page.shown) + NextMeasurements(found.diagnosis),
-                HarmonicsTable(found, style.verbose), CurveOfPage(page, style.letters), gained + Warnings(page)}) +
-         Further(RemarksOn(page, style.verbose), style.verbose);
+  const std::string gained = gain.positive ? Sentence("Held-out improvement: ", GainInWords(gain, found.run)) : "";
+  return InPrint(Apart({VerdictLine(found.diagnosis, page.source) + "\n",
+                        CauseTable(found, page.shown) + NextMeasurements(found.diagnosis),
+                        HarmonicsTable(found, style.verbose), CurveOfPage(page, style.letters), gained + Warnings(page)}) +
+                 Further(RemarksOn(page, style.verbose), style.verbose));
 }
 
 }  // namespace twinbench::report

@@ -73,7 +73,7 @@ std::string MotionText(const DirectedMotion& d, const ErrorMotionValues& values)
   const auto add = [&](const char* name, const ErrorMotionValue& v) {
     if (std::isnan(v.value)) return;
     text += fmt::format(" {} {:.3f}", name, v.value / UnitOfMotion(d));
-    if (std::isfinite(v.u)) text += fmt::format(" +- {:.3f}", v.u / UnitOfMotion(d));
+    if (std::isfinite(v.u)) text += fmt::format(" ± {:.3f}", v.u / UnitOfMotion(d));
   };
   add("synchronous", values.synchronous);
   add("asynchronous", values.asynchronous);

@@ -36,7 +36,7 @@ std::string SizesOf(const EffectSettings& effect, const std::string& bench) {
     const auto u = effect.finding.u.find(p.name);
     const auto value = effect.parameters.find(p.name);
     if (u == effect.finding.u.end() || value == effect.parameters.end()) continue;
-    text += fmt::format("{}{} {:.4g} +- {:.2g}{}{}", text.empty() ? "" : ", ", p.name, value->second / p.to_SI,
+    text += fmt::format("{}{} {:.4g} ± {:.2g}{}{}", text.empty() ? "" : ", ", p.name, value->second / p.to_SI,
                         u->second / p.to_SI, p.unit == "1" ? "" : " ", p.unit == "1" ? "" : p.unit);
   }
   return text;
@@ -59,18 +59,18 @@ std::string Verdict(const Investigation& i) {
   const Open& best = i.belief.Best();
   switch (i.told) {
     case Told::kNothing:
-      return fmt::format("Agrees: nothing found {}", Runs(i));
+      return fmt::format("Consistent with the scenario: nothing found {}", Runs(i));
     case Told::kNamed:
-      return fmt::format("{}: {:.3f} {}", best.fit.hypothesis.Name(), best.probability, Runs(i));
+      return fmt::format("Cause identified: {} ({:.3f}) {}", best.fit.hypothesis.Name(), best.probability, Runs(i));
     case Told::kUnknown:
-      return fmt::format("Unknown: something that the catalogue has no name for, {:.3f} {}", i.belief.unlisted,
+      return fmt::format("Unmodelled effect: in no entry of the catalogue ({:.3f}) {}", i.belief.unlisted,
                          Runs(i));
     case Told::kTied:
       break;
   }
   if (i.ended == Ended::kNothingMore)
-    return fmt::format("Cannot be told on this bench, {}: no run that it can make tells these apart", Runs(i));
-  return fmt::format("Not told {} ({})", Runs(i), investigate::EndedName(i.ended));
+    return fmt::format("Not resolvable on this bench, {}: no run that it can make distinguishes these", Runs(i));
+  return fmt::format("Not concluded {} ({})", Runs(i), investigate::EndedName(i.ended));
 }
 
 std::string GoalLine(const Investigation& i) {

@@ -41,8 +41,8 @@ std::string FirstOf(const std::vector<std::string>& names) {
 std::string BoughtLines(const plan::Advice& one) {
   std::string lines = one.run.words;
   if (!one.mended.empty()) lines += "\nseparates" + FirstOf(one.mended);
-  if (!one.broken.empty()) lines += fmt::format("\ntells apart {} pairs", one.broken.size()) + FirstOf(one.broken);
-  if (!one.shown.empty()) lines += fmt::format("\nshows {} causes more", one.shown.size()) + FirstOf(one.shown);
+  if (!one.broken.empty()) lines += fmt::format("\ndistinguishes {} pair{}", one.broken.size(), one.broken.size() == 1 ? "" : "s") + FirstOf(one.broken);
+  if (!one.shown.empty()) lines += fmt::format("\nresolves {} further cause{}", one.shown.size(), one.shown.size() == 1 ? "" : "s") + FirstOf(one.shown);
   return lines;
 }
 
@@ -129,8 +129,8 @@ std::string PlanAdviceText(const std::vector<plan::Advice>& advice) {
                     {"readings", true},
                     {"minutes", true},
                     {"u after/before", true},
-                    {"of causes [bit]", true},
-                    {"bit a minute", true}},
+                    {"information about causes [bit]", true},
+                    {"information rate [bit/min]", true}},
                    rows, kAdviceWidth);
 }
 

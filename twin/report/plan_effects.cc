@@ -111,7 +111,7 @@ std::string DetectableText(const PlannedEffects& effects) {
     if (!IsShown(isolability, other) && std::isfinite(other.smallest.value))
       rows.push_back({diagnose::Place(other.effect, other.where), diagnose::NameAndSize(other.smallest), "", ""});
   }
-  return TextTable({{"would be found"}, {"from this size on"}, {"until then it moves"}, {"may be taken for"}}, rows,
+  return TextTable({{"effect"}, {"smallest detectable"}, {"undetected bias"}, {"may be mistaken for"}}, rows,
                    kEffectsWidth);
 }
 
@@ -120,7 +120,7 @@ std::string NeverText(const Isolability& isolability) {
   for (const std::vector<std::size_t>& set : NeverTold(isolability)) {
     std::string names;
     for (const std::size_t k : set) names += (names.empty() ? "" : "; ") + PlaceOf(isolability.causes[k]);
-    text += Paragraph("Not told apart in any plausible size: ", names, 4, kEffectsWidth);
+    text += Paragraph("Indistinguishable at any plausible size (aliased): ", names, 4, kEffectsWidth);
   }
   return text;
 }

@@ -46,10 +46,10 @@ std::string RunsTable(const std::vector<PlannedRun>& runs) {
                     {"readings", true},
                     {"minutes", true},
                     {"dof left", true},
-                    {"variance, mean", true},
+                    {"mean variance factor", true},
                     {"worst", true},
-                    {"no set below", true},
-                    {"harmonics lost"}},
+                    {"lower bound", true},
+                    {"not separable harmonics"}},
                    rows, kPlanWidth);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string_view>
@@ -16,8 +17,10 @@ using Json = nlohmann::json;
 
 // --- text ---
 
+/// Letters beyond ASCII too: µ, ±.
 bool IsInWord(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '+' || c == '-' || c == '_';
+  const auto byte = static_cast<unsigned char>(c);
+  return std::isalnum(byte) != 0 || byte >= 0x80 || c == '.' || c == '+' || c == '-' || c == '_';
 }
 
 /// A word of a line, or what stands between two of them.
@@ -27,7 +30,7 @@ struct Piece {
 };
 
 bool IsNoNumber(std::string_view word) {
-  const std::string_view bare = word.substr(std::min(word.find_first_not_of("+-"), word.size()));
+  const std::string_view bare = word.substr(std::min(word.find_first_not_of("+-±"), word.size()));
   if (bare == "nan" || bare == "inf") return true;
   const std::optional<double> number = ParseNumber(word);
   return number && std::abs(*number) >= kAbsurd;
@@ -53,13 +56,21 @@ std::vector<Piece> PiecesOf(std::string_view line) {
   return pieces;
 }
 
-/// "value +- u": neither without the other.
+/// "value ± u": neither without the other.
 void PairUp(std::vector<Piece>& pieces) {
   for (std::size_t k = 2; k + 2 < pieces.size(); ++k) {
-    if (pieces[k].text != "+-" || !(pieces[k - 2].is_absent || pieces[k + 2].is_absent)) continue;
+    if (pieces[k].text != "±" || !(pieces[k - 2].is_absent || pieces[k + 2].is_absent)) continue;
     pieces[k - 2].is_absent = true;
     for (std::size_t i = k - 1; i <= k + 2; ++i) pieces[i] = {"", false};
   }
+}
+
+/// As people write the units of columns and keys.
+std::string SpokenUnit(const std::string& word) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kSpoken = {
+      {{"um", "µm"}, {"urad", "µrad"}, {"degC", "°C"}, {"urad_per_h", "µrad/h"}, {"per_m2", "m⁻²"}, {"arcsec_per_h", "arcsec/h"}}};
+  const auto* spoken = std::ranges::find(kSpoken, std::string_view(word), [](const auto& pair) { return pair.first; });
+  return spoken == kSpoken.end() ? word : std::string(spoken->second);
 }
 
 std::string WithoutNoNumbersIn(std::string_view line, const std::string& absent) {
@@ -160,6 +171,12 @@ void TakeUncertainty(const Misfit& worst, Evaluation& evaluation) {
 
 }  // namespace
 
+std::string InPrint(const std::string& text) {
+  std::string spoken;
+  for (const Piece& piece : PiecesOf(text)) spoken += SpokenUnit(piece.text);
+  return spoken;
+}
+
 std::string WithoutNoNumbers(const std::string& text, const std::string& absent) {
   std::string sound;
   for (std::size_t at = 0; at < text.size();) {
@@ -168,13 +185,14 @@ std::string WithoutNoNumbers(const std::string& text, const std::string& absent)
     if (end < text.size()) sound += '\n';
     at = end + 1;
   }
-  return sound;
+  return absent.empty() ? sound : InPrint(sound);
 }
 
 void KeepSound(const std::vector<Reading>& readings, Evaluation& evaluation) {
   if (const Misfit* worst = WorstOf(evaluation.misfits)) TakeUncertainty(*worst, evaluation);
   const int absurd = ClearNoNumbers(evaluation.results) + ClearNoNumbers(evaluation.separation);
   for (ResultTable& table : evaluation.tables) table.text = WithoutNoNumbers(table.text, "");
+  evaluation.summary = InPrint(evaluation.summary);
   const std::string sound = WithoutNoNumbers(evaluation.summary);
   if (absurd == 0 && sound == evaluation.summary) return;
   const std::string why = fmt::format("the readings of this run do not determine it{}", LeftOut(readings));

@@ -24,7 +24,11 @@ inline Misfit WidenedMisfit(const std::string& of, double factor) {
 /// Results from this size on, in the units of files, are no measurement: 1e9 um are a kilometre.
 constexpr double kAbsurd = 1e9;
 
+/// Text for people: the units of columns and keys as they are written in print, "um" as "µm".
+std::string InPrint(const std::string& text);
+
 /// The text with `absent` in the place of every nan, inf and absurd number, and of a value whose uncertainty is one.
+/// @param absent  Empty: the text is a file's, and its units stay as they are. Else the text is for people (InPrint).
 std::string WithoutNoNumbers(const std::string& text, const std::string& absent = "-");
 
 /// Nulls in the place of every nan, inf and absurd number, and of a value whose uncertainty is one; counts may be large.

@@ -162,7 +162,7 @@ std::string TrialsText(const QuantityList& group, const MonteCarlo& trials) {
   if (count == 0) return "";
   const std::string interval =
       count == 1 ? fmt::format("{:.4g} to {:.4g}", last[0], last[1])
-                 : fmt::format("+- {:.3g}", std::sqrt(half2 / count));
+                 : fmt::format("± {:.3g}", std::sqrt(half2 / count));
   return fmt::format("by trials: u = {:.3g}, shortest 95 % interval {}; {}", std::sqrt(sd2 / count), interval,
                      AgreementText(verdicts));
 }

@@ -33,7 +33,7 @@ std::string OtherOrder(const Cause& cause) {
   return other == cause.indistinguishable_from.end() ? "" : " or " + other->where;
 }
 
-/// "backlash, width 0.0120 +- 0.0003 deg (97 %)".
+/// "backlash, width 0.0120 ± 0.0003 deg (97 %)".
 std::string Alone(const Cause& cause, bool with_size) {
   std::string size;
   if (with_size && !cause.parameters.empty() && std::isfinite(cause.parameters.front().value))
@@ -62,8 +62,8 @@ std::string ShortOf(const std::vector<Cause>& causes, const diagnose::CauseGroup
   return fmt::format("{} or {} other{}", name, group.size() - 1, group.size() == 2 ? "" : "s");
 }
 
-/// As many groups as there is room for.
-std::string Causes(const Diagnosis& d, bool with_sizes, std::size_t room = std::string::npos) {
+/// As many groups as fit into `most` characters.
+std::string Causes(const Diagnosis& d, bool with_sizes, std::size_t most = std::string::npos) {
   const std::vector<diagnose::CauseGroup> groups = GroupsOf(d.causes);
   std::string text;
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -71,8 +71,8 @@ std::string Causes(const Diagnosis& d, bool with_sizes, std::size_t room = std::
     const std::size_t rest = g + 1 < groups.size() ? more.size() : 0;
     std::string part =
         groups[g].size() == 1 ? Alone(d.causes[groups[g].front()], with_sizes) : Together(d.causes, groups[g]);
-    if (text.size() + 2 + part.size() + rest > room) part = ShortOf(d.causes, groups[g]);
-    if (g > 0 && text.size() + 2 + part.size() + rest > room) return text + more;
+    if (text.size() + 2 + part.size() + rest > most) part = ShortOf(d.causes, groups[g]);
+    if (g > 0 && text.size() + 2 + part.size() + rest > most) return text + more;
     text += (g > 0 ? "; " : "") + part;
   }
   return text;
@@ -87,7 +87,7 @@ std::string ShortSource(const std::string& source) {
 }  // namespace
 
 std::string VerdictLine(const Diagnosis& d, const std::string& source) {
-  const std::string name = ShortSource(source), of = fmt::format("{} readings of {}", d.readings, name);
+  const std::string name = ShortSource(source), of = fmt::format("{} reading{} of {}", d.readings, d.readings == 1 ? "" : "s", name);
   const auto line = [&](const std::string& verdict) {
     for (const bool with_sizes : {true, false}) {
       for (const std::string& place : {of, name}) {
@@ -100,16 +100,16 @@ std::string VerdictLine(const Diagnosis& d, const std::string& source) {
   };
   switch (d.verdict) {
     case Verdict::kNamed:
-      return line("Named");
+      return line("Cause identified");
     case Verdict::kTie:
-      return line("Tie");
+      return line("Ambiguous");
     case Verdict::kUnknown:
-      return fmt::format("Unknown: structure that no cause of the catalogue explains ({}) in {}",
+      return fmt::format("Unmodelled effect: explained by no cause of the catalogue ({}) in {}",
                          diagnose::Percent(d.unknown.probability), of);
     case Verdict::kNone:
       break;
   }
-  return fmt::format("Agrees: nothing found in {}{}", of,
+  return fmt::format("Consistent with the scenario: nothing found in {}{}", of,
                      std::isfinite(d.alarm_p) ? fmt::format(" (p = {:.2g})", d.alarm_p) : "");
 }
 

@@ -50,16 +50,16 @@ std::vector<EffectEntry> ThermalEffects() {
   return {{"thermal_growth",
            "scale of an axis that grows with the temperature",
            Axes(),
-           {Signed("growth", "um_m_K", 5.0, 1000.0, "from 20 degC on")}},
+           {Signed("growth", "um_m_K", 5.0, 1000.0, "from 20 °C on")}},
           {"drift",
            "spindle that moves against the table with the temperature",
            Axes(),
-           {Signed("drift", "um_K", 1.0, 1000.0, "from 20 degC on"),
+           {Signed("drift", "um_K", 1.0, 1000.0, "from 20 °C on"),
             Parameter("lag", "s", 0.0, 0.0, 1e5, "behind the temperature")}},
           {"bar_expansion",
            "bar that grows with the temperature",
            {},
-           {Signed("growth", "um_m_K", 5.0, 1000.0, "from 20 degC on")}}};
+           {Signed("growth", "um_m_K", 5.0, 1000.0, "from 20 °C on")}}};
 }
 
 std::vector<EffectEntry> InstrumentEffects() {
@@ -77,7 +77,7 @@ std::vector<EffectEntry> InstrumentEffects() {
        "ball out of round",
        {},
        {Signed("cosine", "um", 0.1, 100.0, "of order * azimuth"), Signed("sine", "um", 0.0, 100.0, "likewise"),
-        Parameter("order", "1", 3.0, 2.0, 3.0, "periods a turn")}},
+        Parameter("order", "1", 3.0, 2.0, 3.0, "periods per turn")}},
       {"eccentricity",
        "scale of the encoder off its axis",
        {},

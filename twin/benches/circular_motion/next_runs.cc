@@ -29,7 +29,7 @@ std::vector<plan::NextRun> NextRunsOf(const Scenario& scenario) {
            {fmt::format("circular_procedure.start_deg={:.6g}", p.start_rad / units::deg + 90.0)},
            plan::kOtherKind},
           {"warm",
-           "the same in a room that is 2 K warmer",
+           "the same at a temperature 2 K higher",
            {fmt::format("environment.temperature_degC={}", warmer_degC)},
            plan::kOtherKind}};
 }

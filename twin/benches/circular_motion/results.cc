@@ -154,8 +154,8 @@ std::string BiasText(const CircleAnalysis& a) {
   for (const PathBias& b : a.method_bias) {
     if (b.IsBiased())
       text += fmt::format(
-          "published path, set-up {}, pass {}: BIASED, {:.3g} um along and {:.3g} um across the radius from the "
-          "rigorous one, where a reading's noise is {:.2g} and {:.2g}; its uncertainty holds that\n",
+          "published path, set-up {}, pass {}: BIASED, {:.3g} um along and {:.3g} um across the radius from "
+          "weighted least squares (exact model), where a reading's noise is {:.2g} and {:.2g}; included in its uncertainty\n",
           b.setup, b.pass, b.radial_m / um, b.tangential_m / um, b.u_radial_m / um, b.u_tangential_m / um);
   }
   return text;
@@ -186,9 +186,9 @@ json SeparationJson(const CircleAnalysis& a) {
 std::string ErrorsText(const CircleAnalysis& a) {
   std::string text;
   for (const ErrorValue& e : ErrorsOf(a.fit))
-    text += std::isfinite(e.u) ? fmt::format("{:<34} {:14.6g} +- {:.2g} {}\n", e.key, e.value, e.u, e.unit) : "";
+    text += std::isfinite(e.u) ? fmt::format("{:<34} {:14.6g} ± {:.2g} {}\n", e.key, e.value, e.u, e.unit) : "";
   for (const std::string& words : a.fit.not_separable) text += "not separable: " + words + "\n";
-  return text + fmt::format("left over, in stated uncertainties: {:.3f} rms\n", a.fit.chi);
+  return text + fmt::format("residual, in stated uncertainties: {:.3f} rms\n", a.fit.chi);
 }
 
 std::string DeviationsText(const CircleAnalysis& a) {

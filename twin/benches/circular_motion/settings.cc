@@ -33,8 +33,8 @@ void AddErrors(Table& t, CircularMachineSettings& s) {
   AddPair(t, "spike", kUm, Within(1000), s.spike_m, "largest excursion behind a reversal");
   AddPair(t, "cyclic", kUm, Within(1000), s.cyclic_m, "once a pitch, amplitude");
   AddPair(t, "cyclic_phase", kDeg, Within(360), s.cyclic_phase_rad, "of its sine");
-  AddPair(t, "expansion", kUm_m_K, Within(1000), s.expansion_per_K, "of the scale, from 20 degC on");
-  AddPair(t, "drift", kUm_K, Within(1000), s.drift_m_per_K, "of the spindle against the table, from 20 degC on");
+  AddPair(t, "expansion", kUm_m_K, Within(1000), s.expansion_per_K, "of the scale, from 20 °C on");
+  AddPair(t, "drift", kUm_K, Within(1000), s.drift_m_per_K, "of the spindle against the table, from 20 °C on");
 }
 
 void AddMachine(Keys& keys, CircularMachineSettings& s) {
@@ -102,26 +102,26 @@ void AddBar(Keys& keys, BarSettings& s) {
   t.Add("length_error", kUm, Within(10000), &s.length_error_m, "longer than the radius where it shows zero");
   t.Add("gain_error", kPure, Within(0.5), &s.gain_error, "of the transducer");
   t.Add("cubic", kPerMm2, Within(1000), &s.cubic_per_m2, "of the transducer");
-  t.Add("ball2", kUm, Within(100), s.ball_m.data(), "form of ball 1, twice a turn");
+  t.Add("ball2", kUm, Within(100), s.ball_m.data(), "form of ball 1, twice per turn");
   t.Add("ball2_azimuth", kDeg, Within(360), s.ball_azimuth_rad.data(), "of its largest radius");
-  t.Add("ball3", kUm, Within(100), &s.ball_m[1], "form of ball 1, three times a turn");
+  t.Add("ball3", kUm, Within(100), &s.ball_m[1], "form of ball 1, three times per turn");
   t.Add("ball3_azimuth", kDeg, Within(360), &s.ball_azimuth_rad[1], "of its largest radius");
-  t.Add("expansion", kUm_m_K, Within(1000), &s.expansion_per_K, "of the bar, from 20 degC on");
+  t.Add("expansion", kUm_m_K, Within(1000), &s.expansion_per_K, "of the bar, from 20 °C on");
   t.Add("latency", kSecond, Within(1), &s.latency_s, "the reading is this old");
 }
 
 void AddEncoder(Keys& keys, BarEncoderSettings& s) {
   Table t(keys, "encoder");
   t.Add("noise", kArcsec, UpTo(3600), &s.noise_rad, "of one reading, standard deviation");
-  t.Add("lines", kPure, {1, 10000000}, &s.lines, "a turn");
+  t.Add("lines", kPure, {1, 10000000}, &s.lines, "per turn");
   t.Add("interpolation", kPure, {1, 1000000}, &s.interpolation, "counts a line");
   t.Add("zero", kDeg, Within(360), &s.zero_rad, "shown where the bar points to +X");
   t.Add("tilt_x", kMrad, Within(100), s.tilt_rad.data(), "of its axis, about X");
   t.Add("tilt_y", kMrad, Within(100), &s.tilt_rad[1], "of its axis, about Y");
-  t.Add("eccentricity", kArcsec, Within(3600), &s.eccentricity_rad, "amplitude, once a turn");
+  t.Add("eccentricity", kArcsec, Within(3600), &s.eccentricity_rad, "amplitude, once per turn");
   t.Add("eccentricity_azimuth", kDeg, Within(360), &s.eccentricity_azimuth_rad,
         "where its sine rises through zero");
-  t.Add("ellipticity", kArcsec, Within(3600), &s.ellipticity_rad, "amplitude, twice a turn");
+  t.Add("ellipticity", kArcsec, Within(3600), &s.ellipticity_rad, "amplitude, twice per turn");
   t.Add("ellipticity_azimuth", kDeg, Within(360), &s.ellipticity_azimuth_rad, "where its sine rises through zero");
   t.Add("latency", kSecond, Within(1), &s.latency_s, "the reading is this old");
 }
@@ -155,7 +155,7 @@ void AddProcedure(Keys& keys, CircularProcedureSettings& s) {
   t.Records("setups", s.setups, AddSetup, "what is mounted, one after the other");
   t.Add("feeds", kMm_min, Between(1e-3, 100000), &s.feeds_m_s, "of the sweeps, each in all directions");
   t.Add("points", kPure, {3, 100000}, &s.points, "readings a sweep, evenly spaced");
-  t.Add("stops", kPure, UpTo(100000), &s.stops, "a turn, one reading each, behind the sweeps; 0: none");
+  t.Add("stops", kPure, UpTo(100000), &s.stops, "per turn, one reading each, after the sweeps; 0: none");
   t.Add("dwell", kSecond, UpTo(3600), &s.dwell_s, "at a stop until it is read");
   t.Add("rapid", kMm_min, Between(1e-3, 1e6), &s.rapid_m_s, "from stop to stop");
   t.Add("directions", kPure, {-1, 1}, &s.directions, "1: counter-clockwise from above, -1: clockwise");

@@ -76,7 +76,7 @@ std::string CoastSummary(const TimeReversal& timed, int readings, const AxisUnit
   text += fmt::format("a time repeats to      {:10.4f} ns (standard deviation)\n", timed.stamp_noise_s / 1e-9);
   text += fmt::format("curve of the ring      U = {:.4f} {} (k = 2, {} orders, root mean square over the turn)\n",
                       2.0 * CurveRms_rad(timed) / unit.to_SI, unit.name, timed.ring.Highest());
-  for (const std::string& lost : timed.not_separable) text += "not told apart: " + lost + "\n";
+  for (const std::string& lost : timed.not_separable) text += "not separable: " + lost + "\n";
   for (const std::string& note : timed.notes) text += "note: " + note + "\n";
   return text;
 }

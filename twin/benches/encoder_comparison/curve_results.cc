@@ -54,7 +54,7 @@ std::string LinesText(const char* what, const HarmonicSeries& series, const Axis
   std::string text;
   for (const int order : FindLines(series)) {
     const Coefficient& c = series.At(order);
-    text += fmt::format("{:<10} order {:2d}    {:10.3f} +- {:.3f} {}, phase {:+.2f} deg\n", what, order,
+    text += fmt::format("{:<10} order {:2d}    {:10.3f} ± {:.3f} {}, phase {:+.2f} deg\n", what, order,
                         Amplitude(c) / unit.to_SI, AmplitudeUncertainty(c) / unit.to_SI, unit.name,
                         separate::harmonics::Phase(c) / units::deg);
   }
@@ -69,7 +69,7 @@ std::string LargestText(const char* what, const HarmonicSeries& series, const Ax
   std::string text;
   for (std::size_t i = 0; i < std::min(kMost, orders.size()); ++i) {
     const Coefficient& c = series.At(orders[i]);
-    text += fmt::format("{:<10} order {:3d}   {:10.4f} +- {:.4f} {}, phase {:+.2f} deg\n", what, orders[i],
+    text += fmt::format("{:<10} order {:3d}   {:10.4f} ± {:.4f} {}, phase {:+.2f} deg\n", what, orders[i],
                         Amplitude(c) / unit.to_SI, AmplitudeUncertainty(c) / unit.to_SI, unit.name,
                         separate::harmonics::Phase(c) / units::deg);
   }

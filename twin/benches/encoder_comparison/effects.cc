@@ -27,9 +27,9 @@ EffectParameter Approach() {
 std::vector<EffectEntry> MountingAndShapeEffects() {
   return {
       // a / R: 1 um on 50 mm is 0.001 deg; 0.5 deg for the magnet of a small magnetic encoder
-      {"eccentricity", "scale off the axis, once a turn", {}, {HarmonicAmplitude(0.01), HarmonicPhase()}},
+      {"eccentricity", "scale off the axis, once per turn", {}, {HarmonicAmplitude(0.01), HarmonicPhase()}},
       // 0.2-5 arcsec on a ring, 0.3 deg on a magnet
-      {"ellipticity", "scale out of round or tilted, twice a turn", {}, {HarmonicAmplitude(0.01), HarmonicPhase()}},
+      {"ellipticity", "scale out of round or tilted, twice per turn", {}, {HarmonicAmplitude(0.01), HarmonicPhase()}},
   };
 }
 
@@ -93,7 +93,7 @@ std::vector<EffectEntry> MotionEffects() {
         Parameter("time_constant", "s", 1.0, 1e-3, 1e4, "of the decay")}},
       // 1e-6 to 1e-3 for a device without closure
       {"scale",
-       "device that counts too much or too little a turn",
+       "device that counts too much or too little per turn",
        {},
        {Signed("ratio", "1", 1e-5, 1.0, "measured = reference * (1 + ratio)")}},
   };
@@ -124,18 +124,18 @@ std::vector<EffectEntry> TimeAndReadingEffects() {
 std::vector<EffectEntry> PeriodicEffects() {
   return {
       {"periodic",
-       "error that repeats a whole number of times a turn: screws, poles, a polygon",
+       "error that repeats a whole number of times per turn: screws, poles, a polygon",
        {},
-       {Parameter("order", "1", 7.0, 1.0, 100000.0, "periods a turn"), HarmonicAmplitude(0.01), HarmonicPhase()}},
+       {Parameter("order", "1", 7.0, 1.0, 100000.0, "periods per turn"), HarmonicAmplitude(0.01), HarmonicPhase()}},
       {"gear_mesh",
        "error that repeats with the teeth of a gear",
        {},
-       {Parameter("teeth", "1", 44.0, 1.0, 100000.0, "of the gear, a turn"), HarmonicAmplitude(0.01),
+       {Parameter("teeth", "1", 44.0, 1.0, 100000.0, "of the gear, per turn"), HarmonicAmplitude(0.01),
         HarmonicPhase()}},
       {"reference_fault",
        "periodic error of the reference, tied to its own angle",
        {},
-       {Parameter("order", "1", 1.0, 1.0, 100000.0, "periods a turn"), HarmonicAmplitude(0.01), HarmonicPhase()}},
+       {Parameter("order", "1", 1.0, 1.0, 100000.0, "periods per turn"), HarmonicAmplitude(0.01), HarmonicPhase()}},
   };
 }
 

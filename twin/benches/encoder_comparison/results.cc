@@ -141,11 +141,11 @@ std::vector<uncertainty::Joint> JointsOf(const separate::encoder::SeparatedCurve
 
 std::string LostText(const DeviceError& e) {
   if (e.curves.reference.orders.empty())
-    return fmt::format("not told apart from the reference: {}\n",
+    return fmt::format("not separable from the reference: {}\n",
                        e.mounting_rad.size() > 1 ? kSeenAlike : kNoReference);
   std::string orders;
   for (const int order : e.curves.lost) orders += fmt::format(" {}", order);
-  return orders.empty() ? "" : fmt::format("not told apart from the reference, orders{}: {}\n", orders, kSeenAlike);
+  return orders.empty() ? "" : fmt::format("not separable from the reference, orders{}: {}\n", orders, kSeenAlike);
 }
 
 std::string SummaryOf(const DeviceError& e, const AxisUnit& unit) {
@@ -154,11 +154,11 @@ std::string SummaryOf(const DeviceError& e, const AxisUnit& unit) {
                      LinesText("reversal", e.curves.reversal, unit);
   if (text.empty()) text = "no order stands out of the noise\n";
   if (std::isfinite(e.reversal.value_rad))
-    text += fmt::format("forward - backward     {:10.3f} +- {:.3f} {}\n", e.reversal.value_rad / unit.to_SI,
+    text += fmt::format("forward - backward     {:10.3f} ± {:.3f} {}\n", e.reversal.value_rad / unit.to_SI,
                         e.reversal.u_rad / unit.to_SI, unit.name);
   if (std::abs(e.lag_s) > 3.0 * e.u_lag_s)
     text +=
-        fmt::format("device behind by       {:10.4f} +- {:.4f} ms\n", e.lag_s / units::ms, e.u_lag_s / units::ms);
+        fmt::format("device behind by       {:10.4f} ± {:.4f} ms\n", e.lag_s / units::ms, e.u_lag_s / units::ms);
   text += fmt::format("a reading repeats to   {:10.3f} {} (standard deviation)\n", e.residual_rms_rad / unit.to_SI,
                       unit.name);
   text += LostText(e);

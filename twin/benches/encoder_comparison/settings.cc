@@ -25,7 +25,7 @@ void AddDevice(Keys& keys, DeviceSettings& s) {
   t.Add("lines_per_turn", kPure, UpTo(10000000), &s.lines, "of its scale; 0: not known");
   t.Add("teeth", kPure, UpTo(100000), &s.teeth, "of a gear between reference and device; 0: none known");
   t.Add("stamp_noise", {"ns", 1e-9}, UpTo(1e6), &s.stamp_noise_s, "coast: of the time at which a line passes");
-  t.Add("signal_periods", kPure, {1, 100000}, &s.signal_periods, "of its sine and cosine signals a turn");
+  t.Add("signal_periods", kPure, {1, 100000}, &s.signal_periods, "of its sine and cosine signals per turn");
   t.Add("signal_zero", kDeg, Within(360), &s.signal_zero_rad, "device angle where the sine rises through zero");
   t.Flag("signal_zero_known", s.signal_zero_known, "false: the phase of signal faults is left free");
   t.Add("graduation", kArcsec, UpTo(36000), &s.graduation_rad, "error of its scale, drawn, root mean square");
@@ -40,7 +40,7 @@ void AddEncoderProcedure(Keys& keys, EncoderProcedureSettings& s) {
   t.Add("turns", kPure, Positive(1000), &s.turns, "of a pass");
   t.Add("start", kDeg, Within(360000), &s.start_rad, "where the first pass begins");
   t.Add("passes", kPure, {-1, 1}, &s.passes, "directions: 1 or -1; a sweep does them at each speed");
-  t.Add("mounting", kDeg, Within(360), &s.mounting_rad, "device angle where the reference shows 0, one a set-up");
+  t.Add("mounting", kDeg, Within(360), &s.mounting_rad, "device angle where the reference shows 0, one per set-up");
   t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
   t.Add("heads", kDeg, Within(360), &s.heads_rad, "where heads read the device's ring, all at once");
   t.Add("reference_noise", kArcsec, UpTo(36000), &s.reference_noise_rad,

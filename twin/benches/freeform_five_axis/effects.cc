@@ -28,7 +28,7 @@ std::vector<EffectEntry> QuadrantEffects() {
        kQuadrantChannels,
        {Signed("spot", "mm", 0.005, 10.0, "from the first reading to the last")}},
       {"qpd_roll",
-       "quadrant detector turned about the beam",
+       "quadrant detector rotated about the beam",
        {},
        {Signed("roll", "rad", 0.03, 3.0, "of the axes of its signals")}},
       {"spot_size", "spot larger than stated", {}, {Ratio(0.005, 0.9, "too much")}},

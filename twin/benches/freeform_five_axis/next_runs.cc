@@ -29,7 +29,7 @@ std::vector<plan::NextRun> NextRunsOf(const Scenario& scenario) {
         fmt::format("freeform_procedure.dither_deg={:.6g}", 10.0 * p.dither_rad / units::deg)},
        plan::kOtherKind},
       {"warm",
-       "the same in a room that is 2 K warmer",
+       "the same at a temperature 2 K higher",
        {fmt::format("environment.temperature_degC={}", warmer_degC)},
        plan::kOtherKind}};
 }

@@ -80,7 +80,7 @@ std::string SummaryOf(const Identification& found) {
   return fmt::format(
       "{} of {} unknowns are in the readings; {} of the machine's {} each by itself\n"
       "residual rms    qpd {:.2f}, {:.2f} mV, ccd {:.4f} px; {} degrees of freedom\n"
-      "{} directions are left open (separation.json, not_separable); the volumetric error does not need them\n{}",
+      "{} directions are not observable (null space; separation.json, not_separable); the volumetric error does not need them\n{}",
       found.rank, found.unknowns.size(), of_machine, kOfMachine, found.residual_rms[0] / units::mV,
       found.residual_rms[1] / units::mV, found.residual_rms[2], found.dof, found.not_separable.size(),
       found.converged ? "" : "the fit has not settled\n");
@@ -175,8 +175,8 @@ std::string BiasText(const MapBias& bias) {
   for (Eigen::Index c = 0; c < 3; ++c) {
     if (bias.IsBiased(c))
       text += fmt::format(
-          "published {} of the map: BIASED, {:.3g} rms from the rigorous result, where noise makes {:.2g}; its "
-          "uncertainty holds that\n",
+          "published {} of the map: BIASED, {:.3g} rms from weighted least squares (exact model), where noise makes {:.2g}; "
+          "included in its uncertainty\n",
           kMapKeys[static_cast<std::size_t>(c)], bias.rms_um[c], bias.u_noise_um[c]);
   }
   return text + "published coefficients and squareness: INVALID one by one, their errors go into each other\n";

@@ -85,7 +85,7 @@ void AddMount(Table& t, MountSettings& s) {
 
 void AddProcedure(Keys& keys, FreeformProcedureSettings& s) {
   Table t(keys, "freeform_procedure");
-  t.Records("mounts", s.mounts, AddMount, "where the artefact stands, one a set-up");
+  t.Records("mounts", s.mounts, AddMount, "where the artefact stands, one per set-up");
   t.Add("poses", kPure, {1, 100000}, &s.poses, "a set-up; each is read on the way forth and back");
   t.Add("angle", kDeg, UpTo(45), &s.angle_rad, "A and B go so far to either side");
   t.Add("height", kMm, UpTo(1000), &s.height_m, "the tip stands off the surface by up to this, to either side");

@@ -22,15 +22,15 @@ std::vector<EffectEntry> RingEffects() {
   return {
       // a / R: 1 um on 50 mm is 4 arcsec; the paper's table encoder has 5.8
       {"eccentricity",
-       "ring off the shaft's axis: once a turn of the ring",
+       "ring off the shaft's axis: once per turn of the ring",
        Encoders(),
        {WaveAmplitude(5.0), WavePhase()}},
       // 0.2-5 arcsec
-      {"ellipticity", "ring out of round or tilted: twice a turn", Encoders(), {WaveAmplitude(1.0), WavePhase()}},
+      {"ellipticity", "ring out of round or tilted: twice per turn", Encoders(), {WaveAmplitude(1.0), WavePhase()}},
       {"periodic",
-       "error of the ring's lines that repeats a whole number of times a turn: screws, copying of the scale",
+       "error of the ring's lines that repeats a whole number of times per turn: screws, copying of the scale",
        Encoders(),
-       {Parameter("order", "1", 6.0, 1.0, 100000.0, "periods a turn of the ring"), WaveAmplitude(1.0),
+       {Parameter("order", "1", 6.0, 1.0, 100000.0, "periods per turn of the ring"), WaveAmplitude(1.0),
         WavePhase()}},
   };
 }
@@ -57,10 +57,10 @@ std::vector<EffectEntry> HobSignalEffects() {
 
 std::vector<EffectEntry> ChainEffects() {
   return {
-      {"hob_runout", "hob spindle's drive: once a turn of the hob", {}, {WaveAmplitude(2.0), WavePhase()}},
-      {"worm", "worm of the table: once a turn of the worm", {}, {WaveAmplitude(2.0), WavePhase()}},
+      {"hob_runout", "hob spindle's drive: once per turn of the hob", {}, {WaveAmplitude(2.0), WavePhase()}},
+      {"worm", "worm of the table: once per turn of the worm", {}, {WaveAmplitude(2.0), WavePhase()}},
       {"gear_mesh",
-       "error that repeats with the teeth of the gear to be cut: two times a turn of a hob with two starts",
+       "error that repeats with the teeth of the gear to be cut: twice per turn of a hob with two starts",
        {},
        {WaveAmplitude(1.0), WavePhase()}},
       {"backlash",

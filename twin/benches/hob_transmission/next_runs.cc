@@ -30,7 +30,7 @@ void AddDenserReadings(const HobSettings& own, std::vector<plan::NextRun>& runs)
   while (lines % every != 0 || lines / every > most) ++every;
   const int samples = lines / every;
   if (samples <= now) return;
-  runs.push_back(plan::DenserReadings(fmt::format("the same motion, {} samples a turn", samples),
+  runs.push_back(plan::DenserReadings(fmt::format("the same motion, {} samples per turn", samples),
                                       fmt::format("hob_procedure.samples_per_turn={}", samples)));
 }
 

@@ -187,13 +187,13 @@ std::string PositionText(const PositionError& p) {
                        p.direction);
   const Coefficient& first = p.series.At(1);
   return fmt::format(
-      "head at {:6.2f} deg, direction {:+d}   order 1: {:.2f} +- {:.2f} arcsec ({} turns, {} samples)\n",
+      "head at {:6.2f} deg, direction {:+d}   order 1: {:.2f} ± {:.2f} arcsec ({} turns, {} samples)\n",
       p.head_rad / units::deg, p.direction, Amplitude(first) / units::arcsec,
       AmplitudeUncertainty(first) / units::arcsec, p.turns, p.samples);
 }
 
 std::string OrderText(const char* what, const Coefficient& c) {
-  return fmt::format("{}   {:.2f} +- {:.2f} arcsec, phase {:.3f} +- {:.3f} rad\n", what,
+  return fmt::format("{}   {:.2f} ± {:.2f} arcsec, phase {:.3f} ± {:.3f} rad\n", what,
                      Amplitude(c) / units::arcsec, AmplitudeUncertainty(c) / units::arcsec, Phase(c),
                      PhaseUncertainty(c));
 }
@@ -224,7 +224,7 @@ std::string LostText(const HobAnalysis& a) {
   for (const SeparatedOrder& order : a.separation->orders) {
     if (order.status == OrderStatus::kSumOnly) orders += fmt::format(" {}", order.order);
   }
-  return orders.empty() ? "" : "not told apart, counted as transmission: orders" + orders + "\n";
+  return orders.empty() ? "" : "not separable, counted as transmission: orders" + orders + "\n";
 }
 
 std::string SummaryOf(const HobAnalysis& a) {
@@ -313,7 +313,7 @@ report::ScoredRun ScoreOf(const HobAnalysis& analysis, const nlohmann::json& tru
     curves.push_back(CurveOf("interferometer at rest", analysis.encoder_by_interferometer, encoder));
   return {
       ToJson(curves),
-      "against the truth: both parts of every order; orders that are not told apart have the encoder's share\n" +
+      "against the truth: both parts of every order; orders that are not separable have the encoder's share\n" +
           report::ScoreTable(curves),
       report::PositionTable(curves), report::ValuesOf(curves)};
 }

@@ -37,7 +37,7 @@ void AddTransmission(Keys& keys, TransmissionSettings& s) {
 
 void AddRing(Keys& keys, const std::string& table, RingEncoderSettings& s) {
   Table t(keys, table);
-  t.Add("lines", kPure, {1, 10000000}, &s.lines, "a turn");
+  t.Add("lines", kPure, {1, 10000000}, &s.lines, "per turn");
   t.Add("radius", kMm, Positive(5000), &s.radius_m, "of the ring");
   t.Add("eccentricity", kUm, UpTo(10000), &s.eccentricity_m, "of its middle from the shaft's axis");
   t.Add("eccentricity_azimuth", kDeg, Within(360), &s.eccentricity_azimuth_rad, "on the ring");
@@ -68,12 +68,12 @@ void AddInterferometer(Keys& keys, InterferometerSettings& s) {
         "standard uncertainty of that error: of the cosine and of the sine of any order");
   t.Add(
       "stops", kPure, {0, 100000}, &s.stops,
-      "a turn at which it is read at rest, in the first set-up behind its passes, each way; 0: with every sample");
+      "per turn at which it is read at rest, in the first set-up behind its passes, each way; 0: with every sample");
 }
 
 void AddHobProcedure(Keys& keys, HobProcedureSettings& s) {
   Table t(keys, "hob_procedure");
-  t.Add("heads", kDeg, Within(360), &s.heads_rad, "where the mark passes the table's reading head, one a set-up");
+  t.Add("heads", kDeg, Within(360), &s.heads_rad, "where the mark passes the table's reading head, one per set-up");
   t.Text("encoder_zero", &s.encoder_zero, {"table_origin", "reference_mark"},
          "where the table's encoder counts from");
   t.Add("hob_speeds", {"rev_min", 2.0 * units::kPi / 60.0}, Between(0.01, 100000), &s.hob_speeds_rad_s,
@@ -121,11 +121,11 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
   CheckAngles(text, "interferometer.calibrator", own.interferometer.calibrator);
   if (own.table_encoder.lines % own.hob_procedure.samples_per_turn != 0)
     throw InputError(Place(text, "hob_procedure.samples_per_turn"),
-                     fmt::format("{} samples a turn", own.hob_procedure.samples_per_turn),
+                     fmt::format("{} samples per turn", own.hob_procedure.samples_per_turn),
                      fmt::format("a divisor of the {} lines of the table's encoder", own.table_encoder.lines));
   const int stops = own.interferometer.stops;
   if (stops != 0 && stops < kFewestStops)
-    throw InputError(Place(text, "interferometer.stops"), fmt::format("{} stops a turn", stops),
+    throw InputError(Place(text, "interferometer.stops"), fmt::format("{} stops per turn", stops),
                      fmt::format("0 or at least {}: so many tell the orders 1 and 2", kFewestStops));
   for (const double speed_rad_s : own.hob_procedure.hob_speeds_rad_s) {
     if (speed_rad_s <= 0.0)

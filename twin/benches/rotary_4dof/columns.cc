@@ -52,17 +52,17 @@ std::vector<DesiredColumn> Desired() {
        "settling cannot be named: it looks like backlash"},
       {"temperature_degC", [](const Reading& r) { return std::isfinite(r.temperature_degC); },
        "wavelength_temperature, thermal_tilt and post_growth cannot be named: they look like laser_drift, "
-       "mount_creep or unknown structure in time"},
+       "mount_creep or an unmodelled effect in time"},
       {"n_samples and psd_..._std_V", HasScatter,
        "the noise of a reading is taken from the scenario, so that a wrong noise figure and small structure "
-       "without a name look alike"},
+       "that are not in the catalogue look alike"},
       {"autocollimator_yaw_arcsec and autocollimator_tilt_arcsec",
        [](const Reading& r) {
          return std::isfinite(r.autocollimator_yaw_rad) && std::isfinite(r.autocollimator_tilt_rad);
        },
        "the calibration sweeps are lost, and psd_gain, psd_roll, psd_distance, psd_nonlinearity, stray_light, "
-       "background, wavelength_offset, incidence_offset and crosstalk are hidden in the tables' errors or cannot be "
-       "told apart",
+       "background, wavelength_offset, incidence_offset and crosstalk are hidden in the tables' errors or not "
+       "separable",
        true}};
 }
 

@@ -26,7 +26,7 @@ std::vector<EffectEntry> DetectorEffects() {
        {Signed("gain_error", "1", 0.005, 0.5, "relative error of the gain")}},
       // 0.1-1 deg
       {"psd_roll",
-       "PSD turned about its nominal order",
+       "PSD rotated about the diffracted beam",
        psds,
        {Signed("roll", "mrad", 5.0, 500.0, "angle, right-handed towards the light")}},
       // 0.1-3 % of the range at the edge; 180000 /m^2 is 0.45 % at 5 mm
@@ -41,7 +41,7 @@ std::vector<EffectEntry> DetectorEffects() {
        {Parameter("fraction", "1", 0.01, 0.0, 0.9, "stray light / signal")}},
       // 1-20 uA: a lamp on a detector without a filter; 5 uA are 0.7 % of the signal of 5 mW of laser
       {"background",
-       "light of the room on a PSD that counts as signal and pulls the spot to the centre",
+       "ambient light on a PSD that counts as signal and pulls the spot to the centre",
        psds,
        {Parameter("current", "nA", 5000.0, 0.0, 1e6, "that it makes")}},
       // 0.1-1 %; 1 mm of 120 mm is 0.8 %.
@@ -118,7 +118,7 @@ std::vector<EffectEntry> BodyEffects() {
       {"encoder_subdivision",
        "servo's encoder that errs within the periods of its graduation",
        {"target", "reference"},
-       {Signed("amplitude", "arcsec", 0.1, 3.0, "of a sine of mechanics.encoder_periods a turn")}},
+       {Signed("amplitude", "arcsec", 0.1, 3.0, "of a sine of mechanics.encoder_periods per turn")}},
       // 0.1-20"
       {"backlash",
        "rotor that stays behind its encoder on reversal",
@@ -131,12 +131,12 @@ std::vector<EffectEntry> BodyEffects() {
        {},
        {Signed("amplitude", "arcsec", 5.0, 3600.0, "still to go when the move has ended"),
         Parameter("time_constant", "s", 1.0, 1e-3, 1e4, "of the exponential approach")}},
-      {"reclamp_frame", "grating re-clamped on the rotor though the scenario says reseat", {}, {}},
+      {"reclamp_frame", "grating remounted on the rotor where the scenario has the whole table re-mounted (reseat)", {}, {}},
       // 0.4-0.5 per turn, 0.05-1"
       {"bearing_half_frequency",
        "bearing motion once in about two turns",
        {},
-       {Parameter("order", "1", 0.498, 0.3, 0.7, "periods a turn of the unwrapped angle"),
+       {Parameter("order", "1", 0.498, 0.3, 0.7, "periods per turn of the unwrapped angle"),
         Signed("tilt", "arcsec", 1.5, 1000.0, "amplitude")}},
   };
 }

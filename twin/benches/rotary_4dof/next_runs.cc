@@ -51,7 +51,7 @@ std::vector<NextRun> OfTheCircle(const RotarySettings& own) {
                                {"two-shifts", "two set-ups of the circle, forth and back", TwoSetups(own, {}),
                                 plan::kSameKind},
                                {"other-shifts",
-                                "four set-ups at the shifts that tell most",
+                                "four set-ups at the most informative shifts",
                                 {circle, Shifts(n, std::min(4, n)), "procedure.passes=[1, -1, -1, 1]"},
                                 plan::kSameKind}};
   if (n % 2 == 0 && n > 6)
@@ -78,9 +78,9 @@ std::vector<NextRun> OfTheSweeps(const RotarySettings& own) {
 std::vector<NextRun> InAnotherRoom(const Scenario& scenario, const RotarySettings& own) {
   constexpr double kWarmer_K = 2.0;
   const double warm_degC = scenario.environment.temperature_degC + kWarmer_K;
-  return {{"warming", "two set-ups while the room warms by 2 K an hour",
+  return {{"warming", "two set-ups while the temperature rises by 2 K per hour",
            TwoSetups(own, {fmt::format("environment.drift_K_h={}", kWarmer_K)}), plan::kOtherKind},
-          {"warm", "finer sweeps and two set-ups in a room that is 2 K warmer",
+          {"warm", "finer sweeps and two set-ups at a temperature 2 K higher",
            TwoSetups(own, {"procedure.sweep_points=25", fmt::format("environment.temperature_degC={}", warm_degC)}),
            plan::kOtherKind}};
 }

@@ -70,7 +70,7 @@ void AddOptics(Keys& keys, LightSettings& s) {
   t.Text("fidelity", &s.fidelity, {"traced", "closed"},
          "how the laser's light is found: by Embree, or by a formula");
   t.Add("profile_rays", kPure, {1, 1e7}, &s.profile_rays,
-        "traced: places of a measured beam told apart; its pixels are gathered to so many at most");
+        "traced: places of a measured beam resolved; its pixels are gathered to so many at most");
   t.Add("wander", kUrad, UpTo(10000), &s.wander_rad, "of light on a metre of moving air, rms");
   t.Add("wander_corner", kHz, Positive(1000), &s.wander_corner_Hz, "wind over the beam's diameter");
 }
@@ -100,7 +100,7 @@ void AddPsd(Keys& keys, const std::string& table, PsdSettings& s) {
         "of its height, against environment.reference_degC");
   t.Add("responsivity", {"A_W"}, Positive(2), &s.responsivity_A_W, "photocurrent over light [A/W]");
   t.Add("dark_current", {"nA", 1e-9}, UpTo(1e6), &s.dark_current_A, "of the detector");
-  t.Add("background", {"nA", 1e-9}, UpTo(1e6), &s.background_A, "that counts as signal: light of the room");
+  t.Add("background", {"nA", 1e-9}, UpTo(1e6), &s.background_A, "that counts as signal: ambient light");
   t.Add("electrode_resistance", {"kohm", 1e3}, Positive(1e6), &s.electrode_resistance_ohm,
         "between the electrodes of an axis");
   t.Add("bandwidth", kKilohertz, Positive(1e6), &s.bandwidth_Hz, "of the read-out, for the light's own noise");
@@ -122,7 +122,7 @@ void AddAdc(Keys& keys, AdcSettings& s, ChainSettings& chain) {
   Table t(keys, "adc");
   t.Text("scan_list", &s.scan_list, {kChannelNames.begin(), kChannelNames.end()}, "order of conversion, each once");
   t.Add("bits", kPure, {4, 16}, &s.bits, "of one conversion");
-  t.Add("range", kVolt, Positive(1000), &s.range_V, "+- this voltage");
+  t.Add("range", kVolt, Positive(1000), &s.range_V, "± this voltage");
   t.Add("rate", kKilohertz, Between(1e-3, 1e6), &s.rate_Hz, "conversions, all channels together");
   t.Add("fifo_samples", kPure, UpTo(kHuge), &s.fifo_samples, "0: the computer always keeps up");
   t.Add("drain_rate", kKilohertz, Positive(1e6), &s.drain_rate_Hz, "at which the computer empties the FIFO");
@@ -170,7 +170,7 @@ void AddDrives(Keys& keys, MechanicsSettings& s) {
         "by which bristles bend before they slip");
   t.Add("friction_viscous", {"Nm_s_rad"}, UpTo(10000), List(s.friction_viscous_Nm_s), "torque by speed");
   t.Add("cable_stiffness", {"Nm_rad"}, UpTo(10000), List(s.cable_stiffness_Nm_rad), "of cables that wind up");
-  t.Add("cable_torque", {"Nm"}, UpTo(10000), List(s.cable_torque_Nm), "of bent cables, amplitude once a turn");
+  t.Add("cable_torque", {"Nm"}, UpTo(10000), List(s.cable_torque_Nm), "of bent cables, amplitude once per turn");
   t.Add("cable_azimuth", kDeg, Within(360), List(s.cable_azimuth_rad), "of the rotor where the latter holds it");
   t.Add("unbalance", {"g_mm", 1e-6}, UpTo(1e9), List(s.unbalance_kg_m), "of the rotors; its weight is a payload's");
   t.Add("unbalance_azimuth", kDeg, Within(360), List(s.unbalance_azimuth_rad), "on the rotors");
@@ -178,7 +178,7 @@ void AddDrives(Keys& keys, MechanicsSettings& s) {
         "of the servos' encoders; 0: none");
   t.Add("encoder_subdivision", kArcsec, Within(3.0), List(s.encoder_subdivision_rad),
         "error within a period of their graduation, amplitude");
-  t.Add("encoder_periods", kPure, {1, 1e6}, &s.encoder_periods, "of the graduation, a turn");
+  t.Add("encoder_periods", kPure, {1, 1e6}, &s.encoder_periods, "of the graduation, per turn");
 }
 
 void AddRestlessness(Keys& keys, MechanicsSettings& s) {
@@ -198,19 +198,19 @@ void AddRestlessness(Keys& keys, MechanicsSettings& s) {
 void AddPlan(Table& t, ProcedureSettings& s) {
   t.Text("phases", &s.phases, {"calibration", "stability", "verification", "full_circle"},
          "in the order of the run");
-  t.Add("positions", kPure, {3, 100000}, &s.positions, "stops of the full circle");
-  t.Add("shifts", kPure, UpTo(99999), &s.shifts, "of the reference at every set-up, in steps");
+  t.Add("positions", kPure, {3, 100000}, &s.positions, "measuring positions of the full circle");
+  t.Add("shifts", kPure, UpTo(99999), &s.shifts, "index offset of the reference in every set-up, in measuring positions");
   t.Add("passes", kPure, {-1, 1}, &s.passes, "directions: 1 or -1");
-  t.Text("clamping", &s.clamping, {"reseat", "reclamp"}, "how the grating comes back to the PSDs after a shift");
+  t.Text("clamping", &s.clamping, {"reseat", "reclamp"}, "how the grating returns to the PSDs: whole table re-mounted, turned (reseat); remounted on the rotor (reclamp)");
   t.Add("dwell", kSecond, UpTo(86400), &s.dwell_s, "drawn at random from this list at every stop");
   t.Add("run_up_steps", kPure, UpTo(1000), &s.run_up_steps, "every pass comes to its first stop from this far");
-  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a re-mounting takes");
 }
 
 void AddProcedure(Keys& keys, ProcedureSettings& s) {
   Table t(keys, "procedure");
   AddPlan(t, s);
-  t.Add("sweep", kArcsec, Positive(36000), &s.sweep_rad, "calibration: +- this, in yaw and in tilt");
+  t.Add("sweep", kArcsec, Positive(36000), &s.sweep_rad, "calibration: ± this, in yaw and in tilt");
   t.Add("sweep_points", kPure, {3, 10000}, &s.sweep_points, "of each sweep");
   t.Add("stability", kSecond, UpTo(1e8), &s.stability_s, "how long the bench is watched at rest");
   t.Add("stability_interval", kSecond, Positive(1e7), &s.stability_interval_s, "between its readings");

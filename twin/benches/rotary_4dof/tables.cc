@@ -38,7 +38,7 @@ double Rms(const std::vector<double>& values) {
 std::string ReadingCounts(const std::vector<measure::Motion>& motions) {
   std::map<ReadingStatus, int> counts;
   for (const measure::Motion& motion : motions) ++counts[motion.status];
-  std::string text = fmt::format("{} readings", motions.size());
+  std::string text = fmt::format("{} reading{}", motions.size(), motions.size() == 1 ? "" : "s");
   for (const auto& [status, count] : counts) {
     if (status != ReadingStatus::kOk) text += fmt::format(", {} {} (left out)", count, ReadingStatusName(status));
   }
@@ -80,9 +80,9 @@ std::string EstimateText(const char* name, const TableEstimate& estimate) {
 std::string SeparationText(const separate::Separation& s) {
   std::string text = fmt::format("separation by the {} estimator, {} readings, {} degrees of freedom\n",
                                  EstimatorName(s.estimator), s.readings, s.dof);
-  text += EstimateText("target table (laboratory frame)", s.target);
+  text += EstimateText("table under test: target (laboratory frame)", s.target);
   text += EstimateText("reference table (rotor frame)", s.reference);
-  if (!s.not_separable.empty()) text += "cannot be separated by this design\n";
+  if (!s.not_separable.empty()) text += "not separable by this design (null space)\n";
   for (const auto& lost : s.not_separable) text += fmt::format("  {}: {}\n", lost.what, lost.why);
   for (const std::string& note : s.notes) text += fmt::format("note: {}\n", note);
   return text;
@@ -158,7 +158,7 @@ std::string PositionTable(const Score& score, const separate::Separation& separa
   std::string text;
   for (const auto* estimate : {&separation.target, &separation.reference}) {
     const std::string table = estimate == &separation.target ? "target" : "reference";
-    text += fmt::format("{}: estimate +- standard uncertainty [truth]\nposition_deg", table);
+    text += fmt::format("{}: estimate ± standard uncertainty [truth]\nposition_deg", table);
     for (const Component c : estimate->components)
       text += fmt::format("{:>27}", fmt::format("{}_{}", NameOf(c), UnitName(c)));
     text += "\n";
@@ -167,7 +167,7 @@ std::string PositionTable(const Score& score, const separate::Separation& separa
       for (const ComponentScore& row : score.components) {
         if (row.table != table) continue;
         const double unit = UnitOf(row.component);
-        text += fmt::format("  {:8.3f} +-{:6.3f} [{:6.2f}]", row.estimate[k] / unit, row.u[k] / unit,
+        text += fmt::format("  {:8.3f} ±{:6.3f} [{:6.2f}]", row.estimate[k] / unit, row.u[k] / unit,
                             row.truth[k] / unit);
       }
       text += "\n";

@@ -10,7 +10,7 @@ namespace {
 constexpr const char* kBothWays = "passes + - - + in every set-up";
 constexpr const char* kDwells = "stops with dwells from 0.5 to 20 s";
 constexpr const char* kLifts = "twenty lifts of the multi-tooth table at one position";
-constexpr const char* kWarm = "a run with the room changed by 1 K and the temperature recorded";
+constexpr const char* kWarm = "a run at a temperature changed by 1 K, with the temperature recorded";
 constexpr const char* kIdle = "an hour of readings at rest, nothing moved nor mounted";
 
 /// What depends on what stands on the turntable.
@@ -20,7 +20,7 @@ struct Standing {
 
 constexpr Standing kMultitooth = {
     "the same circle again with another tilt of the multi-tooth table and the autocollimator left alone",
-    "a sweep: the turntable alone by +-200 arcsec in steps that are no whole number of pixels, the multi-tooth "
+    "a sweep: the turntable alone by ±200 arcsec in steps that are no whole number of pixels, the multi-tooth "
     "table "
     "left seated",
     "a sweep over the whole range of the autocollimator",
@@ -28,7 +28,7 @@ constexpr Standing kMultitooth = {
 /// A face that is nulled shows one place of the instrument's range only.
 constexpr Standing kPolygon = {
     "the same circle again with another tilt of the polygon and the autocollimator left alone",
-    "the multi-tooth table in the polygon's place and a sweep of the turntable by +-200 arcsec",
+    "the multi-tooth table in the polygon's place and a sweep of the turntable by ±200 arcsec",
     "the multi-tooth table in the polygon's place and a sweep over the whole range of the autocollimator",
     "the polygon set some tenths of a millimetre off the turntable's axis, and on it again"};
 

@@ -77,10 +77,10 @@ std::vector<NextRun> PolygonRuns(const Scenario& scenario) {
        {"turntable_procedure.dwell_s=[0.5, 2, 8, 20]"},
        plan::kOtherKind},
       {"warm",
-       "the circle in a room that is 2 K warmer",
+       "the circle at a temperature 2 K higher",
        {fmt::format("environment.temperature_degC={}", scenario.environment.temperature_degC + 2.0)},
        plan::kOtherKind},
-      {"warming", "the circle while the room warms by 2 K an hour", {"environment.drift_K_h=2"}, plan::kOtherKind},
+      {"warming", "the circle while the temperature rises by 2 K per hour", {"environment.drift_K_h=2"}, plan::kOtherKind},
       LongerReadings(TurntableOf(scenario).collimator)};
 }
 
@@ -125,11 +125,11 @@ std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
            {kCirclePhase, fmt::format("turntable_procedure.positions={:.0f}", p.positions / kCoarse)},
            plan::kSameKind},
           {"warm",
-           "the circle in a room that is 2 K warmer",
+           "the circle at a temperature 2 K higher",
            {kCirclePhase, fmt::format("environment.temperature_degC={}", warmer_degC)},
            plan::kOtherKind},
           {"warming",
-           "the circle while the room warms by 2 K an hour",
+           "the circle while the temperature rises by 2 K per hour",
            {kCirclePhase, "environment.drift_K_h=2"},
            plan::kOtherKind},
           LongerReadings(own.collimator)};

@@ -207,7 +207,7 @@ report::ScoredRun ScorePolygon(const Scenario& scenario, const std::vector<Readi
                                const nlohmann::json& truth, Estimator estimator) {
   const PolygonAnalysis a = separate::turntable::AnalysePolygon(readings, scenario, estimator);
   if (!a.closure)
-    throw InputError("the run", a.not_separated, "a run in which encoder and polygon can be told apart");
+    throw InputError("the run", a.not_separated, "a run in which encoder and polygon are separable");
   const auto [turntable, polygon] = TruthAsSeen(*a.closure, TurntableOf(scenario), truth);
   const std::vector<report::CurveScore> curves = {CurveOf("turntable", a.closure->turntable, turntable),
                                                   CurveOf("polygon", a.closure->polygon, polygon)};

@@ -18,7 +18,7 @@ constexpr int kFewestFaces = 3;
 
 void AddMultitooth(Keys& keys, MultitoothSettings& s) {
   Table t(keys, "multitooth");
-  t.Add("teeth", kPure, {3, 100000}, &s.teeth, "a turn");
+  t.Add("teeth", kPure, {3, 100000}, &s.teeth, "per turn");
   t.Add("tooth_rms", kArcsec, UpTo(3600), &s.tooth_rms_rad, "of errors that differ from tooth to tooth");
   t.Add("u_tooth", kArcsec, UpTo(3600), &s.u_tooth_rad, "stated standard uncertainty of a tooth");
   t.Add("index_time", kSecond, Positive(3600), &s.index_time_s, "to lift it, turn it and seat it again");
@@ -67,7 +67,7 @@ void AddCollimator(Keys& keys, CollimatorSettings& s) {
 }
 
 void AddSetUps(Table& t, TurntableProcedureSettings& s) {
-  const std::string list = ", one a set-up or one for all";
+  const std::string list = ", one per set-up or one for all";
   t.Add("tilts", kArcsec, Within(3600), &s.tilts_rad, "of the multi-tooth table's axis" + list);
   t.Add("tilt_azimuths", kDeg, Within(360), &s.tilt_azimuths_rad, "on the turntable, where it leans to" + list);
   t.Add("shifts_teeth", kPure, UpTo(99999), &s.shifts, "of the multi-tooth table" + list);
@@ -86,7 +86,7 @@ void AddTurntableProcedure(Keys& keys, TurntableProcedureSettings& s) {
   t.Add("dwell", kSecond, UpTo(86400), &s.dwell_s, "drawn at random from this list at every stop");
   t.Add("highest_order", kPure, {1, 1000}, &s.highest_order, "of the error that is fitted to a polygon's faces");
   t.Add("run_up_steps", kPure, UpTo(1000), &s.run_up_steps, "every pass comes to its first stop from this far");
-  t.Add("sweep", kArcsec, Positive(36000), &s.sweep_rad, "calibration: +- this, with the turntable alone");
+  t.Add("sweep", kArcsec, Positive(36000), &s.sweep_rad, "calibration: ± this, with the turntable alone");
   t.Add("sweep_points", kPure, {3, 10000}, &s.sweep_points, "of the sweep");
   t.Add("verification_positions", kPure, {1, 100000}, &s.verification_positions, "whole teeth off the grid");
   t.Add("verification_passes", kPure, {-1, 1}, &s.verification_passes, "directions: 1 or -1");

@@ -160,19 +160,19 @@ Naming Name(const SearchResult& found, const std::vector<Family>& families, doub
   const double one_unknown = ChanceOfOneUnknown(found, families);
   Doubt(std::max(one_unknown, found.overtones), naming);
   if (!std::ranges::all_of(naming.causes, IsPossible)) {
-    DeclareUnknown("as the cause named here, in a size that is not possible for it", UnnamedPower(answered),
+    DeclareUnknown("as the cause identified here, in a size that is not possible for it", UnnamedPower(answered),
                    naming);
   } else if (found.overtones > 0.5) {
-    DeclareUnknown("something that repeats as the wave named here and is no sine, locked to time", UnnamedPower(answered),
+    DeclareUnknown("something that repeats as the wave identified here and is no sine, function of time", UnnamedPower(answered),
                    naming);
   } else if (LeavesStructure(answered, found.last_statistic, threshold) || one_unknown > 0.5) {
-    DeclareUnknown("structure that the causes named here do not explain", UnnamedPower(answered), naming);
+    DeclareUnknown("structure that the causes identified here do not explain", UnnamedPower(answered), naming);
   }
   if (const std::string effects = DisbelievePieces(naming); !effects.empty()) {
     naming.verdict = Verdict::kUnknown;
     naming.unknown.probability = std::max(naming.unknown.probability, tuning::kListed);
     naming.unknown.signature += (naming.unknown.signature.empty() ? "" : " | ") +
-                                ("structure of which many effects " + effects + " are the pieces, locked to time");
+                                ("structure of which many effects " + effects + " are the pieces, function of time");
   }
   return naming;
 }

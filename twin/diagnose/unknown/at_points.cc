@@ -79,7 +79,7 @@ std::vector<Family> Interactions(const std::vector<AtPoint>& points, const std::
       return ShownOf(slope, courses[static_cast<std::size_t>(pair)]);
     };
     family.describe = [point, names](int pair, const Eigen::VectorXd& x) {
-      return fmt::format("at {}, goes by {} together, locked to both, {}", point.name,
+      return fmt::format("at {}, function of {} together, {}", point.name,
                          names[static_cast<std::size_t>(pair)], SizeInWords(point, x));
     };
   }
@@ -99,7 +99,7 @@ Family Fringes(const AtPoint& point, const Along& along, double shortest, double
   };
   family.describe = [point, name = along.name, unit = along.unit, to_SI = along.to_SI, periods](
                         int g, const Eigen::VectorXd& x) {
-    return fmt::format("at {0}, periodic in {1}, period {2:.3g} {3}, locked to {1}, {4}", point.name, name,
+    return fmt::format("at {0}, periodic in {1}, period {2:.3g} {3}, synchronous with {1}, {4}", point.name, name,
                        periods[static_cast<std::size_t>(g)] / to_SI, unit, SizeInWords(point, x));
   };
   return family;

@@ -18,7 +18,7 @@ void AddHarmonics(Collector& collect, const Angle& angle) {
   const int first = angle.first_unfree, count = angle.last_order - first + 1;
   collect.AddWaves(angle.harmonics, {angle.rad, static_cast<double>(first), 1.0, NumbersTo(count)},
                    [first, name = angle.name](int g) {
-                     return fmt::format("harmonic of order {} locked to {}, same in both directions", first + g,
+                     return fmt::format("harmonic of order {} synchronous with {}, same in both directions", first + g,
                                         name);
                    });
   if (!angle.by.empty())
@@ -58,7 +58,7 @@ void AddLines(Collector& collect) {
   collect.AddWaves(
       "line", {d.continued_rad, tuning::kFirstLine, step, number, d.moved},
       [values = order.value, name = angle.name](int g) {
-        return fmt::format("line at {:.3f} per turn locked to {}, same in both directions",
+        return fmt::format("line at {:.3f} per turn synchronous with {}, same in both directions",
                            values[static_cast<std::size_t>(g)], name);
       },
       &order,
@@ -84,7 +84,7 @@ void AddInteractions(Collector& collect) {
   }
   const auto words = [first = d.angles[0].name, second = d.angles[1].name, orders](int g) {
     const auto [a, b] = orders[static_cast<std::size_t>(g)];
-    return fmt::format("order {} {} {} {} {}, locked to both angles (interaction), same in both directions", a,
+    return fmt::format("order {} {} {} {} {}, synchronous with both angles (interaction), same in both directions", a,
                        first, b > 0 ? '+' : '-', std::abs(b), second);
   };
   collect.Add(

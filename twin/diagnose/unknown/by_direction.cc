@@ -33,7 +33,7 @@ void AddBehindReversals(Collector& collect, const Eigen::VectorXd& held) {
         columns << held, left(way_rad);
         return columns;
       },
-      words("offset locked to direction that is reached over {:.3g} deg behind each reversal, odd in direction"));
+      words("offset, function of direction that is reached over {:.3g} deg behind each reversal, odd in direction"));
 }
 
 }  // namespace
@@ -42,13 +42,13 @@ void AddByDirection(Collector& collect) {
   const Design& d = collect.design();
   const Eigen::VectorXd& held = d.senses.front();
   if (held.maxCoeff() == held.minCoeff()) return;
-  collect.Add("direction offset", held, "offset locked to direction, odd in direction");
+  collect.Add("direction offset", held, "offset, function of direction, odd in direction");
   collect.Are([](const Eigen::VectorXd&, int) { return ColumnOf(Following(SignalOf("constant"), "direction")); });
   for (const Angle& angle : d.angles) {
     if (!angle.is_turned_by_motion) continue;
     for (const Eigen::VectorXd& sense : d.senses) {
       collect.AddModulated("direction harmonic", angle, tuning::kModulatedOrders, sense,
-                           "direction times order {} locked to " + angle.name + ", odd in direction");
+                           "direction times order {} synchronous with " + angle.name + ", odd in direction");
       if (&sense == &d.senses.front()) collect.AreHarmonics(angle, Following({}, "direction"));
     }
   }
@@ -74,7 +74,7 @@ void AddBySpeed(Collector& collect) {
   collect.Add("speed", model::Unit(model::Acceleration(d.course, d.velocity)), "proportional to the acceleration");
   if (d.angles.empty()) return;
   const Angle& angle = d.angles.front();
-  const std::string order = "order {} locked to " + angle.name;
+  const std::string order = "order {} synchronous with " + angle.name;
   collect.AddModulated("speed harmonic", angle, tuning::kModulatedOrders, v,
                        order + ", proportional to the velocity, odd in direction");
   collect.AreHarmonics(angle, Following({}, "velocity", 0.0, per_rad_s));

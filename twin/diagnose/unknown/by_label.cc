@@ -34,7 +34,7 @@ void AddWaves(Collector& collect, const std::string& what, const Eigen::MatrixXd
       what + " harmonic", std::min(last, angle.last_order),
       [rad = angle.rad, which](int g) { return model::InEach(model::Wave((g + 1) * rad), which); },
       [what, name = angle.name](int g) {
-        return fmt::format("order {} locked to {} that differs from {} to {}", g + 1, name, what, what);
+        return fmt::format("order {} synchronous with {} that differs from {} to {}", g + 1, name, what, what);
       });
 }
 
@@ -42,12 +42,12 @@ void AddPasses(Collector& collect) {
   const Design& d = collect.design();
   const Eigen::MatrixXd passes = WhereMoved(d, d.course.pass), visits = WhereMoved(d, model::Visits(d.course));
   if (IsTold(passes, tuning::kMostOffsets)) {
-    collect.Add("pass", passes, "offset of each pass, locked to the pass (time)");
+    collect.Add("pass", passes, "offset of each pass, function of the pass (time)");
     collect.GoByTime();
   }
   AddWaves(collect, "pass", passes, tuning::kPassOrders);
   if (visits.cols() <= passes.cols() || !IsTold(visits, tuning::kMostOffsets)) return;
-  collect.Add("pass", visits, "offset of each pass of each set-up, locked to the pass (time)");
+  collect.Add("pass", visits, "offset of each pass of each set-up, function of the pass (time)");
   collect.GoByTime();
 }
 

@@ -101,7 +101,7 @@ void AddFringes(Collector& collect, int channel) {
         return OnChannel(*design, model::Wave(units::turn * turns), channel);
       },
       [=, what = d.shown_name](int g) {
-        return fmt::format("periodic in the {0} of {1}, period {2:.3g} {3}, locked to {0}", what, name,
+        return fmt::format("periodic in the {0} of {1}, period {2:.3g} {3}, function of {0}", what, name,
                            fringes.Period(g) / unit.to_SI, unit.name);
       });
   collect.Are([name, fringes](const Eigen::VectorXd&, int g) {
@@ -122,12 +122,12 @@ void AddOnChannel(Collector& collect, int channel, const Eigen::MatrixXd& share)
   const std::vector<Exponents> exponents = ExponentsOf(partner != channel);
   collect.AddRows(d.shown_name, name,
                   OnChannel(d, Powers(share.col(channel), share.col(partner), exponents), channel),
-                  fmt::format("smooth function of the {0} of {1}, locked to {0}", d.shown_name, name));
+                  fmt::format("smooth function of the {0} of {1}, function of {0}", d.shown_name, name));
   collect.Are([products = ProductsOfPowers(name, RangeOf(d, channel), exponents)](const Eigen::VectorXd&, int) {
     return products;
   });
   collect.AddRows("linear map", name, OnChannel(d, share, channel),
-                  fmt::format("proportional to all {0}s, locked to {0} of {1}", d.shown_name, name));
+                  fmt::format("proportional to all {0}s, function of {0} of {1}", d.shown_name, name));
   std::vector<Leak> leaks;
   for (int of = 0; of < std::ssize(d.channels); ++of) leaks.push_back({channel, of});
   collect.Are([products = ProductsOfLeaks(d, leaks)](const Eigen::VectorXd&, int) { return products; });
@@ -166,7 +166,7 @@ void AddLinearMap(Collector& collect, const Group& group, const Eigen::MatrixXd&
     }
   }
   collect.AddRows("linear map", group.name, columns,
-                  fmt::format("scales{0} of {1}, proportional to the {2}s, locked to {2}",
+                  fmt::format("scales{0} of {1}, proportional to the {2}s, function of {2}",
                               axes_too ? " and axes" : "", group.name, d.shown_name));
   collect.Are([products = ProductsOfLeaks(d, leaks)](const Eigen::VectorXd&, int) { return products; });
 }
@@ -236,7 +236,7 @@ void AddGains(Collector& collect, const Eigen::MatrixXd& share) {
       }
       collect.AddRows(
           "gain changes", group.name, columns,
-          fmt::format("gain of {0} follows {1}, locked to {1} and {2}", group.name, followed.name, d.shown_name));
+          fmt::format("gain of {0} follows {1}, function of {1} and {2}", group.name, followed.name, d.shown_name));
       if (followed.factor.times.empty()) continue;
       collect.Are([products = ProductsOfGains(d, group.channels, each, followed.factor)](const Eigen::VectorXd&,
                                                                                          int) { return products; });

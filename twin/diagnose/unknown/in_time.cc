@@ -42,19 +42,19 @@ void AddWander(Collector& collect) {
       [share, stretches](int g) {
         return model::InEach(model::CosineModes(share, g + 1, false).rightCols(1), stretches);
       },
-      [](int g) { return fmt::format("slow wander locked to time, {} half periods a run", g + 1); });
+      [](int g) { return fmt::format("slow drift, function of time, {} half periods per run", g + 1); });
   collect.GoByTime();
-  collect.Add("wander", modes(tuning::kWanderTogether, false), "slow wander locked to time");
+  collect.Add("wander", modes(tuning::kWanderTogether, false), "slow drift, function of time");
   collect.GoByTime();
   collect.Add(
       "wander",
       modes(std::max(tuning::kWanderTogether + 1, tuning::kWalkModes / static_cast<int>(stretches.cols())), true),
-      "random wander locked to time");
+      "random walk, function of time");
   collect.GoByTime();
   const Eigen::MatrixXd setups = model::Times(model::Indicators(d.course.setup), d.moved);
   if (stretches.cols() > 1 || setups.cols() < 2) return;
   collect.Add("wander", model::Times(setups, model::ElapsedShare(d.course)),
-              "drift that differs from set-up to set-up, locked to time");
+              "drift that differs from set-up to set-up, function of time");
   collect.GoByTime();
 }
 
@@ -65,7 +65,7 @@ void AddTones(Collector& collect) {
   collect.AddShared(
       "tone", series.tones,
       [values = frequency.value](int g) {
-        return fmt::format("tone at {:.4g} Hz locked to time", values[static_cast<std::size_t>(g)]);
+        return fmt::format("tone at {:.4g} Hz, function of time", values[static_cast<std::size_t>(g)]);
       },
       &frequency,
       [design = collect.shared()](const Eigen::VectorXd& f_Hz) { return design->series.ToneAt(f_Hz[0]); });
@@ -78,7 +78,7 @@ void AddTones(Collector& collect) {
 void AddSteps(Collector& collect) {
   const TimeSeries& series = collect.design().series;
   collect.AddShared("step", series.steps, [onsets = series.onsets](int g) {
-    return fmt::format("step at reading {:.0f} locked to time", onsets[static_cast<std::size_t>(g)]);
+    return fmt::format("step at reading {:.0f}, function of time", onsets[static_cast<std::size_t>(g)]);
   });
   collect.Are([onsets = series.onsets](const Eigen::VectorXd&, int g) {
     return ColumnOf(SignalOf("step", "", {{"at_reading", onsets[static_cast<std::size_t>(g)]}}));
@@ -182,7 +182,7 @@ void AddTouches(Collector& collect) {
   Require(d.channels.size() == 1 && !d.rows, "touches are of an angle device: one channel, a row a reading");
   collect.AddShared("touch", BaseOf(touches, readings), [touches, numbers = d.course.reading](int g) {
     const Touch& touch = touches[static_cast<std::size_t>(g)];
-    return fmt::format("offset from reading {} to {} that fades away, locked to time",
+    return fmt::format("offset from reading {} to {} that fades away, function of time",
                        numbers[static_cast<std::size_t>(touch.first)],
                        numbers[static_cast<std::size_t>(touch.end - 1)]);
   });
@@ -201,7 +201,7 @@ void AddRestarts(Collector& collect) {
         return Eigen::MatrixXd(model::Unit(g < count ? Eigen::VectorXd((-share).exp()) : share.log1p()));
       },
       [times_s, count](int g) {
-        return fmt::format("{} that begins again with every set-up, about {:.0f} s, locked to time",
+        return fmt::format("{} that begins again with every set-up, about {:.0f} s, function of time",
                            g < count ? "decay" : "creep", times_s[static_cast<std::size_t>(g % count)]);
       });
   collect.GoByTime();
@@ -218,7 +218,7 @@ void AddTemperature(Collector& collect) {
             model::Lagged(design->course.time_s, design->above_K, lags_s[static_cast<std::size_t>(g)])));
       },
       [lags_s](int g) {
-        return fmt::format("locked to temperature with a lag of {:.0f} s", lags_s[static_cast<std::size_t>(g)]);
+        return fmt::format("function of temperature with a lag of {:.0f} s", lags_s[static_cast<std::size_t>(g)]);
       });
   collect.GoByTime();
   if (d.twin_is_warm)
@@ -228,7 +228,7 @@ void AddTemperature(Collector& collect) {
     });
   constexpr double kLag_s = 600.0;
   collect.Add("temperature", model::Unit(d.above_K - model::Lagged(d.course.time_s, d.above_K, kLag_s)),
-              "locked to the rate of the temperature");
+              "function of the rate of the temperature");
   collect.GoByTime();
 }
 
@@ -245,7 +245,7 @@ void AddGrowing(Collector& collect) {
   const Angle& angle = d.angles.front();
   const auto add = [&](const Eigen::VectorXd& growing, const std::string& what) {
     collect.AddModulated("growing harmonic", angle, tuning::kModulatedOrders, model::Unit(growing),
-                         "order {} locked to " + angle.name + " that grows with " + what);
+                         "order {} synchronous with " + angle.name + " that grows with " + what);
   };
   add(model::ElapsedShare(d.course), "time");
   collect.AreHarmonics(angle, OfTime(d));
@@ -258,7 +258,7 @@ void AddGrowing(Collector& collect) {
 
 void AddTrends(Collector& collect) {
   const Design& d = collect.design();
-  collect.Add("trend", model::Unit(model::ElapsedShare(d.course)), "linear trend locked to time");
+  collect.Add("trend", model::Unit(model::ElapsedShare(d.course)), "linear trend, function of time");
   collect.Are([factor = OfTime(d)](const Eigen::VectorXd&, int) {
     EffectSettings signal = SignalOf("constant", "", factor.parameters);
     signal.times = factor.times;
@@ -266,7 +266,7 @@ void AddTrends(Collector& collect) {
   });
   if (!d.angles.empty() && d.angles.front().first_unfree > 0)
     collect.Add("trend", model::Unit(d.angles.front().rad),
-                "linear trend locked to " + d.angles.front().name + ", same in both directions");
+                "linear trend synchronous with " + d.angles.front().name + ", same in both directions");
 }
 
 }  // namespace

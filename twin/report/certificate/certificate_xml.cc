@@ -132,7 +132,7 @@ class Writer {
                  "The uncertainties are expanded ones: standard uncertainties after JCGM 100:2008 (GUM) times the coverage factor stated beside them, for "
                  "a coverage probability of 95 %.");
     if (!content_.diagnosis.empty()) AddStatement(node, "diagnosis of the readings", content_.diagnosis);
-    for (const auto& [what, why] : content_.certified.left_out) AddStatement(node, "not certified: " + what, why.empty() ? "not told apart" : why);
+    for (const auto& [what, why] : content_.certified.left_out) AddStatement(node, "not certified: " + what, why.empty() ? "not separable" : why);
   }
 
   // Results ------------------------------------------------------------------------------------------------------------
@@ -185,7 +185,7 @@ class Writer {
     const std::string unit = quantity.unit.empty() || quantity.unit == "1" ? "" : " " + quantity.unit;
     const std::string u = report::NumberText(largest, largest);
     const std::string text = quantity.where.empty()
-                                 ? fmt::format("({} +- {}){}", report::NumberText(quantity.values.front(), largest), u, unit)
+                                 ? fmt::format("({} ± {}){}", report::NumberText(quantity.values.front(), largest), u, unit)
                                  : fmt::format("{} values, expanded uncertainty at most {}{}", quantity.values.size(), u, unit);
     return fmt::format("{}, k = {:.2f}, 95 %", text, quantity.coverage_factor);
   }

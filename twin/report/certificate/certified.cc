@@ -189,7 +189,7 @@ class Taker {
     if (!std::isfinite(c.values[i])) return "not available";
     if (!std::isfinite(c.u[i]) || c.u[i] <= 0.0) return "no uncertainty is stated";
     if (!c.status.empty() && c.status[i] != "ok") return "its status is " + c.status[i];
-    if (is_spectrum && IsLostLine(c, c.where.front().values[i])) return "the order is not told apart";
+    if (is_spectrum && IsLostLine(c, c.where.front().values[i])) return "the order is not separable";
     if (c.unit == "deg" && (c.quantity.starts_with("phase") || c.title.ends_with("azimuth_deg")) && k * c.u[i] >= 180.0) return "known to half a turn or worse";
     return "";
   }

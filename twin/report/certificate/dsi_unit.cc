@@ -4,6 +4,7 @@
 
 namespace twinbench::certificate {
 
+/// @param unit  As in results, "um", or in print, "µm".
 std::optional<std::string> DsiUnit(const std::string& unit) {
   static const std::map<std::string, std::string> units = {
       {"", R"(\one)"},
@@ -15,12 +16,17 @@ std::optional<std::string> DsiUnit(const std::string& unit) {
       {"m", R"(\metre)"},
       {"mm", R"(\milli\metre)"},
       {"um", R"(\micro\metre)"},
+      {"µm", R"(\micro\metre)"},
       {"nm", R"(\nano\metre)"},
       {"s", R"(\second)"},
       {"ms", R"(\milli\second)"},
       {"V", R"(\volt)"},
       {"mV", R"(\milli\volt)"},
       {"degC", R"(\degreecelsius)"},
+      {"°C", R"(\degreecelsius)"},
+      {"µm/m", R"(\micro\metre\metre\tothe{-1})"},
+      {"µm/K", R"(\micro\metre\kelvin\tothe{-1})"},
+      {"µm/m/K", R"(\micro\metre\metre\tothe{-1}\kelvin\tothe{-1})"},
       {"um/m", R"(\micro\metre\metre\tothe{-1})"},
       {"um/K", R"(\micro\metre\kelvin\tothe{-1})"},
       {"um/m/K", R"(\micro\metre\metre\tothe{-1}\kelvin\tothe{-1})"},

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "twin/report/page/named_numbers.h"
+#include "twin/report/sound.h"
 
 namespace twinbench::report {
 namespace {
@@ -53,17 +54,17 @@ std::string NameOfCause(const nlohmann::json& cause) {
 }
 
 PageTable DetectableTable(const nlohmann::json& seen) {
-  PageTable table{"Smallest sizes that this run would show", {"effect", "parameter", "smallest", "unit"}, {}};
+  PageTable table{"Smallest detectable sizes", {"effect", "parameter", "smallest", "unit"}, {}};
   for (const nlohmann::json& one : ListAt(seen, "detectable")) {
     const std::string unit = TextAt(one, "unit");
     table.rows.push_back({NameOfCause(one), NameAndUnit(TextAt(one, "parameter")).name,
-                          fmt::format("{:.3g}", NumberAt(one, "smallest")), unit == "1" ? "" : unit});
+                          fmt::format("{:.3g}", NumberAt(one, "smallest")), unit == "1" ? "" : InPrint(unit)});
   }
   return table;
 }
 
 PageTable InvisibleTable(const nlohmann::json& seen) {
-  PageTable table{"What this run cannot see", {"effect", "could bias"}, {}};
+  PageTable table{"Not observable in this run", {"effect", "could bias"}, {}};
   for (const nlohmann::json& lost : ListAt(seen, "invisible")) table.rows.push_back({NameOfCause(lost), TextAt(lost, "could_bias")});
   return table;
 }

@@ -9,6 +9,7 @@
 #include "twin/report/page/causes.h"
 #include "twin/report/page/named_numbers.h"
 #include "twin/report/page/residual_figures.h"
+#include "twin/report/sound.h"
 
 namespace twinbench::report {
 namespace {
@@ -58,7 +59,7 @@ PageTable GainTable(const json& diagnosis) {
            {"heldout_rms_before", "rms before"}, {"heldout_rms_after", "rms after"}, {"noise_floor", "noise alone leaves"}}) {
     for (const std::string unit : {"um", "arcsec"}) {
       const double value = NumberAt(gain, key + "_" + unit);
-      if (std::isfinite(value)) table.rows.push_back({spoken, NumberText(value), unit});
+      if (std::isfinite(value)) table.rows.push_back({spoken, NumberText(value), InPrint(unit)});
     }
   }
   if (const double removed = NumberAt(gain, "fraction_removed"); std::isfinite(removed)) {
@@ -73,7 +74,7 @@ PageTable GainTable(const json& diagnosis) {
 PageTable ScreenTable(const json& diagnosis) {
   PageTable table{"Residual tests", {"test", "p", "what it says"}, {}};
   for (const json& test : ListAt(diagnosis, "screen"))
-    table.rows.push_back({TextAt(test, "test"), fmt::format("{:.2g}", NumberAt(test, "p")), TextAt(test, "reading")});
+    table.rows.push_back({TextAt(test, "test"), fmt::format("{:.2g}", NumberAt(test, "p")), InPrint(TextAt(test, "reading"))});
   return table;
 }
 
@@ -102,7 +103,7 @@ PageSection SightSection(const json& diagnosis) {
   AddFilled(DetectableTable(diagnosis), section);
   AddFilled(InvisibleTable(diagnosis), section);
   if (const std::string words = TextAt(diagnosis, "in_words"); !words.empty())
-    section.blocks.emplace_back(PageText{"The diagnosis in words", words});
+    section.blocks.emplace_back(PageText{"The diagnosis in words", InPrint(words)});
   return section;
 }
 
@@ -112,8 +113,8 @@ PageVerdict VerdictOf(const json& diagnosis) {
   const std::string verdict = TextAt(diagnosis, "verdict");
   const std::string words = TextAt(diagnosis, "in_words");
   const VerdictTone tone = verdict == "none" ? VerdictTone::kGood : verdict == "unknown" ? VerdictTone::kBad : VerdictTone::kDoubt;
-  if (!words.empty()) return {words.substr(0, words.find('\n')), tone};
-  if (verdict == "none") return {"Consistent with the scenario.", tone};
+  if (!words.empty()) return {InPrint(words.substr(0, words.find('\n'))), tone};
+  if (verdict == "none") return {"Consistent with the scenario: nothing found.", tone};
   if (verdict == "unknown") return {"Unmodelled effect: " + TextAt(diagnosis.value("unknown", json()), "signature"), tone};
   std::string names;
   for (const json& cause : ListAt(diagnosis, "causes")) names += (names.empty() ? "" : verdict == "tie" ? " or " : ", ") + NameOfCause(cause);

@@ -19,7 +19,7 @@ constexpr const char* kUnlisted = "not in the catalogue";
 
 /// Probabilities of every hypothesis over the steps.
 Figure BeliefFigure(const json& steps) {
-  Figure figure{FigureForm::kLine, "What was believed", "probability after each run", {"run", ""}, {"probability", ""}, {}};
+  Figure figure{FigureForm::kLine, "Probability of each hypothesis", "probability after each run", {"run", ""}, {"probability", ""}, {}};
   std::map<std::string, FigureSeries> beliefs;
   const auto add = [&](const std::string& name, double number, double probability) {
     FigureSeries& series = beliefs[name];
@@ -37,7 +37,7 @@ Figure BeliefFigure(const json& steps) {
 }
 
 Figure InformationFigure(const json& steps) {
-  Figure figure{FigureForm::kBars, "What each run told", "", {"run", ""}, {"information", "bit"}, {}};
+  Figure figure{FigureForm::kBars, "Information from each run", "", {"run", ""}, {"information", "bit"}, {}};
   FigureSeries expected{"expected", SeriesRole::kBefore, {}, {}, {}}, gained{"gained", SeriesRole::kAfter, {}, {}, {}};
   for (const json& step : steps) {
     for (FigureSeries* series : {&expected, &gained}) series->x.push_back(NumberAt(step, "number"));
@@ -66,7 +66,7 @@ Figure GoalFigure(const json& investigation, const json& steps) {
   return figure;
 }
 
-/// "nothing more can be told: eccentricity 76 %, signal_offset 19 %".
+/// "Not resolvable on this bench: eccentricity 76 %, signal_offset 19 %".
 std::string Ending(const json& investigation) {
   constexpr double kWorthSaying = 0.01;
   std::string names;
@@ -74,7 +74,10 @@ std::string Ending(const json& investigation) {
     const double probability = NumberAt(cause, "probability");
     if (probability > kWorthSaying) names += fmt::format("{}{} {:.0f} %", names.empty() ? ": " : ", ", TextAt(cause, "name"), 100.0 * probability);
   }
-  std::string ending = TextAt(investigation, "ended") + names;
+  std::string ending = TextAt(investigation, "ended");
+  if (ending == "told") ending = "cause identified";
+  if (ending == "nothing more can be told") ending = "not resolvable on this bench";
+  ending += names;
   if (!ending.empty()) ending[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(ending[0])));
   return ending;
 }

@@ -19,9 +19,9 @@ namespace {
 struct WrittenUnit {
   std::string_view in_key, spoken;
 };
-constexpr auto kUnits = std::to_array<WrittenUnit>({{"um_m_K", "um/m/K"}, {"um_m", "um/m"},   {"um_K", "um/K"}, {"mm_min", "mm/min"},
+constexpr auto kUnits = std::to_array<WrittenUnit>({{"um_m_K", "µm/m/K"}, {"um_m", "µm/m"},   {"um_K", "µm/K"}, {"mm_min", "mm/min"},
                                                     {"deg_s", "deg/s"},   {"per_mm2", "mm-2"}, {"arcsec", "arcsec"}, {"mrad", "mrad"},
-                                                    {"degC", "degC"},     {"deg", "deg"},     {"rad", "rad"},   {"um", "um"},
+                                                    {"degC", "°C"},     {"deg", "deg"},     {"rad", "rad"},   {"um", "µm"},
                                                     {"nm", "nm"},         {"mm", "mm"},       {"pm", "pm"},     {"px", "px"},
                                                     {"mV", "mV"},         {"ns", "ns"},       {"ms", "ms"},     {"V", "V"},
                                                     {"s", "s"},           {"m", "m"}});

@@ -8,6 +8,7 @@
 
 #include "twin/report/page/causes.h"
 #include "twin/report/page/named_numbers.h"
+#include "twin/report/sound.h"
 
 namespace twinbench::report {
 namespace {
@@ -19,7 +20,7 @@ std::string Short(double value) {
 }
 
 PageTable RunsTable(const json& plan) {
-  PageTable table{"Runs", {"run", "readings", "minutes", "degrees of freedom", "variance, mean", "worst", "no set below"}, {}};
+  PageTable table{"Runs", {"run", "readings", "minutes", "degrees of freedom", "mean variance factor", "worst", "lower bound"}, {}};
   for (const json& run : ListAt(plan, "runs")) {
     const json shifts = run.value("shifts", json::object());
     table.rows.push_back({TextAt(run, "run"), Short(NumberAt(run, "readings")), Short(NumberAt(run, "minutes")), Short(NumberAt(run, "dof")),
@@ -66,7 +67,7 @@ std::vector<Figure> OrderFigures(const json& plan) {
 }
 
 Figure AdviceFigure(const json& plan) {
-  Figure figure{FigureForm::kRanks, "What each next run tells", "of causes and results together", {"", ""}, {"information", "bit/minute"}, {}};
+  Figure figure{FigureForm::kRanks, "Information rate of each next run", "about causes and results together", {"", ""}, {"information", "bit/minute"}, {}};
   FigureSeries bars{"information", SeriesRole::kEstimate, {}, {}, {}};
   for (const json& run : ListAt(plan, "advice")) {
     figure.categories.push_back(TextAt(run, "words"));
@@ -77,7 +78,7 @@ Figure AdviceFigure(const json& plan) {
 }
 
 PageTable AdviceTable(const json& plan) {
-  PageTable table{"Runs that could be made next", {"run", "minutes", "readings", "bit of causes", "bit of results", "keys"}, {}};
+  PageTable table{"Runs that could be made next", {"run", "minutes", "readings", "information about causes [bit]", "about results [bit]", "keys"}, {}};
   for (const json& run : ListAt(plan, "advice")) {
     std::string keys;
     for (const json& key : ListAt(run, "sets")) keys += (keys.empty() ? "" : "  ") + (key.is_string() ? key.get<std::string>() : "");
@@ -88,14 +89,14 @@ PageTable AdviceTable(const json& plan) {
 }
 
 PageTable PlannedTies(const json& plan) {
-  PageTable table{"What may be taken for something else", {"present", "may be blamed", "told apart from", "unit"}, {}};
+  PageTable table{"What may be mistaken for another cause", {"present", "may be identified instead", "distinguished above", "unit"}, {}};
   for (const json& tie : ListAt(plan, "ties"))
-    table.rows.push_back({NameOfCause(tie.value("present", json())), NameOfCause(tie.value("blamed", json())), Short(NumberAt(tie, "told_from")), TextAt(tie, "unit")});
+    table.rows.push_back({NameOfCause(tie.value("present", json())), NameOfCause(tie.value("blamed", json())), Short(NumberAt(tie, "told_from")), InPrint(TextAt(tie, "unit"))});
   return table;
 }
 
 PageTable NeverToldApart(const json& plan) {
-  PageTable table{"Never told apart, however large", {"causes"}, {}};
+  PageTable table{"Indistinguishable at any size (aliased)", {"causes"}, {}};
   for (const json& group : ListAt(plan, "never_told_apart")) {
     std::string names;
     for (const json& cause : group) names += (names.empty() ? "" : ", ") + NameOfCause(cause);
@@ -105,7 +106,7 @@ PageTable NeverToldApart(const json& plan) {
 }
 
 PageTable PlannedLosses(const json& plan) {
-  PageTable table{"What these designs cannot tell", {"run", "what"}, {}};
+  PageTable table{"Not separable by these designs", {"run", "what"}, {}};
   for (const json& run : ListAt(plan, "runs")) {
     for (const json& lost : ListAt(run, "not_separable"))
       if (lost.is_string()) table.rows.push_back({TextAt(run, "run"), lost.get<std::string>()});
@@ -118,7 +119,7 @@ PageTable PlannedLosses(const json& plan) {
 Page PlanPage(const PageSource& source, const json& plan) {
   Page page{source.name, "plan: nothing has been measured, this is what runs would give", "", VerdictTone::kPlain, {}};
   for (const json& run : ListAt(plan, "advice")) {
-    if (TextAt(run, "name") == TextAt(plan, "next")) page.verdict = "Tells most for its time: " + TextAt(run, "words") + ".";
+    if (TextAt(run, "name") == TextAt(plan, "next")) page.verdict = "Most information per minute: " + TextAt(run, "words") + ".";
   }
   PageSection runs{"Runs", "", {}}, next{"Next run", "", {}}, sight{"Detectability", "", {}};
   AddFilled(PlannedResults(plan), runs);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/report/page/named_numbers.h"
+#include "twin/report/sound.h"
 
 namespace twinbench::report {
 namespace {
@@ -21,8 +22,8 @@ struct Chosen {
 };
 
 std::string UnitOf(const json& plots, const std::string& channel) {
-  if (plots.contains("units") && plots.at("units").contains(channel)) return TextAt(plots.at("units"), channel);
-  return TextAt(plots, "unit");
+  if (plots.contains("units") && plots.at("units").contains(channel)) return InPrint(TextAt(plots.at("units"), channel));
+  return InPrint(TextAt(plots, "unit"));
 }
 
 double SquaresOf(const std::vector<double>& values, const std::vector<double>& u) {

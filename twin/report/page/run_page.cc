@@ -70,7 +70,7 @@ PageSection VolumetricSection(const nlohmann::json& results) {
 }
 
 PageSection ImageSection(const std::vector<PageImage>& images) {
-  PageSection section{"Light", "Irradiance on the detectors as the run has left it, cut to where there is light.", {}};
+  PageSection section{"Light", "Irradiance on the detectors at the end of the run, cut to the lit part.", {}};
   for (const PageImage& image : images) section.blocks.emplace_back(image);
   return section;
 }

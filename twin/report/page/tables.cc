@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "twin/report/page/named_numbers.h"
+#include "twin/report/sound.h"
 #include "twin/report/page/scored.h"
 #include "twin/report/page/walk.h"
 
@@ -53,7 +54,7 @@ Value MeasuredValue(const std::string& path, const json& object) {
   NamedUnit named = NameAndUnit(dot == std::string::npos ? path : path.substr(dot + 1));
   const std::string parent = dot == std::string::npos ? "" : path.substr(0, dot);
   const NamedUnit above = NameAndUnit(parent);
-  std::string unit = object.value("unit", named.unit.empty() ? above.unit : named.unit);
+  std::string unit = InPrint(object.value("unit", named.unit.empty() ? above.unit : named.unit));
   const std::string before = PathInWords(named.unit.empty() && !above.unit.empty() ? above.name : parent);
   return {path, (before.empty() ? "" : before + " ") + named.name, unit, NumberAt(object, "value"),
           NumberAt(object, "u")};
@@ -216,7 +217,7 @@ Figure BudgetFigure(const json& results) {
 }
 
 PageTable NotSeparableTable(const json& results) {
-  PageTable table{"What this design cannot tell", {"what", "why"}, {}};
+  PageTable table{"Not separable by this design", {"what", "why"}, {}};
   ForEachObject(results, [&](const std::string&, const json& object) {
     if (!object.contains("not_separable") || !object.at("not_separable").is_array()) return;
     for (const json& lost : object.at("not_separable")) {

@@ -16,7 +16,7 @@ std::vector<PageColumns> VolumetricColumns(const nlohmann::json& results) {
     for (const auto& [key, value] : object.items()) {
       const auto numbers = NumbersOf(value);
       if (!numbers || numbers->size() != x->size() || key == "x_mm" || key == "y_mm" || key == "z_mm") continue;
-      if (columns.colour < 0 && NameAndUnit(key).unit == "um") columns.colour = static_cast<int>(columns.columns.size());
+      if (columns.colour < 0 && NameAndUnit(key).unit == "µm") columns.colour = static_cast<int>(columns.columns.size());
       columns.columns.push_back({NameAndUnit(key).name, NameAndUnit(key).unit, *numbers});
     }
     if (columns.columns.size() > 3) found.push_back(std::move(columns));

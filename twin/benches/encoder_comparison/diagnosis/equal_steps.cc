@@ -70,8 +70,8 @@ std::string Words(const std::vector<Step>& steps, const Count& count, const Line
   std::string at;
   for (const Step& s : steps) at += fmt::format("{}{} ({:+})", at.empty() ? "" : ", ", s.at_reading, s.counts);
   return fmt::format(
-      "lost counts: {} steps of one size at readings {}, locked to time, on angle, amplitude {:.3g} "
-      "+- {:.1g} {}",
+      "lost counts: {} steps of one size at readings {}, function of time, on angle, amplitude {:.3g} "
+      "± {:.1g} {}",
       steps.size(), at, count.size / run.to_SI, count.u / run.to_SI, run.unit);
 }
 

@@ -18,10 +18,10 @@ std::string MeaningOf(int order) {
   switch (order) {
     case 1:
       return "scale or magnet off centre, or an offset of the sine and cosine signals; also a reference that is "
-             "off centre. One mounting cannot tell them apart: turn the device on the shaft";
+             "off centre. One mounting does not separate them: turn the device on the shaft";
     case 2:
       return "scale or magnet tilted or out of round, or sine and cosine signals of unequal size or not a quarter "
-             "period apart; cannot be told apart at one mounting";
+             "period apart; not separable at one mounting";
     case 4:
       return "saturated or clipped signals (then orders 8 and 12 come along in fixed ratios), a nonlinear sensor, "
              "or four screws or poles";

@@ -16,15 +16,15 @@ enum class Passing { kLostForwards, kLostBackwards, kComesBack, kCatchesUp };
 std::string WordsOf(Passing passing) {
   switch (passing) {
     case Passing::kLostForwards:
-      return "lost counts, the same each time that {:.1f} deg is passed forwards, locked to device angle";
+      return "lost counts, the same each time that {:.1f} deg is passed forwards, synchronous with device angle";
     case Passing::kLostBackwards:
-      return "lost counts, the same each time that {:.1f} deg is passed backwards, locked to device angle";
+      return "lost counts, the same each time that {:.1f} deg is passed backwards, synchronous with device angle";
     case Passing::kComesBack:
-      return "lost counts where {:.1f} deg is passed, which come back on the way back, locked to device angle";
+      return "lost counts where {:.1f} deg is passed, which come back on the way back, synchronous with device angle";
     case Passing::kCatchesUp:
       break;
   }
-  return "turn that is not whole and put right at {:.1f} deg, locked to device angle";
+  return "turn that is not whole and put right at {:.1f} deg, synchronous with device angle";
 }
 
 /// How often the spot was passed until each reading, or the share of a turn behind it.

@@ -117,7 +117,7 @@ void AddErrorsOfTargets(const LargeCauses& large, DiagnosisRun& result) {
   const Eigen::VectorXd error = MeansAt(large.targets, left);
   const std::string words = fmt::format(
       "error of its own at each of {} targets, {:.3g} {} from the least to the largest, the same at every "
-      "visit from either side, locked to reference angle, on angle",
+      "visit from either side, synchronous with reference angle, on angle",
       large.targets.cols(), (error.maxCoeff() - error.minCoeff()) / result.run.to_SI, result.run.unit);
   result.accepted.insert(result.accepted.begin(), Curve(error));
   d.unknown.signature = words + (d.unknown.signature.empty() ? "" : " | " + d.unknown.signature);

@@ -50,7 +50,7 @@ TimeReversal BeginCoast(const CoastPasses& coast) {
     return pass.line.size() <= kTurns * static_cast<std::size_t>(coast.lines) + 1;
   };
   if (coast.lines < 8) {
-    result.not_separated = "the times of at least 8 lines a turn are needed, one after the other";
+    result.not_separated = "the times of at least 8 lines per turn are needed, one after the other";
   } else if (std::ranges::any_of(coast.passes, is_short)) {
     result.not_separated = fmt::format("a pass has no more than {} turns", kTurns);
   }

@@ -38,7 +38,7 @@ std::string VdiText(const VdiPositioning& positioning, const ToldIn& told) {
   for (std::size_t i = 0; i < kVdiValues; ++i) {
     const ScatteredValue& v = positioning.axis[i];
     text += std::isnan(v.value) ? fmt::format(" {} -", kVdiValueNames[i])
-                                : fmt::format(" {} {:.3f} +- {:.3f}", kVdiValueNames[i], v.value / told.fine, v.u / told.fine);
+                                : fmt::format(" {} {:.3f} ± {:.3f}", kVdiValueNames[i], v.value / told.fine, v.u / told.fine);
     text += i + 1 < kVdiValues ? "," : "\n";
   }
   return text;

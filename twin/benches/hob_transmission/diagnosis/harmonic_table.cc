@@ -19,13 +19,13 @@ std::string MeaningOf(int order, const TransmissionSettings& train) {
   const auto is = [order](double other) { return std::abs(order - other) < 1e-9; };
   if (order <= 2)
     return order == 1
-               ? "once a turn: the table's drive, or its ring off centre; another place of ring and head tells"
-               : "twice a turn: the table's drive, or its ring out of round or tilted; heads that are not "
+               ? "once per turn: the table's drive, or its ring off centre; another place of ring and head tells"
+               : "twice per turn: the table's drive, or its ring out of round or tilted; heads that are not "
                  "opposite to each other tell";
-  if (is(train.HobOrder())) return "once a turn of the hob: its drive, or its encoder off centre";
+  if (is(train.HobOrder())) return "once per turn of the hob: its drive, or its encoder off centre";
   if (is(train.gear_teeth))
     return "once a tooth of the gear: the mesh, or the hob's encoder out of round or tilted";
-  if (is(train.WormOrder())) return "once a turn of the table's worm";
+  if (is(train.WormOrder())) return "once per turn of the table's worm";
   return "gears, screws or copying errors of this number, of the table or of its ring";
 }
 

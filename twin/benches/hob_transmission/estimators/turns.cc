@@ -29,7 +29,7 @@ std::string Where(const HobSample& s) {
 void CheckSample(const HobSample& s, const Pass& pass) {
   if (std::abs(s.direction) != 1)
     throw InputError(Where(s), fmt::format("direction is {}", s.direction), "+1 or -1");
-  if (!std::isfinite(s.head_rad)) throw InputError(Where(s), "the head angle is missing", "one a set-up");
+  if (!std::isfinite(s.head_rad)) throw InputError(Where(s), "the head angle is missing", "one per set-up");
   if (!pass.th_rad.empty() && s.head_rad != pass.head_rad)
     throw InputError(Where(s), "the head angle changes", "one head angle a set-up");
 }

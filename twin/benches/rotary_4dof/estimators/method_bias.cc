@@ -88,7 +88,7 @@ std::string NoteOf(const ComponentBias& bias) {
   if (bias.status == MethodStatus::kNotDetermined)
     return what + ": INVALID, these readings do not determine it although the equations give numbers";
   return fmt::format(
-      "{}: BIASED, {:.3g} {} rms from the rigorous result, where noise makes {:.2g}; its uncertainty holds that",
+      "{}: BIASED, {:.3g} {} rms from weighted least squares (exact model), where noise makes {:.2g}; included in its uncertainty",
       what, bias.rms / (angle ? units::arcsec : units::um), angle ? "arcsec" : "um",
       bias.u_noise / (angle ? units::arcsec : units::um));
 }

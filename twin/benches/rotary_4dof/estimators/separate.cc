@@ -31,7 +31,7 @@ void NoteScale(const Vector4& scale, bool covariance_known, Separation& result) 
   if (!covariance_known) {
     result.notes.push_back(result.dof > 0
                                ? "noise of the readings not known: uncertainties are from the residuals"
-                               : "noise of the readings not known and no residuals: 0.3 um a PSD axis taken");
+                               : "noise of the readings not known and no residuals: 0.3 µm per PSD axis assumed");
     return;
   }
   for (int d = 0; d < measure::kDofs; ++d) {

@@ -40,7 +40,7 @@ double RollError_rad(const Roll& roll, const std::vector<IndexReading>& tilts) {
 IndexErrors PolygonIndexErrors(const Scenario& scenario, const std::vector<Reading>& readings) {
   const PolygonAnalysis analysis = AnalysePolygon(readings, scenario, Estimator::kRigorous);
   if (!analysis.closure)
-    throw InputError("readings", analysis.not_separated, "clampings that tell encoder and faces apart");
+    throw InputError("readings", analysis.not_separated, "clampings that separate encoder and faces");
   const PolygonClosure& closure = *analysis.closure;
   std::map<int, double> face_rad;
   for (std::size_t i = 0; i < closure.face.size(); ++i)

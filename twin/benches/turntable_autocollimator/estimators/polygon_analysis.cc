@@ -83,8 +83,8 @@ PolygonAnalysis AnalysePolygon(const std::vector<Reading>& readings, const Scena
   PolygonClosure rigorous = ClosePolygon(faces, own.polygon.faces, own.turntable_procedure.highest_order);
   if (rigorous.turntable.position_rad.empty()) {
     analysis.not_separated =
-        "no order of the encoder's error can be told from the polygon's faces: more clampings, at "
-        "other offsets, would tell them apart";
+        "no order of the encoder's error is separable from the polygon's faces: more clampings at "
+        "other offsets would separate them";
     return analysis;
   }
   NoteScatter(rigorous, analysis);

@@ -166,8 +166,8 @@ std::string ListedOrders(const std::vector<HiddenOrder>& hidden, OrderHidden by)
 
 void AddClosureNotes(PolygonClosure& result) {
   for (const auto& [by, words] :
-       {std::pair{OrderHidden::kByConstants, "are the same at all faces of a clamping: its constant has them"},
-        std::pair{OrderHidden::kByPolygon, "are the same in all clampings: the faces have them"},
+       {std::pair{OrderHidden::kByConstants, "are the same at all faces of a mounting: not separable from its constant"},
+        std::pair{OrderHidden::kByPolygon, "are not separable from the polygon with these offsets; missing from the encoder's curve"},
         std::pair{OrderHidden::kByLowerOrders, "look like lower orders at the angles that were read"}}) {
     const std::string orders = ListedOrders(result.hidden, by);
     if (!orders.empty()) result.notes.push_back(fmt::format("orders {} of the encoder {}", orders, words));
