@@ -54,10 +54,13 @@ function clock(seconds) {
   return whole < 3600 ? `${Math.floor(whole / 60)}:${two(whole % 60)}` : `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)}`;
 }
 
-/** "target_deg" -> ["target", "deg"] */
+const spoken = { um: "µm", urad: "µrad", degC: "°C" };
+
+/** "spindle_x_um" -> ["spindle x", "µm"] */
 function parted(name) {
   const at = name.lastIndexOf("_");
-  return at > 0 ? [name.slice(0, at).replaceAll("_", " "), name.slice(at + 1)] : [name, ""];
+  const unit = name.slice(at + 1);
+  return at > 0 ? [name.slice(0, at).replaceAll("_", " "), spoken[unit] ?? unit] : [name, ""];
 }
 
 function begin({ command, bench, folder, can_pause, columns: named }) {
@@ -70,7 +73,7 @@ function begin({ command, bench, folder, can_pause, columns: named }) {
   alarms.replaceChildren();
   serves = command === "serve";
   counts = command === "campaign";
-  title.textContent = counts ? `campaign: ${folder}` : serves ? `${bench}, served as hardware` : `${bench}: ${command} into ${folder}`;
+  title.textContent = counts ? `campaign: ${folder}` : serves ? `${bench}, emulated` : `${bench}: ${command} into ${folder}`;
   if (serves) {
     counted.textContent = folder;
     bar.hidden = residualPart.hidden = true;
@@ -92,7 +95,7 @@ function begin({ command, bench, folder, can_pause, columns: named }) {
   if (!ended) sayState();
 }
 
-const running = () => (counts ? "The campaign is running" : serves ? "The twin is served" : "The measurement is running");
+const running = () => (counts ? "The campaign is running" : serves ? "The bench is emulated" : "The measurement is running");
 const sayState = () => (paused === "paused" ? say("doubt", "Paused: everything stands") : paused === "restless" ? say("bad", "Paused, but not at rest: look at the bench") : say("", running()));
 
 function held(event) {

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include "twin/report/sound.h"
+
 namespace twinbench::report {
 namespace {
 
@@ -106,13 +108,7 @@ std::string CurveTitle(const std::string& path, const std::string& name) {
 }
 
 std::string ShownUnit(const std::string& unit) {
-  if (unit == "deg") return "°";
-  if (unit == "degC") return "°C";
-  std::string shown = unit;
-  for (const std::string_view micro : {"um", "urad", "us", "uV"}) {
-    if (shown == micro || shown.starts_with(std::string(micro) + "/")) shown.replace(0, 1, "µ");
-  }
-  return shown;
+  return unit == "deg" ? "°" : InPrint(unit);
 }
 
 std::string AfterNumber(const std::string& shown_unit) {
