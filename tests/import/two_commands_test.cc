@@ -90,7 +90,7 @@ TEST_F(TwoCommands, TakeAPositioningReportToItsReversalError) {
     if (cause.at("effect") != "backlash") continue;
     EXPECT_EQ(cause.at("parameters").at("width").at("unit"), "mm") << "a linear axis errs in lengths";
   }
-  EXPECT_THAT(story_, HasSubstr("ISO 230-2, um"));
+  EXPECT_THAT(story_, HasSubstr("ISO 230-2, µm"));
 }
 
 TEST_F(TwoCommands, TakeTwoColumnsToTheOffCentreScale) {

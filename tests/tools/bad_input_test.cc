@@ -51,7 +51,7 @@ TEST_F(BadInput, ThatNoFitDescribesHasNoResult) {
   const Outcome run = Call({"run", "five.toml", "-o", "run"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("does not describe the readings: ccd leaves "));
-  EXPECT_THAT(run.out, testing::AllOf(HasSubstr("no result: the fit "), testing::Not(HasSubstr("um rms"))));
+  EXPECT_THAT(run.out, testing::AllOf(HasSubstr("no result: the fit "), testing::Not(HasSubstr("µm rms"))));
   const nlohmann::json results = nlohmann::json::parse(Read("run/results.json"));
   EXPECT_TRUE(results.contains("not_described"));
   EXPECT_TRUE(results.at("error_map").at("u_dx_um").at(0).is_null());
