@@ -366,7 +366,7 @@ std::string ContributionsText(const OneAtATime& found) {
                       fmt::format("{:.1f} %", 100.0 * (1.0 - std::pow(share->without[f] / total, 2)))});
     }
     rows.push_back({"electronics and light alone", fmt::format("{:.3g}", found.none[f]), "", ""});
-    text += TextTable({{"contribution"}, {"alone", true}, {"without it", true}, {"share of the square", true}},
+    text += TextTable({{"source"}, {"alone", true}, {"switched off", true}, {"variance contribution", true}},
                       rows, kBudgetWidth);
     text += fmt::format("in quadrature: {:.3g}\n\n", found.InQuadrature(f));
   }
