@@ -260,7 +260,7 @@ std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups, double 
 
 void LookAtCauses(const Scenario& scenario, Patience& patience, std::vector<LookedAt>& others) {
   for (LookedAt& other : others) {
-    if (!patience.Allows(1.0, "what another run would tell of causes")) continue;
+    if (!patience.Allows(1.0, kTellingOfCauses)) continue;
     Doing("what another run would tell of causes: " + other.run.words);
     const Scenario quick = Quick(Altered(scenario, other.run.sets));
     other.isolability = ShownBy(quick, ReadingsOfTwin(quick));

@@ -122,6 +122,7 @@ diagnose::DiagnosisRun SeenBy(const Scenario& scenario, const std::vector<Readin
 diagnose::DiagnosisRun SeenUnderChance(const Scenario& scenario, const std::vector<Reading>& readings, Patience& patience) {
   constexpr std::array kDrift_K_h = {0.0, 0.2, -0.2};  // more than stated: few rooms stand still
   Doing(fmt::format("what {} readings would show of causes", readings.size()));
+  patience.Takes(kTellingOfCauses);
   diagnose::DiagnosisRun seen = SeenBy(scenario, readings);
   const auto [coolest, warmest] = std::ranges::minmax(readings, {}, &Reading::temperature_degC);
   if (!seen.isolability || !(warmest.temperature_degC > coolest.temperature_degC)) return seen;

@@ -12,6 +12,9 @@
 
 namespace twinbench::tools {
 
+/// A step of a plan (Patience): one run weighed against the catalogue.
+inline constexpr const char* kTellingOfCauses = "what another run would tell of causes";
+
 /// The scenario with the quickest twin that takes the same readings, where the bench has a choice: what differs is
 /// below the noise.
 Scenario Quick(const Scenario& scenario);
