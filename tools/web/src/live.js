@@ -96,7 +96,8 @@ function begin({ command, bench, folder, can_pause, columns: named }) {
 }
 
 const running = () => (counts ? "The campaign is running" : serves ? "The bench is emulated" : "The measurement is running");
-const sayState = () => (paused === "paused" ? say("doubt", "Paused: everything stands") : paused === "restless" ? say("bad", "Paused, but not at rest: look at the bench") : say("", running()));
+const kHeld = { paused: ["doubt", "Paused: everything stands"], restless: ["bad", "Paused, but not at rest: look at the bench"] };
+const sayState = () => say(...(kHeld[paused] ?? ["", running()]));
 
 function held(event) {
   pause.heard(event);

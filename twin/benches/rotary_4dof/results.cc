@@ -48,7 +48,7 @@ report::ScoredRun ScoreOf(const Analysis& analysis, const nlohmann::json& truth)
   if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with a full-circle test");
   const Score score =
       CompareWithTruth(*analysis.separation, ErrorsOf(truth, "target"), ErrorsOf(truth, "reference"));
-  std::string text = fmt::format("{} estimator against the truth; what cannot be separated is taken out of both\n",
+  std::string text = fmt::format("{} estimator against the truth; what is not separable is taken out of both\n",
                                  EstimatorName(analysis.estimator)) +
                      ScoreTable(score);
   for (const auto& lost : analysis.separation->not_separable) text += fmt::format("not separable: {}\n", lost.what);
