@@ -29,11 +29,16 @@ std::string NameAndTitle(const Cause& cause, const std::string& bench) {
   return diagnose::Place(cause.effect, cause.where) + (entry ? "\n  " + entry->title : "");
 }
 
+/// A parameter whose u is half of what is possible is one that the readings say nothing about.
+bool IsDetermined(const ParameterEstimate& p) {
+  return std::isfinite(p.value) && !(p.u > 0.5 * (p.upper - p.lower));
+}
+
 /// A line a parameter.
 std::string SizeLines(const Cause& cause) {
   std::string lines;
   for (const ParameterEstimate& p : cause.parameters) {
-    if (std::isfinite(p.value)) lines += (lines.empty() ? "" : "\n") + diagnose::NameAndSize(p);
+    if (IsDetermined(p)) lines += (lines.empty() ? "" : "\n") + diagnose::NameAndSize(p);
   }
   return lines;
 }
