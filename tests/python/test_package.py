@@ -81,7 +81,7 @@ class SameAsTheCommandLine(unittest.TestCase):
             scenario = small("encoder_comparison").changed({
                 "encoder_procedure.kind": "sweep", "encoder_procedure.interval_s": 2.0, "encoder_procedure.speeds_deg_s": [36.0]})
             pathlib.Path(folder, "scenario.toml").write_text(scenario.toml())
-            command("plan", f"{folder}/scenario.toml", "--minutes", "60", "--json", f"{folder}/plan.json", "-o", f"{folder}/next.toml")
+            command("plan", f"{folder}/scenario.toml", "--minutes", "60", "--cpu", "0", "--json", f"{folder}/plan.json", "-o", f"{folder}/next.toml")
             made = tb.plan(scenario, minutes=60)
             self.assertEqual(plain(dict(made)), json.loads(pathlib.Path(folder, "plan.json").read_text()))
             written = sorted(path for path in pathlib.Path(folder).glob("next*.toml"))
