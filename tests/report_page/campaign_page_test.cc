@@ -33,14 +33,15 @@ Table TableIn(const std::string& path) {
 
 TEST(CoverageTile, SaysWhetherUncertaintiesHold) {
   twinbench::TemporaryFolder folder;
-  const report::PageTile tile = CoverageTile(TableIn(folder.File("t.sqlite")));
+  const report::PageTile tile = CoverageTile(SummaryOf(TableIn(folder.File("t.sqlite"))));
   EXPECT_EQ(tile.value, "66.7 %");  // |trial - 2.5| of 0.5 and 1.5 are within 1.96
   EXPECT_EQ(tile.tone, report::VerdictTone::kBad);
 }
 
 TEST(CampaignSections, PlotsHoldEveryTrial) {
   twinbench::TemporaryFolder folder;
-  const std::vector<report::PageSection> sections = CampaignSections(TableIn(folder.File("t.sqlite")));
+  const Table trials = TableIn(folder.File("t.sqlite"));
+  const std::vector<report::PageSection> sections = CampaignSections(trials, SummaryOf(trials));
   ASSERT_EQ(sections.size(), 2u);
   const auto& histograms = std::get<report::PageChoice>(sections[1].blocks.at(0));
   ASSERT_THAT(histograms.answers, ElementsAre(ElementsAre("mean_arcsec", "error / u"), ElementsAre("mean_arcsec", "value")));
@@ -54,7 +55,8 @@ TEST(CampaignSections, PlotsHoldEveryTrial) {
 
 TEST(CampaignSections, TheSummaryIsThatOfTheCampaign) {
   twinbench::TemporaryFolder folder;
-  const std::vector<report::PageSection> sections = CampaignSections(TableIn(folder.File("t.sqlite")));
+  const Table trials = TableIn(folder.File("t.sqlite"));
+  const std::vector<report::PageSection> sections = CampaignSections(trials, SummaryOf(trials));
   const auto& table = std::get<report::PageTable>(sections[0].blocks.at(0));
   // Mean of 10 to 15; four of six errors are within 1.96 u.
   EXPECT_THAT(table.rows.at(0), ElementsAre("mean", "arcsec", "6", "12.5", "1.871", "2", "0", "66.7 %"));

@@ -41,7 +41,7 @@ py::tuple Campaign(const std::string& path, const std::string& table_path, int t
   campaign::Table table = tools::OpenTable(table_path, study, resume);
   campaign::Ranks alone(false);
   campaign::RunCampaign(study, table, threads, alone, [](const campaign::CampaignProgress&) { HearInterrupt(); });
-  const campaign::Summary summary = tools::SummaryOf(table);
+  const campaign::Summary summary = campaign::SummaryOf(table);
   const std::string csv = table.Csv(), text = campaign::SummaryText(summary, path);
   py::gil_scoped_acquire lock;
   return py::make_tuple(csv, text, ValueOf(tools::SummaryJson(summary)));

@@ -10,12 +10,6 @@ campaign::Table OpenTable(const std::string& path, const campaign::Study& study,
   return goes_on ? campaign::Table::Continue(path, TWINBENCH_VERSION, study) : campaign::Table::Create(path, TWINBENCH_VERSION, study);
 }
 
-campaign::Summary SummaryOf(const campaign::Table& table) {
-  campaign::Summary summary;
-  table.ForEach([&](const campaign::TrialRow& row) { summary.Add(row); });
-  return summary;
-}
-
 nlohmann::json SummaryJson(const campaign::Summary& summary) {
   constexpr std::size_t kMostWorst = 10;
   nlohmann::json json = {{"trials", summary.Trials()},

@@ -13,9 +13,6 @@ namespace twinbench::tools {
 /// @throws InputError if it is there without `resume`, or is of another study.
 campaign::Table OpenTable(const std::string& path, const campaign::Study& study, bool resume);
 
-/// Of all its rows.
-campaign::Summary SummaryOf(const campaign::Table& table);
-
 /// {"trials", "lost", "verdicts", "results": {name: {"count", "mean", "sd", "rms_u", "scored", "bias", "coverage95"}}, "worst"}.
 nlohmann::json SummaryJson(const campaign::Summary& summary);
 

@@ -83,8 +83,9 @@ report::Page OfCampaign(const std::string& path) {
   report::PageSource source = SourceOf(path, {path});
   source.provenance.bench = table.Made("bench");
   source.provenance.program_version = table.Made("version");
-  report::Page page{source.name, "campaign on " + source.provenance.bench, "", report::VerdictTone::kPlain, campaign::CampaignSections(table)};
-  if (report::PageTile coverage = campaign::CoverageTile(table); !coverage.value.empty()) page.tiles.push_back(std::move(coverage));
+  const campaign::Summary summary = campaign::SummaryOf(table);
+  report::Page page{source.name, "campaign on " + source.provenance.bench, "", report::VerdictTone::kPlain, campaign::CampaignSections(table, summary)};
+  if (report::PageTile coverage = campaign::CoverageTile(summary); !coverage.value.empty()) page.tiles.push_back(std::move(coverage));
   if (const std::string study = table.Made("study"); !study.empty())
     page.sections.push_back({"Study", "", {report::PageText{"The study file", study}}});
   page.sections.push_back(report::ProvenanceSection(source));

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "twin/campaign/summary.h"
 #include "twin/report/page/named_numbers.h"
 
 namespace twinbench::campaign {
@@ -150,9 +149,7 @@ PageTable VerdictTable(const Summary& summary) {
 
 }  // namespace
 
-std::vector<PageSection> CampaignSections(const Table& table) {
-  Summary summary;
-  table.ForEach([&](const TrialRow& row) { summary.Add(row); });
+std::vector<PageSection> CampaignSections(const Table& table, const Summary& summary) {
   const std::map<std::string, Sample> samples = SamplesOf(table);
   PageSection results{"Results", fmt::format("{} trials, {} lost. Errors are those against the twin's truth.", summary.Trials(), summary.Lost().size()), {}};
   PageSection plots{"Distributions", "", {}};
@@ -167,16 +164,14 @@ std::vector<PageSection> CampaignSections(const Table& table) {
   return sections;
 }
 
-report::PageTile CoverageTile(const Table& table) {
+report::PageTile CoverageTile(const Summary& summary) {
   constexpr double kExpected = 0.95, kByChance = 3.0;
-  Summary summary;
-  table.ForEach([&](const TrialRow& row) { summary.Add(row); });
+  // Numbers of a list go together; trials do not.
+  const double sd = std::sqrt(kExpected * (1.0 - kExpected) / static_cast<double>(summary.Trials()));
   report::PageTile tile{"Coverage of U", "", "", report::VerdictTone::kGood};
   double furthest = -1.0;
   for (const auto& [name, result] : summary.Results()) {
     if (result.scored == 0) continue;
-    // Numbers of a list go together; trials do not.
-    const double sd = std::sqrt(kExpected * (1.0 - kExpected) / static_cast<double>(summary.Trials()));
     const double off = std::abs(result.coverage95 - kExpected) / sd;
     if (off <= furthest) continue;
     furthest = off;

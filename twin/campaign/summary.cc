@@ -100,4 +100,10 @@ std::vector<WorstTrial> Summary::Worst(std::size_t most) const {
   return worst;
 }
 
+Summary SummaryOf(const Table& table) {
+  Summary summary;
+  table.ForEach([&](const TrialRow& row) { summary.Add(row); });
+  return summary;
+}
+
 }  // namespace twinbench::campaign

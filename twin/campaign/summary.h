@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/campaign/table.h"
 #include "twin/campaign/trial.h"
 
 namespace twinbench::campaign {
@@ -53,6 +54,9 @@ class Summary {
   std::vector<TrialRow> lost_;
   std::map<std::string, std::int64_t> verdicts_;
 };
+
+/// Of all rows of a table.
+Summary SummaryOf(const Table& table);
 
 /// For a person: a line a result, verdicts, lost and worst trials with the command that shows each again.
 std::string SummaryText(const Summary& summary, const std::string& study_path);

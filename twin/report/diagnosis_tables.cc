@@ -10,6 +10,7 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/cause_groups.h"
 #include "twin/diagnose/words.h"
+#include "twin/report/sound.h"
 #include "twin/report/text_table.h"
 
 namespace twinbench::report {
@@ -29,16 +30,11 @@ std::string NameAndTitle(const Cause& cause, const std::string& bench) {
   return diagnose::Place(cause.effect, cause.where) + (entry ? "\n  " + entry->title : "");
 }
 
-/// A parameter whose u is half of what is possible is one that the readings say nothing about.
-bool IsDetermined(const ParameterEstimate& p) {
-  return std::isfinite(p.value) && !(p.u > 0.5 * (p.upper - p.lower));
-}
-
 /// A line a parameter.
 std::string SizeLines(const Cause& cause) {
   std::string lines;
   for (const ParameterEstimate& p : cause.parameters) {
-    if (IsDetermined(p)) lines += (lines.empty() ? "" : "\n") + diagnose::NameAndSize(p);
+    if (std::isfinite(p.value) && IsDetermined(p.u, p.lower, p.upper)) lines += (lines.empty() ? "" : "\n") + diagnose::NameAndSize(p);
   }
   return lines;
 }

@@ -12,15 +12,13 @@
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
 #include "twin/core/number_text.h"
+#include "twin/core/reading.h"
 #include "twin/report/curve_score.h"
 #include "twin/uncertainty/quantities.h"
 
 namespace twinbench::report {
 namespace {
 
-
-
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::string_view kOfSeparation = "separation.";
 
 /// "path[0].dx_um" as a pointer into its document.
@@ -70,7 +68,7 @@ void AddRows(const nlohmann::json& document, const std::string& before, std::set
 
 /// A user's number.
 struct Own {
-  double value = kNothing, u = kNothing;
+  double value = kNaN, u = kNaN;
 };
 
 std::map<std::string, Own> OwnOf(const CsvTable& csv) {
@@ -80,7 +78,7 @@ std::map<std::string, Own> OwnOf(const CsvTable& csv) {
                      "result and value, and u if there is one, as `separate --tables` writes them");
   std::map<std::string, Own> all;
   for (const CsvTable::Row& row : csv.rows) {
-    Own own{row.fields[*value].empty() ? kNothing : CsvNumber(csv, row, *value, 1.0), kNothing};
+    Own own{row.fields[*value].empty() ? kNaN : CsvNumber(csv, row, *value, 1.0), kNaN};
     if (u && !row.fields[*u].empty()) own.u = CsvNumber(csv, row, *u, 1.0);
     if (!all.emplace(row.fields[*result], own).second)
       throw InputError(csv.Where(row), row.fields[*result] + " comes twice", "every result once");
@@ -111,7 +109,7 @@ double MeanOfAll(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// A list whose truth has no mean is one whose mean cannot be told.
+/// A list whose truth has no mean is one whose mean is not separable.
 void TakeOutMean(CurveScore& curve) {
   double largest = 0.0;
   for (const double value : curve.truth) largest = std::max(largest, std::abs(value));

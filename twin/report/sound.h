@@ -24,6 +24,11 @@ inline Misfit WidenedMisfit(const std::string& of, double factor) {
 /// Results from this size on, in the units of files, are no measurement: 1e9 um are a kilometre.
 constexpr double kAbsurd = 1e9;
 
+/// Whether readings say anything about a number: not where its u is half of what is possible. No bounds, or no u: they do.
+inline bool IsDetermined(double u, double lower, double upper) {
+  return !(u > 0.5 * (upper - lower));
+}
+
 /// Text for people: the units of columns and keys as they are written in print, "um" as "µm".
 std::string InPrint(const std::string& text);
 

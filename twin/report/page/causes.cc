@@ -19,7 +19,7 @@ std::string ParametersOf(const json& cause) {
   if (!cause.contains("parameters")) return text;
   for (const auto& [name, p] : cause.at("parameters").items()) {
     const double u = NumberAt(p, "u");
-    if (u > 0.5 * (NumberAt(p, "upper") - NumberAt(p, "lower"))) continue;  // the readings do not determine it
+    if (!IsDetermined(u, NumberAt(p, "lower"), NumberAt(p, "upper"))) continue;
     const std::string unit = TextAt(p, "unit");
     text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", NameAndUnit(name).name, NumberText(NumberAt(p, "value"), u),
                         u > 0.0 ? " ± " + NumberText(u, u) : "", unit == "1" ? "" : AfterNumber(ShownUnit(unit)));

@@ -16,8 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-Figure RankFigure(const json& diagnosis) {
-  const std::vector<CauseGroup> groups = GroupsOf(diagnosis);
+Figure RankFigure(const json& diagnosis, const std::vector<CauseGroup>& groups) {
   const bool by_share = std::ranges::any_of(groups, [](const CauseGroup& group) { return std::isfinite(group.share); });
   Figure figure{FigureForm::kShares, "Causes", by_share ? "ranked by what each explains of the variance beyond noise" : "how probable each is by these readings",
                 {"", ""}, {by_share ? "share of the variance" : "probability", ""}, {}};
@@ -35,9 +34,9 @@ Figure RankFigure(const json& diagnosis) {
   return figure;
 }
 
-PageTable CauseTable(const json& diagnosis) {
+PageTable CauseTable(const std::vector<CauseGroup>& groups) {
   PageTable table{"Sizes", {"cause", "size", "share of the variance", "probability", "measure next"}, {}};
-  for (const CauseGroup& group : GroupsOf(diagnosis))
+  for (const CauseGroup& group : groups)
     table.rows.push_back({group.name, group.size, Percent(group.share), Percent(group.probability), group.next});
   return table;
 }
@@ -82,8 +81,9 @@ PageSection CauseSection(const json& diagnosis) {
   PageSection section{"Diagnosis", "", {}};
   const double p = NumberAt(diagnosis, "alarm_p");
   if (std::isfinite(p)) section.lead = fmt::format("Probability of so large a residual if the scenario were right: {:.2g}.", p);
-  if (Figure causes = RankFigure(diagnosis); !causes.series.empty()) section.blocks.emplace_back(std::move(causes));
-  AddFilled(CauseTable(diagnosis), section);
+  const std::vector<CauseGroup> groups = GroupsOf(diagnosis);
+  if (Figure causes = RankFigure(diagnosis, groups); !causes.series.empty()) section.blocks.emplace_back(std::move(causes));
+  AddFilled(CauseTable(groups), section);
   AddFilled(TieTable(diagnosis), section);
   AddFilled(GainTable(diagnosis), section);
   return section;

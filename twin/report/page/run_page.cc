@@ -21,19 +21,10 @@ void AddFigures(const std::vector<Figure>& figures, PageSection& section) {
   for (const Figure& figure : figures) section.blocks.emplace_back(figure);
 }
 
-bool HasTruth(const std::vector<Figure>& figures) {
-  for (const Figure& figure : figures) {
-    for (const FigureSeries& series : figure.series) {
-      if (series.role == SeriesRole::kTruth) return true;
-    }
-  }
-  return false;
-}
-
 PageSection CurveSection(const std::vector<Figure>& curves) {
   PageSection section{"Errors", "Each curve with its expanded uncertainty U as a band. Polar: the distance from the dashed circle is the error.", {}};
-  if (HasTruth(curves)) section.lead += " Truth: the simulated errors, without those orders that the design does not separate.";
   if (std::vector<Figure> less = DeviationFigures(curves); !less.empty()) {
+    section.lead += " Truth: the simulated errors, without those orders that the design does not separate.";
     PageChoice choice{"Estimate less truth", "with its expanded uncertainty U", {"of"}, {}, {}};
     for (Figure& figure : less) {
       choice.answers.push_back({figure.title.substr(figure.title.find(": ") + 2)});
