@@ -71,13 +71,17 @@ std::vector<OwnRun> KeyRuns(const OwnBench& bench, std::size_t together) {
   return runs;
 }
 
-std::vector<OwnRun> EffectRuns(const OwnBench& bench) {
+std::vector<OwnRun> EffectRuns(const OwnBench& bench, std::size_t together) {
   const Scenario plain = LoadScenario(ScenarioPath(bench.scenario), bench.effects_base);
   std::vector<OwnRun> runs;
   for (const EffectEntry& entry : EffectCatalogue(plain.bench)) {
     if (entry.name == "outliers") continue;  // which readings they meet, nobody can foresee
-    runs.push_back({entry.name, plain});
-    runs.back().scenario.effects = {PlainEffect(entry)};
+    const bool joins = !runs.empty() && runs.back().scenario.effects.size() < together;
+    if (!joins) runs.push_back({.scenario = plain, .stated = 0});
+    OwnRun& run = runs.back();
+    run.what += (joins ? " " : "") + entry.name;
+    run.scenario.effects.push_back(PlainEffect(entry));
+    ++run.stated;
   }
   return runs;
 }

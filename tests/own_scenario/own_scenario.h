@@ -30,14 +30,14 @@ const std::vector<OwnBench>& OwnBenches();
 
 /// A run to be made and diagnosed with its own scenario.
 struct OwnRun {
-  std::string what;  // the settings or the effect
+  std::string what = {};  // the settings or the effects
   Scenario scenario;
-  int keys = 1;  // neighbours in the list share a run where they can
+  int stated = 1;  // so many keys or effects: neighbours in the list share a run where they can
 };
 /// @param together  So many neighbours at the most share a run.
 std::vector<OwnRun> KeyRuns(const OwnBench& bench, std::size_t together);
 /// Every effect of the catalogue at its default size.
-std::vector<OwnRun> EffectRuns(const OwnBench& bench);
+std::vector<OwnRun> EffectRuns(const OwnBench& bench, std::size_t together);
 
 /// What the diagnosis has to say; empty if nothing.
 std::string AlarmOf(const OwnRun& run, const std::string& cache_folder);

@@ -71,7 +71,7 @@ Plans OwnScenarioSet(const std::string& bench, const Amount& amount) {
   const auto& all = test::OwnBenches();
   const test::OwnBench& own = *std::ranges::find(all, bench, &test::OwnBench::name);
   std::vector<test::OwnRun> runs = test::KeyRuns(own, kTogether);
-  for (test::OwnRun& run : test::EffectRuns(own)) {
+  for (test::OwnRun& run : test::EffectRuns(own, 1)) {
     run.what = "effect " + run.what;
     runs.push_back(run);
   }
