@@ -72,6 +72,11 @@ TEST(ErrorMotion, DependsOnTheSensitiveDirection) {
   const ErrorMotionValues turned = EvaluateErrorMotion(Rotating(x, none), PlotCentre::kLeastSquares);
   EXPECT_NEAR(turned.synchronous.value / kUm, 1.0, kRoundingUm);
   EXPECT_NEAR(turned.asynchronous.value / kUm, 0.2, kRoundingUm) << "at 0 deg, where it looks along x";
+  // Turns that are apart along the diagonal at 45 deg alone: it looks along it there.
+  ErrorMotion dx = none, dy = none;
+  dx.scatter[45] = dy.scatter[45] = {-0.1 * kUm, 0.1 * kUm};
+  EXPECT_NEAR(EvaluateErrorMotion(Rotating(dx, dy), PlotCentre::kLeastSquares).asynchronous.value / kUm,
+              0.2 * std::sqrt(2.0), kRoundingUm);
   // An eccentric artefact stands still beside a tool that turns with it.
   const ErrorMotion ex = Motion(5.0 * (t + 0.3).cos()), ey = Motion(5.0 * (t + 0.3).sin());
   EXPECT_NEAR(EvaluateErrorMotion(Rotating(ex, ey), PlotCentre::kLeastSquares).synchronous.value / kUm, 0.0, kRoundingUm);
