@@ -110,7 +110,8 @@ std::vector<std::string> OverridesOf(Design design) {
   const std::vector<std::string> warm = {"environment.swing_mK=700.0", "environment.swing_period_s=7000.0"};
   if (design == Design::kCircles)
     return {"circular_procedure.points=72", "circular_procedure.stops=18", warm[0], warm[1]};
-  if (design == Design::kFreeform) return {"freeform_procedure.poses=40", warm[0], warm[1]};
+  if (design == Design::kFreeform)
+    return {"freeform_procedure.poses=40", "optics.fidelity=closed", warm[0], warm[1]};
   if (design == Design::kRotary) return {"mechanics.fidelity=kinematic"};
   return {};
 }
