@@ -109,5 +109,19 @@ TEST(FreeformEstimator, StatesUncertaintiesThatMatchItsScatter) {
   EXPECT_NEAR(sum / count, 1.0, 0.2);
 }
 
+/// Where the machine stands is no error of its volume: a shift and a small turn about each axis leave nothing.
+TEST(VolumetricErrors, HaveNoneOfTheMotionOfTheWholeMachine) {
+  Eigen::Matrix3Xd points(3, 5);
+  points << 0.0, 300.0, 0.0, 120.0, -80.0,  //
+      10.0, 0.0, 250.0, -60.0, 90.0,        //
+      0.0, 40.0, -30.0, 200.0, 150.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d turn = 1e-3 * Eigen::Vector3d::Unit(axis), shift(1.0, -2.0, 0.5);
+    Eigen::Matrix3Xd moved(3, points.cols());
+    for (Eigen::Index k = 0; k < points.cols(); ++k) moved.col(k) = shift + turn.cross(points.col(k));
+    EXPECT_LT(WithoutRigidMotion(points, moved).cwiseAbs().maxCoeff(), 1e-12) << "about axis " << axis;
+  }
+}
+
 }  // namespace
 }  // namespace twinbench::freeform_test
