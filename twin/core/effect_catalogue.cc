@@ -68,6 +68,25 @@ EffectParameter Signed(const std::string& name, const std::string& unit, double 
   return Parameter(name, unit, value, -limit, limit, meaning, std::move(only_at));
 }
 
+EffectParameter EffectParameter::Adds(const std::string& key, double share,
+                                      const std::vector<std::string>& places) const {
+  EffectParameter with = *this;
+  with.changes.push_back({key, KeyChange::How::kAdd, share, places});
+  return with;
+}
+
+EffectParameter EffectParameter::Multiplies(const std::string& key) const {
+  EffectParameter with = *this;
+  with.changes.push_back({key, KeyChange::How::kMultiply});
+  return with;
+}
+
+EffectParameter EffectParameter::Divides(const std::string& key) const {
+  EffectParameter with = *this;
+  with.changes.push_back({key, KeyChange::How::kDivide});
+  return with;
+}
+
 bool EffectParameter::BelongsTo(const std::string& place) const {
   return only_at.empty() || std::find(only_at.begin(), only_at.end(), place) != only_at.end();
 }
@@ -80,6 +99,11 @@ double EffectEntry::Plausible(const EffectParameter& parameter) const {
   }
   return plausible > 0.0 ? plausible
                          : kShareOfBounds * std::max(std::abs(parameter.lower_SI), std::abs(parameter.upper_SI));
+}
+
+bool EffectEntry::ChangesKeysAlone() const {
+  return !parameters.empty() &&
+         std::ranges::all_of(parameters, [](const EffectParameter& p) { return !p.changes.empty(); });
 }
 
 const std::vector<EffectEntry>& EffectCatalogue(const std::string& bench) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "twin/core/scenario.h"
+#include "twin/sim/changed_keys.h"
 #include "twin/sim/silence.h"
 
 namespace twinbench::sim {
@@ -12,6 +13,7 @@ namespace twinbench::sim {
 template <class Effects, class Own>
 Scenario ActualBenchOf(const Scenario& nominal, const Effects& effects, void (*silence)(Own&)) {
   Scenario actual = nominal;
+  ChangeKeys(actual);
   for (const auto& effect : effects) effect->AlterBench(actual);
   if (actual.noise_free) {
     Silence(actual.environment);

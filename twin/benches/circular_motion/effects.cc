@@ -12,15 +12,15 @@ std::vector<EffectEntry> GeometryEffects() {
   return {{"scale",
            "positioning error in proportion to the way",
            Axes(),
-           {Signed("error", "um_m", 5.0, 1e4, "of the axis")}},
+           {Signed("error", "um_m", 5.0, 1e4, "of the axis").Adds("machine.scale_@_um_m")}},
           {"squareness",
            "axes not at a right angle",
            {},
-           {Signed("angle", "arcsec", 2.0, 3600.0, "from +X to +Y less 90 deg")}},
+           {Signed("angle", "arcsec", 2.0, 3600.0, "from +X to +Y less 90 deg").Adds("machine.squareness_arcsec")}},
           {"straightness",
            "bow of the guideway of the other axis",
            Axes(),
-           {Signed("bow", "um", 1.0, 1000.0, "times P2(other axis / machine.span)")}},
+           {Signed("bow", "um", 1.0, 1000.0, "times P2(other axis / machine.span)").Adds("machine.straightness_@_um")}},
           {"cyclic",
            "error that repeats with the pitch of a screw or scale",
            Axes(),
@@ -33,24 +33,26 @@ std::vector<EffectEntry> MotionEffects() {
   return {{"backlash",
            "axis that stays behind on reversal",
            Axes(),
-           {Signed("width", "um", 1.0, 1000.0, "full width")}},
+           {Signed("width", "um", 1.0, 1000.0, "full width").Adds("machine.backlash_@_um")}},
           {"reversal_spike",
            "axis that sticks at its reversal and comes loose",
            Axes(),
            {Signed("height", "um", 2.0, 1000.0, "largest excursion"),
             Parameter("time", "s", 0.5, 0.01, 100.0, "from the reversal to the largest excursion")}},
-          {"servo_lag", "both axes follow later than stated", {}, {Signed("lag", "s", 5e-4, 1.0, "of both")}},
+          {"servo_lag", "both axes follow later than stated", {}, {Signed("lag", "s", 5e-4, 1.0, "of both").Adds("machine.lag_x_s").Adds("machine.lag_y_s")}},
           {"servo_mismatch",
            "one axis follows later than the other",
            {},
-           {Signed("lag", "s", 1e-4, 1.0, "of x less that of y; half of it each")}}};
+           {Signed("lag", "s", 1e-4, 1.0, "of x less that of y; half of it each")
+                .Adds("machine.lag_x_s", 0.5)
+                .Adds("machine.lag_y_s", -0.5)}}};
 }
 
 std::vector<EffectEntry> ThermalEffects() {
   return {{"thermal_growth",
            "scale of an axis that grows with the temperature",
            Axes(),
-           {Signed("growth", "um_m_K", 5.0, 1000.0, "from 20 °C on")}},
+           {Signed("growth", "um_m_K", 5.0, 1000.0, "from 20 °C on").Adds("machine.expansion_@_um_m_K")}},
           {"drift",
            "spindle that moves against the table with the temperature",
            Axes(),
@@ -59,7 +61,7 @@ std::vector<EffectEntry> ThermalEffects() {
           {"bar_expansion",
            "bar that grows with the temperature",
            {},
-           {Signed("growth", "um_m_K", 5.0, 1000.0, "from 20 °C on")}}};
+           {Signed("growth", "um_m_K", 5.0, 1000.0, "from 20 °C on").Adds("bar.expansion_um_m_K")}}};
 }
 
 std::vector<EffectEntry> InstrumentEffects() {
@@ -67,12 +69,15 @@ std::vector<EffectEntry> InstrumentEffects() {
       {"encoder_latency",
        "encoder read earlier or later than the bar",
        {},
-       {Signed("latency", "s", 5e-4, 1.0, "the reading is this old")}},
-      {"bar_gain", "transducer that shows too much in proportion", {}, {Signed("gain", "1", 0.005, 0.5, "share")}},
+       {Signed("latency", "s", 5e-4, 1.0, "the reading is this old").Adds("encoder.latency_s")}},
+      {"bar_gain",
+       "transducer that shows too much in proportion",
+       {},
+       {Signed("gain", "1", 0.005, 0.5, "share").Adds("bar.gain_error")}},
       {"bar_nonlinearity",
        "transducer that shows too much by the cube",
        {},
-       {Signed("cubic", "per_mm2", 1.0, 1000.0, "of the reading")}},
+       {Signed("cubic", "per_mm2", 1.0, 1000.0, "of the reading").Adds("bar.cubic_per_mm2")}},
       {"ball_form",
        "ball out of round",
        {},
@@ -91,16 +96,17 @@ std::vector<EffectEntry> InstrumentEffects() {
       {"tilt",
        "axis of the encoder tilted, the bar out of its plane",
        {},
-       {Signed("tilt_x", "mrad", 0.5, 100.0, "about X"), Signed("tilt_y", "mrad", 0.0, 100.0, "about Y"),
+       {Signed("tilt_x", "mrad", 0.5, 100.0, "about X").Adds("encoder.tilt_x_mrad"),
+        Signed("tilt_y", "mrad", 0.0, 100.0, "about Y").Adds("encoder.tilt_y_mrad"),
         Parameter("height", "mm", 3.0, 0.1, 100.0, "ball 2 above ball 1, where the scenario says 0")}},
       {"grid_scale",
        "grid that shows too much in proportion",
        Axes(),
-       {Signed("error", "um_m", 2.0, 1e4, "of the axis")}},
+       {Signed("error", "um_m", 2.0, 1e4, "of the axis").Adds("grid.scale_@_um_m")}},
       {"grid_shear",
        "axes of the grid not at a right angle",
        {},
-       {Signed("angle", "arcsec", 1.0, 3600.0, "of the y axis")}}};
+       {Signed("angle", "arcsec", 1.0, 3600.0, "of the y axis").Adds("grid.shear_arcsec")}}};
 }
 
 std::vector<EffectEntry> ReadingEffects() {

@@ -31,14 +31,20 @@ std::vector<EffectEntry> QuadrantEffects() {
        "quadrant detector rotated about the beam",
        {},
        {Signed("roll", "rad", 0.03, 3.0, "of the axes of its signals")}},
-      {"spot_size", "spot larger than stated", {}, {Ratio(0.005, 0.9, "too much")}},
-      {"focal_length", "lens of another focal length", {}, {Ratio(0.005, 0.9, "too much")}},
+      {"spot_size",
+       "spot larger than stated",
+       {},
+       {Ratio(0.005, 0.9, "too much").Multiplies("qpd.spot_radius_mm")}},
+      {"focal_length", "lens of another focal length", {}, {Ratio(0.005, 0.9, "too much").Multiplies("qpd.lens_mm")}},
   };
 }
 
 std::vector<EffectEntry> HeightEffects() {
   return {
-      {"ccd_scale", "triangulation that shows too much", {}, {Ratio(0.0005, 0.9, "too much")}},
+      {"ccd_scale",
+       "triangulation that shows too much",
+       {},
+       {Ratio(0.0005, 0.9, "too much").Divides("ccd.pixel_um")}},
       {"ccd_nonlinearity",
        "triangulation that bends",
        {},
@@ -52,7 +58,10 @@ std::vector<EffectEntry> HeightEffects() {
 
 std::vector<EffectEntry> ArtefactEffects() {
   return {
-      {"vertex_radius", "paraboloids of another curvature", {}, {Ratio(0.0003, 0.5, "too large")}},
+      {"vertex_radius",
+       "paraboloids of another curvature",
+       {},
+       {Ratio(0.0003, 0.5, "too large").Multiplies("artefact.vertex_radius_mm")}},
       {"artefact_pitch", "array stretched along one side", {"x"}, {Ratio(5e-6, 0.1, "too large")}, "x"},
       {"artefact_form",
        "cells higher and lower in a wave over the array",

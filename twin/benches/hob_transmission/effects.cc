@@ -66,7 +66,7 @@ std::vector<EffectEntry> ChainEffects() {
       {"backlash",
        "table that stays behind on reversal until a gap is crossed",
        {},
-       {Parameter("width", "arcsec", 5.0, 0.0, 36000.0, "of the gap")}},
+       {Parameter("width", "arcsec", 5.0, 0.0, 36000.0, "of the gap").Adds("transmission.backlash_arcsec")}},
       {"hysteresis",
        "torsion that goes over to the other sense gradually after a reversal: wind-up",
        {},

@@ -23,32 +23,34 @@ std::vector<EffectEntry> DetectorEffects() {
       {"psd_gain",
        "gain of one PSD axis and its amplifier",
        ChannelPlaces(),
-       {Signed("gain_error", "1", 0.005, 0.5, "relative error of the gain")}},
+       {Signed("gain_error", "1", 0.005, 0.5, "relative error of the gain").Adds("amplifier.gain_error[@]")}},
       // 0.1-1 deg
       {"psd_roll",
        "PSD rotated about the diffracted beam",
        psds,
-       {Signed("roll", "mrad", 5.0, 500.0, "angle, right-handed towards the light")}},
+       {Signed("roll", "mrad", 5.0, 500.0, "angle, right-handed towards the light").Adds("@.roll_mrad")}},
       // 0.1-3 % of the range at the edge; 180000 /m^2 is 0.45 % at 5 mm
       {"psd_nonlinearity",
        "pincushion of a PSD",
        psds,
-       {Signed("cubic", "per_m2", 180000.0, 1e7, "u -> u (1 + cubic r^2)")}},
+       {Signed("cubic", "per_m2", 180000.0, 1e7, "u -> u (1 + cubic r^2)").Adds("@.cubic_per_m2")}},
       // 0.01-1 %
       {"stray_light",
        "uniform stray light that pulls the spot to the centre",
        psds,
-       {Parameter("fraction", "1", 0.01, 0.0, 0.9, "stray light / signal")}},
+       {Parameter("fraction", "1", 0.01, 0.0, 0.9, "stray light / signal").Adds("@.stray_fraction")}},
       // 1-20 uA: a lamp on a detector without a filter; 5 uA are 0.7 % of the signal of 5 mW of laser
       {"background",
        "ambient light on a PSD that counts as signal and pulls the spot to the centre",
        psds,
-       {Parameter("current", "nA", 5000.0, 0.0, 1e6, "that it makes")}},
+       {Parameter("current", "nA", 5000.0, 0.0, 1e6, "that it makes").Adds("@.background_nA")}},
       // 0.1-1 %; 1 mm of 120 mm is 0.8 %.
       {"psd_distance",
        "distance from the grating to one PSD, or to both",
        {"psd_a", "psd_b", "both"},
-       {Signed("distance_error", "mm", 1.0, 50.0, "actual - nominal")}},
+       {Signed("distance_error", "mm", 1.0, 50.0, "actual - nominal")
+            .Adds("psd_a.distance_mm", 1.0, {"psd_a", "both"})
+            .Adds("psd_b.distance_mm", 1.0, {"psd_b", "both"})}},
   };
 }
 
@@ -58,17 +60,17 @@ std::vector<EffectEntry> LightEffects() {
       {"wavelength_offset",
        "wavelength other than stated",
        {},
-       {Signed("wavelength_error", "nm", 2.0, 100.0, "actual - nominal")}},
+       {Signed("wavelength_error", "nm", 2.0, 100.0, "actual - nominal").Adds("laser.wavelength_nm")}},
       // grooves are ruled to parts in a hundred thousand; a label may name another grating
       {"grating_pitch",
        "grooves at another distance than stated",
        {},
-       {Signed("pitch_error", "1", 0.003, 0.2, "actual / nominal - 1")}},
+       {Signed("pitch_error", "1", 0.003, 0.2, "actual / nominal - 1").Divides("grating.lines_per_mm")}},
       // 30-600 nm: a twentieth of a wave to a wave; more where a cell strains it
       {"grating_form",
        "grating whose front is no plane",
        {"sphere", "astigmatism"},
-       {Signed("height", "nm", 300.0, 1e6, "of the front at half its width above its middle")}},
+       {Signed("height", "nm", 300.0, 1e6, "of the front at half its width above its middle").Adds("grating.@_nm")}},
       // 0.2-0.5 nm
       {"mode_hop",
        "sudden step of the wavelength",
@@ -79,7 +81,8 @@ std::vector<EffectEntry> LightEffects() {
       {"wavelength_temperature",
        "wavelength that follows the temperature",
        {},
-       {Signed("wavelength_per_kelvin", "nm_per_K", 0.25, 10.0, "against environment.reference_degC")}},
+       {Signed("wavelength_per_kelvin", "nm_per_K", 0.25, 10.0, "against environment.reference_degC")
+            .Adds("laser.wavelength_per_kelvin_nm")}},
       // 0.1-1 deg
       {"incidence_offset",
        "laser that does not meet the grating at right angles",
@@ -101,7 +104,8 @@ std::vector<EffectEntry> BodyEffects() {
       {"post_growth",
        "post of a PSD that grows with the temperature",
        {"psd_a", "psd_b"},
-       {Signed("growth_per_kelvin", "um_K", 2.0, 1000.0, "of its height, against environment.reference_degC")}},
+       {Signed("growth_per_kelvin", "um_K", 2.0, 1000.0, "of its height, against environment.reference_degC")
+            .Adds("@.post_growth_um_K")}},
       // 0.2-5"
       {"mount_creep",
        "creep of the grating after every mounting",

@@ -16,14 +16,15 @@ std::vector<EffectEntry> InstrumentEffects() {
       {"autocollimator_roll",
        "crosshair rolled against the turntable's axis, beyond what is stated",
        {},
-       {Signed("angle", "mrad", 5.0, 500.0, "x' = x + y' sin(angle)")}},
+       {Signed("angle", "mrad", 5.0, 500.0, "x' = x + y' sin(angle)").Adds("autocollimator.roll_mrad")}},
       // 0.05-0.5 %
       {"autocollimator_scale", "wrong scale of both axes", {}, {Signed("gain_error", "1", 0.003, 0.5, "relative")}},
       // vignetting, distortion
       {"autocollimator_nonlinearity",
        "error with the cube of the angle: distortion, vignetting at the edge",
        {},
-       {Signed("at_edge", "arcsec", 0.5, 100.0, "error at the edge of the stated range")}},
+       {Signed("at_edge", "arcsec", 0.5, 100.0, "error at the edge of the stated range")
+            .Adds("autocollimator.error_at_edge_arcsec")}},
       // 0.02-0.5 arcsec
       {"autocollimator_periodic",
        "error that repeats with the pixels",
@@ -35,7 +36,8 @@ std::vector<EffectEntry> InstrumentEffects() {
       {"mirror_flatness",
        "mirror that is not flat, met off its middle where the multi-tooth table is eccentric",
        {},
-       {Signed("sag", "nm", 80.0, 100000.0, "over its width, beyond what is stated; positive: hollow")}},
+       {Signed("sag", "nm", 80.0, 100000.0, "over its width, beyond what is stated; positive: hollow")
+            .Adds("mirror.flatness_nm")}},
   };
 }
 
@@ -50,7 +52,8 @@ std::vector<EffectEntry> TurntableTimeEffects() {
       {"autocollimator_temperature",
        "zero that follows the temperature, beyond what is stated",
        AutocollimatorAxes(),
-       {Signed("coefficient", "arcsec_per_K", 0.2, 1000.0, "of the zero, per kelvin")}},
+       {Signed("coefficient", "arcsec_per_K", 0.2, 1000.0, "of the zero, per kelvin")
+            .Adds("autocollimator.@_per_kelvin_arcsec")}},
       {"mount_creep",
        "mounting that creeps after each set-up",
        AutocollimatorAxes(),

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 
+#include "twin/sim/changed_keys.h"
 #include "twin/sim/effect_parameter.h"
 
 namespace twinbench::sim {
@@ -28,50 +29,24 @@ void AddSineWave(const EffectSettings& e, double order, double& amplitude, doubl
 
 using Change = std::function<void(const EffectSettings&, CircularSettings&)>;
 
-const std::map<std::string, Change>& MachineChanges() {
+/// What is no sum: waves whose azimuth moves, and a height that counts where none is stated.
+const std::map<std::string, Change>& Changes() {
   static const std::map<std::string, Change> changes = {
-      {"scale", [](auto& e, auto& s) { s.machine.scale[AxisOf(e)] += Parameter(e, "error"); }},
-      {"squareness", [](auto& e, auto& s) { s.machine.squareness_rad += Parameter(e, "angle"); }},
-      {"straightness", [](auto& e, auto& s) { s.machine.bow_m[AxisOf(e)] += Parameter(e, "bow"); }},
-      {"backlash", [](auto& e, auto& s) { s.machine.backlash_m[AxisOf(e)] += Parameter(e, "width"); }},
-      {"thermal_growth", [](auto& e, auto& s) { s.machine.expansion_per_K[AxisOf(e)] += Parameter(e, "growth"); }},
-      {"servo_lag",
-       [](auto& e, auto& s) {
-         for (double& lag_s : s.machine.lag_s) lag_s += Parameter(e, "lag");
-       }},
-      {"servo_mismatch", [](auto& e, auto& s) {
-         s.machine.lag_s[0] += 0.5 * Parameter(e, "lag");
-         s.machine.lag_s[1] -= 0.5 * Parameter(e, "lag");
-       }}};
-  return changes;  // constant
-}
-
-const std::map<std::string, Change>& InstrumentChanges() {
-  static const std::map<std::string, Change> changes = {
-      {"bar_expansion", [](auto& e, auto& s) { s.bar.expansion_per_K += Parameter(e, "growth"); }},
-      {"bar_gain", [](auto& e, auto& s) { s.bar.gain_error += Parameter(e, "gain"); }},
-      {"bar_nonlinearity", [](auto& e, auto& s) { s.bar.cubic_per_m2 += Parameter(e, "cubic"); }},
       {"ball_form",
        [](auto& e, auto& s) {
          const std::size_t k = Parameter(e, "order") < 2.5 ? 0 : 1;
          AddWave(Parameter(e, "cosine"), Parameter(e, "sine"), static_cast<double>(k) + 2.0, s.bar.ball_m[k],
                  s.bar.ball_azimuth_rad[k]);
        }},
-      {"encoder_latency", [](auto& e, auto& s) { s.encoder.latency_s += Parameter(e, "latency"); }},
       {"eccentricity",
        [](auto& e, auto& s) {
          AddSineWave(e, 1.0, s.encoder.eccentricity_rad, s.encoder.eccentricity_azimuth_rad);
        }},
       {"ellipticity",
        [](auto& e, auto& s) { AddSineWave(e, 2.0, s.encoder.ellipticity_rad, s.encoder.ellipticity_azimuth_rad); }},
-      {"tilt",
-       [](auto& e, auto& s) {
-         s.encoder.tilt_rad[0] += Parameter(e, "tilt_x");
-         s.encoder.tilt_rad[1] += Parameter(e, "tilt_y");
+      {"tilt", [](auto& e, auto& s) {
          if (s.bar.height_m == 0.0) s.bar.height_m = Parameter(e, "height");
-       }},
-      {"grid_scale", [](auto& e, auto& s) { s.grid.scale[AxisOf(e)] += Parameter(e, "error"); }},
-      {"grid_shear", [](auto& e, auto& s) { s.grid.shear_rad += Parameter(e, "angle"); }}};
+       }}};
   return changes;  // constant
 }
 
@@ -82,12 +57,12 @@ CyclicError CyclicOf(const EffectSettings& e) {
 
 }  // namespace
 
-CircularSettings WithEffects(CircularSettings settings, const std::vector<EffectSettings>& effects) {
-  for (const EffectSettings& effect : effects) {
-    for (const auto* changes : {&MachineChanges(), &InstrumentChanges()}) {
-      if (const auto change = changes->find(effect.name); change != changes->end())
-        change->second(effect, settings);
-    }
+CircularSettings WithEffects(Scenario scenario) {
+  ChangeKeys(scenario);
+  CircularSettings& settings = CircularOf(scenario);
+  for (const EffectSettings& effect : scenario.effects) {
+    if (const auto change = Changes().find(effect.name); change != Changes().end())
+      change->second(effect, settings);
   }
   return settings;
 }

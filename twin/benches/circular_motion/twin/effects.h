@@ -8,7 +8,7 @@
 namespace twinbench::sim {
 
 /// The constants of the bench with all effects that are constants of it.
-CircularSettings WithEffects(CircularSettings settings, const std::vector<EffectSettings>& effects);
+CircularSettings WithEffects(Scenario scenario);
 
 /// Effects that the machine has beside its settings.
 void AddToMachine(const std::vector<EffectSettings>& effects, CircleMachine& machine);

@@ -88,7 +88,7 @@ std::vector<CirclePlace> PlacesOf(const std::vector<CircleStep>& steps) {
 
 CircleTwin::CircleTwin(const Scenario& scenario, const std::vector<Reading>& course, const Eigen::VectorXd& above_K,
                        BodiesOnce& bodies)
-    : settings_(WithEffects(CircularOf(scenario), scenario.effects)),
+    : settings_(WithEffects(scenario)),
       later_s_(Later_s(settings_, CircularOf(scenario))),
       machine_(MachineOf(settings_, later_s_)),
       radial_(scenario.empiricals, "radial"),

@@ -30,13 +30,11 @@ struct FreeformExtra {
   double qpd_x_V = 0.0, qpd_y_V = 0.0, ccd_px = 0.0;
 };
 
-/// One cause on the bench freeform_five_axis. Most have only one of the three parts.
+/// One cause on the bench freeform_five_axis. Most have only one of the two parts.
 class FreeformEffect {
  public:
   virtual ~FreeformEffect() = default;
 
-  /// A constant of the bench that is not what the scenario says.
-  virtual void AlterBench(FreeformSettings& /*bench*/) const {}
   /// Once for each reading, with the time running forwards.
   virtual void Disturb(const FreeformMoment& /*moment*/, FreeformExtra& /*extra*/) {}
   /// What the detectors show without it.

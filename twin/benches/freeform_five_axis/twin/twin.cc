@@ -6,9 +6,11 @@
 #include <stdexcept>
 
 #include "twin/benches/freeform_five_axis/columns.h"
+#include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
+#include "twin/sim/changed_keys.h"
 #include "twin/sim/truth.h"
 
 namespace twinbench::sim {
@@ -71,6 +73,11 @@ std::shared_ptr<const optics::HeightMap> FormOf(const ArtefactSettings& artefact
   return form;
 }
 
+FreeformSettings ActualOf(Scenario scenario) {
+  ChangeKeys(scenario);
+  return FreeformOf(scenario);
+}
+
 }  // namespace
 
 DrawnBench Draw(const Scenario& scenario) {
@@ -88,9 +95,8 @@ DrawnBench Draw(const Scenario& scenario) {
 }
 
 FreeformTwin::FreeformTwin(const Scenario& scenario, DrawnBench drawn, LightAsked asked)
-    : scenario_(scenario), actual_(FreeformOf(scenario)), drawn_(std::move(drawn)) {
-  for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeFreeformEffect(effect, scenario));
-  for (const auto& effect : effects_) effect->AlterBench(actual_);
+    : scenario_(scenario), actual_(ActualOf(scenario)), drawn_(std::move(drawn)) {
+  for (const EffectSettings& effect : BeyondKeys(scenario)) effects_.push_back(MakeFreeformEffect(effect, scenario));
   light_ = std::make_unique<ProbeLight>(actual_, FormOf(actual_.artefact), asked);
   for (const std::string& channel : FormatOf(scenario.bench).channels)
     empirical_.emplace_back(scenario.empiricals, channel);

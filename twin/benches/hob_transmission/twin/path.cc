@@ -11,7 +11,7 @@ namespace {
 
 std::vector<std::unique_ptr<HobEffect>> HobEffectsOf(const Scenario& nominal) {
   std::vector<std::unique_ptr<HobEffect>> effects;
-  for (const EffectSettings& effect : nominal.effects) effects.push_back(MakeHobEffect(effect, nominal));
+  for (const EffectSettings& effect : BeyondKeys(nominal)) effects.push_back(MakeHobEffect(effect, nominal));
   return effects;
 }
 

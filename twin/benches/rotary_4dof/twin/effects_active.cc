@@ -23,7 +23,7 @@ void SilenceRotary(RotarySettings& own) {
 }  // namespace
 
 ActiveEffects::ActiveEffects(const Scenario& scenario) {
-  for (const EffectSettings& settings : scenario.effects) effects_.push_back(MakeEffect(settings, scenario));
+  for (const EffectSettings& settings : BeyondKeys(scenario)) effects_.push_back(MakeEffect(settings, scenario));
   for (const EmpiricalSettings& settings : scenario.empiricals)
     effects_.push_back(MakeEmpirical(settings, scenario));
 }

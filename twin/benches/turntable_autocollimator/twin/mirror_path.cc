@@ -8,7 +8,7 @@ namespace {
 
 std::vector<std::unique_ptr<TurntableEffect>> TurntableEffectsOf(const Scenario& nominal) {
   std::vector<std::unique_ptr<TurntableEffect>> effects;
-  for (const EffectSettings& effect : nominal.effects) effects.push_back(MakeTurntableEffect(effect, nominal));
+  for (const EffectSettings& effect : BeyondKeys(nominal)) effects.push_back(MakeTurntableEffect(effect, nominal));
   return effects;
 }
 

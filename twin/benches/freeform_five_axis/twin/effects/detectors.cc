@@ -7,22 +7,6 @@
 namespace twinbench::sim {
 namespace {
 
-class WrongConstant : public FreeformEffect {
- public:
-  explicit WrongConstant(const EffectSettings& e) : name_(e.name), factor_(1.0 + Parameter(e, "ratio")) {}
-  void AlterBench(FreeformSettings& bench) const override {
-    if (name_ == "spot_size") bench.qpd.spot_radius_m *= factor_;
-    if (name_ == "focal_length") bench.qpd.lens_m *= factor_;
-    if (name_ == "ccd_scale") bench.ccd.pixel_m /= factor_;
-    if (name_ != "vertex_radius") return;
-    for (double& radius_m : bench.artefact.vertex_radius_m) radius_m *= factor_;
-  }
-
- private:
-  std::string name_;
-  double factor_;
-};
-
 /// Too large, or part of the light on a fixed place: to the run itself the two are hardly different.
 class GainOrLeakage : public FreeformEffect {
  public:
@@ -74,9 +58,10 @@ class AxesTurned : public FreeformEffect {
 
 class CameraFault : public FreeformEffect {
  public:
-  explicit CameraFault(const EffectSettings& e)
-      : bends_(e.name == "ccd_nonlinearity"), size_(Parameter(e, bends_ ? "bend" : "per_spot")) {}
-  void AlterBench(FreeformSettings& bench) const override { centre_px_ = bench.ccd.centre_px; }
+  CameraFault(const EffectSettings& e, const Scenario& scenario)
+      : bends_(e.name == "ccd_nonlinearity"),
+        size_(Parameter(e, bends_ ? "bend" : "per_spot")),
+        centre_px_(FreeformOf(scenario).ccd.centre_px) {}
   void AlterSignals(const FreeformMoment&, ProbeSignals& shown) const override {
     const double off_px = shown.ccd_px - centre_px_;
     shown.ccd_px += size_ * (bends_ ? off_px * off_px : shown.qpd_x_V / shown.qpd_sum_V);
@@ -84,8 +69,7 @@ class CameraFault : public FreeformEffect {
 
  private:
   bool bends_;
-  double size_;
-  mutable double centre_px_ = kNaN;  // told before the first reading
+  double size_, centre_px_;
 };
 
 /// A product of what is shown, the angles A and B, or neither, and a course.
@@ -109,9 +93,6 @@ class Signal : public FreeformEffect {
 
 }  // namespace
 
-FreeformEffectPointer MakeWrongProbe(const EffectSettings& e) {
-  return std::make_unique<WrongConstant>(e);
-}
 FreeformEffectPointer MakeGainOrLeakage(const EffectSettings& e) {
   return std::make_unique<GainOrLeakage>(e);
 }
@@ -121,8 +102,8 @@ FreeformEffectPointer MakeSpotDrift(const EffectSettings& e) {
 FreeformEffectPointer MakeAxesTurned(const EffectSettings& e) {
   return std::make_unique<AxesTurned>(e);
 }
-FreeformEffectPointer MakeCameraFault(const EffectSettings& e) {
-  return std::make_unique<CameraFault>(e);
+FreeformEffectPointer MakeCameraFault(const EffectSettings& e, const Scenario& scenario) {
+  return std::make_unique<CameraFault>(e, scenario);
 }
 FreeformEffectPointer MakeFreeformSignal(const EffectSettings& e, const Scenario& scenario) {
   return std::make_unique<Signal>(e, scenario);

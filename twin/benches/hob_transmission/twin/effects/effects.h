@@ -14,7 +14,6 @@ HobEffectPointer MakeHobSignal(const EffectSettings&, const Scenario&);
 HobEffectPointer MakeRingError(const EffectSettings&);  // eccentricity, ellipticity, periodic
 HobEffectPointer MakeHobSignalFault(const EffectSettings&);
 HobEffectPointer MakeGearError(const EffectSettings&, const Scenario&);  // hob_runout, worm, gear_mesh
-HobEffectPointer MakeWormBacklash(const EffectSettings&);
 HobEffectPointer MakeWindUp(const EffectSettings&);  // hysteresis
 /// drift, slip, tone, latency
 HobEffectPointer MakeShownError(const EffectSettings&);

@@ -22,24 +22,10 @@ class GearError : public HobEffect {
   int starts_;
 };
 
-/// The flanks of the worm have more play than the scenario says.
-class WormBacklash : public HobEffect {
- public:
-  explicit WormBacklash(const EffectSettings& e) : width_rad_(Parameter(e, "width")) {}
-  void AlterBench(Scenario& actual) const override { HobOf(actual).transmission.backlash_rad += width_rad_; }
-
- private:
-  double width_rad_;
-};
-
 }  // namespace
 
 HobEffectPointer MakeGearError(const EffectSettings& effect, const Scenario& scenario) {
   return std::make_unique<GearError>(effect, scenario);
-}
-
-HobEffectPointer MakeWormBacklash(const EffectSettings& effect) {
-  return std::make_unique<WormBacklash>(effect);
 }
 
 }  // namespace twinbench::sim

@@ -21,7 +21,6 @@ std::unique_ptr<HobEffect> MakeHobEffect(const EffectSettings& effect, const Sce
       {"hob_runout", gear},
       {"worm", gear},
       {"gear_mesh", gear},
-      {"backlash", [&] { return MakeWormBacklash(effect); }},
       {"hysteresis", [&] { return MakeWindUp(effect); }},
       {"latency", shown},
       {"drift", shown},

@@ -12,20 +12,9 @@ namespace twinbench::sim {
 using EffectPointer = std::unique_ptr<Effect>;
 
 EffectPointer MakeSignal(const EffectSettings&, const Scenario&);
-EffectPointer MakePsdGain(const EffectSettings&, const Scenario&);
-EffectPointer MakePsdRoll(const EffectSettings&, const Scenario&);
-EffectPointer MakePsdNonlinearity(const EffectSettings&, const Scenario&);
-EffectPointer MakeStrayLight(const EffectSettings&, const Scenario&);
-EffectPointer MakeBackground(const EffectSettings&, const Scenario&);
-EffectPointer MakePsdDistance(const EffectSettings&, const Scenario&);
-EffectPointer MakeWavelengthOffset(const EffectSettings&, const Scenario&);
-EffectPointer MakeGratingPitch(const EffectSettings&, const Scenario&);
-EffectPointer MakeGratingForm(const EffectSettings&, const Scenario&);
 EffectPointer MakeModeHop(const EffectSettings&, const Scenario&);
-EffectPointer MakeWavelengthTemperature(const EffectSettings&, const Scenario&);
 EffectPointer MakeIncidenceOffset(const EffectSettings&, const Scenario&);
 EffectPointer MakeLaserDrift(const EffectSettings&, const Scenario&);
-EffectPointer MakePostGrowth(const EffectSettings&, const Scenario&);
 EffectPointer MakeMountCreep(const EffectSettings&, const Scenario&);
 EffectPointer MakeThermalTilt(const EffectSettings&, const Scenario&);
 EffectPointer MakeEncoderSubdivision(const EffectSettings&, const Scenario&);
@@ -43,7 +32,5 @@ EffectPointer MakeEmpirical(const EmpiricalSettings&, const Scenario&);  // an [
 
 /// Index of a channel by its name ("psd_a_x"). @throws std::logic_error if there is none.
 int ChannelIndex(const std::string& name);
-/// The PSD that "psd_a" or "psd_b" names.
-PsdSettings& PsdOf(Scenario& scenario, const std::string& name);
 
 }  // namespace twinbench::sim

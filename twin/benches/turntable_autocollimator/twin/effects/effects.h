@@ -11,9 +11,8 @@ namespace twinbench::sim {
 
 using TurntableEffectPointer = std::unique_ptr<TurntableEffect>;
 
-/// autocollimator_roll, _scale, _nonlinearity, _temperature, mirror_flatness, multitooth_seating
 TurntableEffectPointer MakeAutocollimatorSignal(const EffectSettings&, const Scenario&);
-TurntableEffectPointer MakeWrongConstant(const EffectSettings&);
+TurntableEffectPointer MakeWrongConstant(const EffectSettings&);  // autocollimator_scale, multitooth_seating
 TurntableEffectPointer MakePixelPeriod(const EffectSettings&);  // autocollimator_periodic
 /// autocollimator_drift, mount_creep, slip, tone
 TurntableEffectPointer MakeMovingZero(const EffectSettings&);

@@ -10,11 +10,7 @@ std::unique_ptr<TurntableEffect> MakeTurntableEffect(const EffectSettings& effec
   const auto constant = [&] { return MakeWrongConstant(effect); };
   const auto zero = [&] { return MakeMovingZero(effect); };
   const std::map<std::string, std::function<TurntableEffectPointer()>> makers = {
-      {"autocollimator_roll", constant},
       {"autocollimator_scale", constant},
-      {"autocollimator_nonlinearity", constant},
-      {"autocollimator_temperature", constant},
-      {"mirror_flatness", constant},
       {"multitooth_seating", constant},
       {"autocollimator_periodic", [&] { return MakePixelPeriod(effect); }},
       {"autocollimator_drift", zero},
