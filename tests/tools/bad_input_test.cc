@@ -79,6 +79,17 @@ TEST_F(BadInput, OfAFileThatIsNotThereIsRefused) {
   ExpectRefused({"import", "none.csv", "--scenario", "small.toml", "-o", "out"}, "none.csv");
 }
 
+TEST_F(BadInput, OfANearlyRightFileNamesTheRightOneBesideItOrAmongTheShippedScenarios) {
+  ExpectRefused({"run", "smal.toml", "-o", "out"}, "smal.toml: ");
+  ExpectRefused({"check", "here/small.toml"}, "here/small.toml: ");
+  for (const char* bare : {"encoder_heads", "encoder_haeds.toml", "coverage_hob", "rotary_4dof.toml"}) {
+    const std::string said = Refusal({"check", bare});
+    EXPECT_THAT(said, testing::ContainsRegex("the nearest is .*scenarios/(studies/)?[a-z0-9_]*\\.toml")) << bare;
+  }
+  EXPECT_THAT(Refusal({"check", "quite_another_thing.toml"}), testing::Not(HasSubstr("nearest")));
+  EXPECT_THAT(Refusal({"check", "."}), HasSubstr(".: is a folder"));
+}
+
 TEST_F(BadInput, InAnOptionIsNamed) {
   Write("t.csv", "position_deg,ez_urad\n0,1\n");
   const std::pair<const char*, const char*> cases[] = {

@@ -11,6 +11,7 @@
 #include "twin/campaign/campaign_page.h"
 #include "twin/core/digest.h"
 #include "twin/core/errors.h"
+#include "twin/core/nearest_file.h"
 #include "twin/core/run_record.h"
 #include "twin/report/page/diagnosis_page.h"
 #include "twin/report/page/investigation_page.h"
@@ -97,7 +98,7 @@ report::Page PageOfWhatIsThere(const std::string& source, const std::string& sco
   const std::string investigation = source + "/investigation.json";
   if (fs::exists(investigation)) return report::InvestigationPage(SourceOf(source, {investigation}), ReadJson(investigation));
   if (fs::exists(folder.results())) return OfRun(folder, score);
-  if (!fs::exists(source)) throw InputError(source, "does not exist", kExpected);
+  if (!fs::exists(source)) throw NothingToRead(source, kExpected);
   if (fs::is_directory(source)) throw InputError(source, "there is no results.json", kExpected);
   return source.ends_with(".json") ? OfJson(source) : OfCampaign(source);
 }

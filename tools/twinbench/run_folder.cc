@@ -7,6 +7,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/input_text.h"
+#include "twin/core/nearest_file.h"
 #include "twin/core/run_record.h"
 #include "twin/report/page/modest_json.h"
 
@@ -65,7 +66,7 @@ nlohmann::json ReadJson(const std::string& path) {
 RecordedRun LoadRecordedRun(const std::string& source, const std::string& scenario_path,
                             const std::vector<std::string>& overrides) {
   const bool folder = fs::is_directory(source);
-  if (!folder && !fs::exists(source)) throw InputError(source, "does not exist", "a run folder or a readings file");
+  if (!folder && !fs::exists(source)) throw NothingToRead(source, "a run folder or a readings file");
   if (!folder && scenario_path.empty()) {
     throw InputError(source, "a readings file does not say which bench made it", "--scenario SCENARIO.toml");
   }

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "twin/core/errors.h"
+#include "twin/core/nearest_file.h"
 #include "twin/core/number_text.h"
 
 namespace twinbench::campaign {
@@ -63,7 +64,7 @@ void MakeCampaignSafe(SqliteDatabase& database) {
 }
 
 void RequireTable(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw InputError(path, "the file is not there", kExpected);
+  if (!std::filesystem::is_regular_file(path)) throw NothingToRead(path, kExpected);
 }
 
 std::unique_ptr<SqliteDatabase> OpenTable(const std::string& path, int flags) {

@@ -14,13 +14,9 @@ namespace {
 constexpr double kTurn_rad = 2.0 * units::kPi;
 
 std::vector<double> ColumnOfFile(const CsvTable& table, const std::string& name, double to_SI) {
-  const auto column = table.Column(name);
-  if (!column) {
-    throw InputError(table.WhereHeader(), "the column " + name + " is missing",
-                     std::string(kCompensationPosition) + "," + kCompensationCorrection);
-  }
+  const std::size_t column = NeededColumn(table, name, std::string(kCompensationPosition) + "," + kCompensationCorrection);
   std::vector<double> values;
-  for (const CsvTable::Row& row : table.rows) values.push_back(CsvNumber(table, row, *column, to_SI));
+  for (const CsvTable::Row& row : table.rows) values.push_back(CsvNumber(table, row, column, to_SI));
   return values;
 }
 

@@ -7,6 +7,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/input_text.h"
+#include "twin/core/nearest_key.h"
 #include "twin/core/number_text.h"
 
 namespace twinbench {
@@ -114,6 +115,21 @@ CsvTable ParseCsv(std::istream& in, const std::string& name) {
 CsvTable ReadCsv(const std::string& path) {
   std::istringstream in(InputText(path, "a table (CSV)"));
   return ParseCsv(in, path);
+}
+
+std::string NearestColumn(const std::string& wanted, const std::vector<std::string>& present) {
+  const std::string base = wanted.substr(0, wanted.rfind('_') + 1);
+  for (const std::string& column : present) {
+    if (!base.empty() && column.substr(0, column.rfind('_') + 1) == base) return "; the nearest is " + column;
+  }
+  const std::string nearest = Nearest(wanted, present);
+  const int slip = std::max(1, static_cast<int>(wanted.size()) / 3);
+  return nearest.empty() || EditDistance(wanted, nearest) > slip ? "" : "; the nearest is " + nearest;
+}
+
+std::size_t NeededColumn(const CsvTable& table, const std::string& name, const std::string& expected) {
+  if (const auto column = table.Column(name)) return *column;
+  throw InputError(table.WhereHeader(), fmt::format("the column {} is missing", name), expected + NearestColumn(name, table.columns));
 }
 
 std::string QuoteCsv(const std::string& field) {

@@ -31,6 +31,13 @@ CsvTable ParseCsv(std::istream& in, const std::string& name);
 /// @throws InputError if the file cannot be opened.
 CsvTable ReadCsv(const std::string& path);
 
+/// The column of that name.
+/// @throws InputError that names it and, if there is one, a column of nearly that name or of the same in another unit.
+std::size_t NeededColumn(const CsvTable& table, const std::string& name, const std::string& expected);
+
+/// "; the nearest is mesured_deg" if one of `present` is nearly `wanted` or the same in another unit; else "".
+std::string NearestColumn(const std::string& wanted, const std::vector<std::string>& present);
+
 /// The field, quoted if it would be read as something else.
 std::string QuoteCsv(const std::string& field);
 

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "twin/core/errors.h"
+#include "twin/core/nearest_file.h"
 
 namespace twinbench {
 
@@ -19,7 +20,7 @@ std::string InputText(const std::string& path, const std::string& expected, cons
   }
   if (text.size() > kLargestInput_B)
     throw InputError(named, fmt::format("{} is larger than {} MB", what, kLargestInput_B >> 20), expected);
-  if (in.bad() || text.empty()) throw InputError(named, what + " cannot be read or is empty", expected);
+  if (in.bad() || text.empty()) throw NothingToRead(path, expected, where);
   return text;
 }
 

@@ -18,13 +18,13 @@ namespace twinbench {
 namespace {
 
 void RequireColumns(const CsvTable& table, const BenchFormat& bench) {
-  std::string missing;
+  std::vector<std::string> missing, others = table.columns;
   for (const ReadingColumn& column : bench.columns) {
-    if (column.MustBeThere() && !table.Column(column.name)) missing += (missing.empty() ? "" : ", ") + column.name;
+    if (std::erase(others, column.name) == 0 && column.MustBeThere()) missing.push_back(column.name);
   }
   if (!missing.empty())
-    throw InputError(table.WhereHeader(), "required columns are missing: " + missing,
-                     "readings of the bench " + bench.name);
+    throw InputError(table.WhereHeader(), fmt::format("required columns are missing: {}", fmt::join(missing, ", ")),
+                     "readings of the bench " + bench.name + NearestColumn(missing.front(), others));
 }
 
 void ParseField(const CsvTable& table, const CsvTable::Row& row, const ReadingColumn& column, Reading& reading) {

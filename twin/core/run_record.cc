@@ -13,6 +13,7 @@
 #include "twin/core/device_fault.h"
 #include "twin/core/digest.h"
 #include "twin/core/errors.h"
+#include "twin/core/nearest_file.h"
 #include "twin/core/number_text.h"
 #include "twin/core/readable_record.h"
 #include "twin/core/record_digests.h"
@@ -160,8 +161,9 @@ std::unique_ptr<RunRecord> RunRecord::CreateInMemory(const Provenance& provenanc
 
 std::unique_ptr<RunRecord> RunRecord::Open(const std::string& directory) {
   const std::string path = RecordPath(directory);
+  if (!std::filesystem::exists(directory)) throw NothingToRead(directory, "the folder of a run");
   if (!std::filesystem::is_regular_file(path))
-    throw InputError(directory, "there is no record.sqlite", "the folder of a run");
+    throw InputError(directory, "there is no record.sqlite in it", "the folder of a run");
   try {
     auto database = std::make_unique<Database>(path, SQLITE_OPEN_READWRITE);
     database->folder = directory;

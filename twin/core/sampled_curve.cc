@@ -26,15 +26,14 @@ double SampledCurve::At(double place) const {
 SampledCurve ReadSampledCurve(const std::string& path, const CurveColumn& at, const CurveColumn& value) {
   const std::string both = at.name + " and " + value.name;
   const CsvTable table = ReadCsv(path);
-  const auto at_column = table.Column(at.name), value_column = table.Column(value.name);
-  if (!at_column || !value_column) throw InputError(table.WhereHeader(), "a column is missing", both);
+  const std::size_t at_column = NeededColumn(table, at.name, both), value_column = NeededColumn(table, value.name, both);
   std::vector<double> places, values;
   for (const CsvTable::Row& row : table.rows) {
-    const double place = CsvNumber(table, row, *at_column, at.to_SI);
+    const double place = CsvNumber(table, row, at_column, at.to_SI);
     if (!places.empty() && place <= places.back())
       throw InputError(table.Where(row), at.name + " does not increase", "rows in its order");
     places.push_back(place);
-    values.push_back(CsvNumber(table, row, *value_column, value.to_SI));
+    values.push_back(CsvNumber(table, row, value_column, value.to_SI));
   }
   if (places.empty()) throw InputError(table.name, "holds no rows", "rows of " + both);
   return {std::move(places), std::move(values)};

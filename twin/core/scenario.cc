@@ -14,6 +14,7 @@
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/core/input_text.h"
+#include "twin/core/nearest_file.h"
 #include "twin/core/nearest_key.h"
 #include "twin/core/number_text.h"
 #include "twin/core/reading.h"
@@ -364,7 +365,7 @@ std::string NamedFile(const std::string& where, const std::string& key, const st
   const std::string path = AbsolutePath(folder, file);
   if (std::filesystem::is_regular_file(path) && std::ifstream(path)) return path;
   throw InputError(where, fmt::format("{}: the file {} cannot be read", key, path),
-                   "a readable file, named from the scenario's folder");
+                   OrNearestFile("a readable file, named from the scenario's folder", path));
 }
 
 /// Moves the content of the file that `content`_file names to `content`. Where both are given the later source

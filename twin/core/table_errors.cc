@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "twin/core/csv.h"
@@ -35,13 +36,12 @@ std::string HeaderLine() {
 
 void CheckColumns(const CsvTable& table) {
   for (const std::string& found : table.columns) {
-    bool known = false;
-    for (const ErrorColumn& column : Columns()) known = known || column.name == found;
-    if (!known)
-      throw InputError(table.WhereHeader(), fmt::format("unknown column {}", found), "any of " + HeaderLine());
+    std::vector<std::string> known;
+    for (const ErrorColumn& column : Columns()) known.push_back(column.name);
+    if (std::ranges::find(known, found) == known.end())
+      throw InputError(table.WhereHeader(), fmt::format("unknown column {}", found), "any of " + HeaderLine() + NearestColumn(found, known));
   }
-  if (!table.Column(PositionColumn().name))
-    throw InputError(table.WhereHeader(), "the column position_deg is missing", HeaderLine());
+  static_cast<void>(NeededColumn(table, PositionColumn().name, HeaderLine()));
   if (table.rows.empty()) throw InputError(table.WhereHeader(), "no rows follow the header", "one row a position");
 }
 

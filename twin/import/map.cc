@@ -1,6 +1,7 @@
 #include "twin/import/map.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -115,9 +116,9 @@ std::vector<const BenchFormat*> BenchesNamed(const std::string& text, const std:
   return {&FormatOf(top.bench, name)};
 }
 
-std::string Names() {
-  std::string names;
-  for (const ReadyMap& ready : ReadyMaps()) names += (names.empty() ? "" : ", ") + ready.name;
+std::vector<std::string> ReadyNames() {
+  std::vector<std::string> names;
+  for (const ReadyMap& ready : ReadyMaps()) names.push_back(ready.name);
   return names;
 }
 
@@ -150,7 +151,7 @@ Map LoadMap(const std::string& name_or_path) {
   if (ready != ReadyMaps().end()) return ParseMap(ready->text, ready->name);
   if (!std::ifstream(name_or_path) || std::filesystem::is_directory(name_or_path))
     throw InputError("--map " + name_or_path, "there is no such file, and no ready map of that name",
-                     "a TOML file or one of " + Names());
+                     fmt::format("a TOML file or one of {}; the nearest is {}", fmt::join(ReadyNames(), ", "), Nearest(name_or_path, ReadyNames())));
   return ParseMap(InputText(name_or_path, "a map in TOML"), name_or_path);
 }
 

@@ -70,7 +70,6 @@ std::size_t EndOfField(std::string_view line, std::size_t at, char separator) {
 
 std::string LoadText(const std::string& path) {
   std::string bytes = InputText(path, "a readable text file");
-  if (bytes.empty()) throw InputError(path, "the file is empty", "rows of numbers");
   if (bytes.starts_with("\xFF\xFE")) return FromUtf16(bytes, true);
   if (bytes.starts_with("\xFE\xFF")) return FromUtf16(bytes, false);
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);

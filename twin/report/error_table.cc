@@ -72,16 +72,15 @@ struct Own {
 };
 
 std::map<std::string, Own> OwnOf(const CsvTable& csv) {
-  const auto result = csv.Column("result"), value = csv.Column("value"), u = csv.Column("u");
-  if (!result || !value)
-    throw InputError(csv.WhereHeader(), result ? "there is no column value" : "there is no column result",
-                     "result and value, and u if there is one, as `separate --tables` writes them");
+  constexpr const char* kExpected = "result and value, and u if there is one, as `separate --tables` writes them";
+  const std::size_t result = NeededColumn(csv, "result", kExpected), value = NeededColumn(csv, "value", kExpected);
+  const auto u = csv.Column("u");
   std::map<std::string, Own> all;
   for (const CsvTable::Row& row : csv.rows) {
-    Own own{row.fields[*value].empty() ? kNaN : CsvNumber(csv, row, *value, 1.0), kNaN};
+    Own own{row.fields[value].empty() ? kNaN : CsvNumber(csv, row, value, 1.0), kNaN};
     if (u && !row.fields[*u].empty()) own.u = CsvNumber(csv, row, *u, 1.0);
-    if (!all.emplace(row.fields[*result], own).second)
-      throw InputError(csv.Where(row), row.fields[*result] + " comes twice", "every result once");
+    if (!all.emplace(row.fields[result], own).second)
+      throw InputError(csv.Where(row), row.fields[result] + " comes twice", "every result once");
   }
   return all;
 }

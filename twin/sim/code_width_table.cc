@@ -44,13 +44,11 @@ double ExcessIn(const CsvTable& table, const CsvTable::Row& row, const WidthColu
 
 std::map<std::int32_t, double> ReadExcessWidths_lsb(const std::string& path, int bits) {
   const CsvTable table = ReadCsv(path);
-  const auto code_column = table.Column("code");
-  if (!code_column)
-    throw InputError(table.WhereHeader(), "column code is missing", "code and width, or code and dnl_lsb");
+  const std::size_t code_column = NeededColumn(table, "code", "code and width, or code and dnl_lsb");
   const WidthColumn width_column = WidthColumnOf(table);
   std::map<std::int32_t, double> excess_lsb;
   for (const CsvTable::Row& row : table.rows) {
-    const std::int32_t code = CodeIn(table, row, *code_column, bits);
+    const std::int32_t code = CodeIn(table, row, code_column, bits);
     if (!excess_lsb.empty() && code <= excess_lsb.rbegin()->first)
       throw InputError(table.Where(row), fmt::format("code {} comes behind {}", code, excess_lsb.rbegin()->first),
                        "codes in their order, each once");

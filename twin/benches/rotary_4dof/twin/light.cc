@@ -40,18 +40,14 @@ optics::PsdParameters OpticalPsd(const PsdSettings& s) {
 
 constexpr std::array<const char*, 5> kOrderColumns = {"m-2", "m-1", "m0", "m+1", "m+2"};
 
-std::size_t NeededColumn(const CsvTable& table, const char* name) {
-  const auto column = table.Column(name);
-  if (!column)
-    throw InputError(table.WhereHeader(), std::string("there is no column ") + name,
-                     "sin_incidence,m-2,m-1,m0,m+1,m+2");
-  return *column;
+double NeededNumber(const CsvTable& table, const CsvTable::Row& row, const char* name) {
+  return CsvNumber(table, row, NeededColumn(table, name, "sin_incidence,m-2,m-1,m0,m+1,m+2"), 1.0);
 }
 
 optics::EfficiencyRow EfficiencyRowOf(const CsvTable& table, const CsvTable::Row& row) {
-  optics::EfficiencyRow efficiency{CsvNumber(table, row, NeededColumn(table, "sin_incidence"), 1.0), {-2, {}}};
+  optics::EfficiencyRow efficiency{NeededNumber(table, row, "sin_incidence"), {-2, {}}};
   for (const char* order : kOrderColumns) {
-    efficiency.orders.share.push_back(CsvNumber(table, row, NeededColumn(table, order), 1.0));
+    efficiency.orders.share.push_back(NeededNumber(table, row, order));
     if (efficiency.orders.share.back() < 0.0)
       throw InputError(table.Where(row), std::string(order) + " is negative", "shares of the power from 0 to 1");
   }
