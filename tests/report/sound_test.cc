@@ -13,7 +13,9 @@ TEST(Sound, WhatIsNoNumberIsADash) {
       {"lag 0.001 ± 1e+20 s", "lag    - s"},
       {"lag 1e22 ± 0.5 s, inf ms", "lag    - s,   - ms"},
       {"errs by 426381195756743.12 um", "errs by    - µm"},
-      {"1.5 ± 0.2 um, order -1, 1e-20 of banana_inf", "1.5 ± 0.2 µm, order -1, 1e-20 of banana_inf"},
+      {"1.5 ± 0.2 um, order -1, 1e-20 of banana_inf", "1.5 ± 0.2 µm, order −1, 1e-20 of banana_inf"},
+      {"x\n-3 (-2.5) at 2026-11-27, [-1 um, 1 um]", "x\n−3 (−2.5) at 2026-11-27, [−1 µm, 1 µm]"},
+      {"passes = [1, -1], order = -2, then -2", "passes = [1, -1], order = -2, then −2"},
       {"inf degrees of freedom", "inf degrees of freedom"},
       {"noise  0.5 um  inf  23.1 %", "noise  0.5 µm  inf  23.1 %"},
       {"123456789.0 s", "123456789.0 s"}};

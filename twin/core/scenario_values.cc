@@ -7,6 +7,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
+#include "twin/core/unit_text.h"
 
 namespace twinbench {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 }
 
 std::string ExpectedNumber(const Unit& unit, const Bounds& bounds) {
-  return fmt::format("a number{}{}", unit.suffix.empty() ? "" : fmt::format(" of {}", unit.suffix), bounds.Text());
+  return fmt::format("a number{}{}", unit.suffix.empty() ? "" : " of " + UnitInPrint(unit.suffix), bounds.Text());
 }
 
 std::string ExpectedWholeNumber(const Bounds& bounds) {

@@ -4,18 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+
+#include "twin/core/unit_text.h"
 
 namespace twinbench::diagnose {
 namespace {
 
-/// " µm/m" of "um_m": units of keys as they are written in print, with the space before them.
-std::string UnitInPrint(const std::string& unit) {
-  static const std::map<std::string, std::string> kWritten = {{"1", ""},           {"um", "µm"},       {"per_m2", "m⁻²"}, {"per_m4", "m⁻⁴"},   {"per_mm2", "mm⁻²"},
-                                                              {"per_px", "px⁻¹"}, {"um_m", "µm/m"},   {"um_K", "µm/K"},  {"um_m_K", "µm/m/K"}, {"urad_per_h", "µrad/h"}};
-  const auto written = kWritten.find(unit);
-  std::string text = written == kWritten.end() ? unit : written->second;
-  if (const std::size_t per = text.find("_per_"); per != text.npos) text.replace(per, 5, "/");
+/// With the space before it.
+std::string SpacedUnit(const std::string& unit) {
+  const std::string text = UnitInPrint(unit);
   return text.empty() ? "" : " " + text;
 }
 
@@ -39,7 +36,7 @@ ChannelUnit FinerUnit(const ChannelUnit& unit, double largest_SI) {
 std::string WithUncertainty(const ParameterEstimate& p) {
   const ChannelUnit told = FinerUnit({p.unit, p.to_SI}, p.value);
   const double value = p.value / told.to_SI, u = p.u / told.to_SI;
-  const std::string unit = UnitInPrint(told.name);
+  const std::string unit = SpacedUnit(told.name);
   if (!std::isfinite(u) || u <= 0.0) return fmt::format("{:.3g}{}", value, unit);
   const int decimals = static_cast<int>(1.0 - std::floor(std::log10(u)));
   if (decimals > 9) return fmt::format("{:.4g} ± {:.2g}{}", value, u, unit);

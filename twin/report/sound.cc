@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "twin/core/number_text.h"
+#include "twin/core/unit_text.h"
 
 namespace twinbench::report {
 namespace {
@@ -67,10 +68,18 @@ void PairUp(std::vector<Piece>& pieces) {
 
 /// As people write the units of columns and keys.
 std::string SpokenUnit(const std::string& word) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kSpoken = {
-      {{"um", "µm"}, {"urad", "µrad"}, {"degC", "°C"}, {"urad_per_h", "µrad/h"}, {"per_m2", "m⁻²"}, {"arcsec_per_h", "arcsec/h"}}};
-  const auto* spoken = std::ranges::find(kSpoken, std::string_view(word), [](const auto& pair) { return pair.first; });
-  return spoken == kSpoken.end() ? word : std::string(spoken->second);
+  constexpr std::array<std::string_view, 6> kUnits = {"um", "urad", "degC", "urad_per_h", "per_m2", "arcsec_per_h"};
+  return std::ranges::find(kUnits, word) == kUnits.end() ? word : UnitInPrint(word);
+}
+
+/// A hyphen before a number is a minus, but in values and lists of values behind "=": they may be copied into a file.
+std::string WithMinus(const std::string& word, const std::string& before) {
+  const bool is_negative = word.size() > 1 && word[0] == '-' && std::isdigit(static_cast<unsigned char>(word[1])) != 0;
+  const bool stands_alone = before.empty() || std::string_view(" \n([").find(before.back()) != std::string_view::npos;
+  if (!is_negative || !stands_alone) return word;
+  const std::size_t equals = before.rfind('=');
+  const bool is_value = equals != before.npos && before.find_first_not_of("0123456789.,[+- ", equals + 1) == before.npos;
+  return is_value ? word : "−" + word.substr(1);
 }
 
 std::string WithoutNoNumbersIn(std::string_view line, const std::string& absent) {
@@ -173,7 +182,7 @@ void TakeUncertainty(const Misfit& worst, Evaluation& evaluation) {
 
 std::string InPrint(const std::string& text) {
   std::string spoken;
-  for (const Piece& piece : PiecesOf(text)) spoken += SpokenUnit(piece.text);
+  for (const Piece& piece : PiecesOf(text)) spoken += WithMinus(SpokenUnit(piece.text), spoken);
   return spoken;
 }
 
@@ -192,8 +201,8 @@ void KeepSound(const std::vector<Reading>& readings, Evaluation& evaluation) {
   if (const Misfit* worst = WorstOf(evaluation.misfits)) TakeUncertainty(*worst, evaluation);
   const int absurd = ClearNoNumbers(evaluation.results) + ClearNoNumbers(evaluation.separation);
   for (ResultTable& table : evaluation.tables) table.text = WithoutNoNumbers(table.text, "");
-  evaluation.summary = InPrint(evaluation.summary);
   const std::string sound = WithoutNoNumbers(evaluation.summary);
+  evaluation.summary = InPrint(evaluation.summary);
   if (absurd == 0 && sound == evaluation.summary) return;
   const std::string why = fmt::format("the readings of this run do not determine it{}", LeftOut(readings));
   evaluation.results["not_determined"] = why;

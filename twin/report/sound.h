@@ -29,7 +29,7 @@ inline bool IsDetermined(double u, double lower, double upper) {
   return !(u > 0.5 * (upper - lower));
 }
 
-/// Text for people: the units of columns and keys as they are written in print, "um" as "µm".
+/// Text for people: the units of columns and keys as they are written in print, "um" as "µm", and a true minus before numbers.
 std::string InPrint(const std::string& text);
 
 /// The text with `absent` in the place of every nan, inf and absurd number, and of a value whose uncertainty is one.

@@ -32,7 +32,7 @@ std::optional<std::string> DsiUnit(const std::string& unit) {
       {"um/m/K", R"(\micro\metre\metre\tothe{-1}\kelvin\tothe{-1})"},
       {"mm/min", R"(\milli\metre\minute\tothe{-1})"},
       {"deg/s", R"(\degree\second\tothe{-1})"},
-      {"mm-2", R"(\milli\metre\tothe{-2})"},
+      {"mm⁻²", R"(\milli\metre\tothe{-2})"},
       {"per_mm2", R"(\milli\metre\tothe{-2})"}};
   const auto found = units.find(unit);
   return found == units.end() ? std::nullopt : std::optional(found->second);

@@ -12,21 +12,15 @@
 #include <string_view>
 #include <utility>
 
+#include "twin/core/unit_text.h"
 #include "twin/report/sound.h"
 
 namespace twinbench::report {
 namespace {
 
 /// Longer ones first: "um_m_K" ends in "K" too.
-struct WrittenUnit {
-  std::string_view in_key, spoken;
-};
-constexpr auto kUnits = std::to_array<WrittenUnit>({{"um_m_K", "µm/m/K"}, {"um_m", "µm/m"},   {"um_K", "µm/K"}, {"mm_min", "mm/min"},
-                                                    {"deg_s", "deg/s"},   {"per_mm2", "mm-2"}, {"arcsec", "arcsec"}, {"mrad", "mrad"},
-                                                    {"degC", "°C"},     {"deg", "deg"},     {"rad", "rad"},   {"um", "µm"},
-                                                    {"nm", "nm"},         {"mm", "mm"},       {"pm", "pm"},     {"px", "px"},
-                                                    {"mV", "mV"},         {"ns", "ns"},       {"ms", "ms"},     {"V", "V"},
-                                                    {"s", "s"},           {"m", "m"}});
+constexpr auto kUnits = std::to_array<std::string_view>({"um_m_K", "um_m", "um_K", "mm_min", "deg_s", "per_mm2", "arcsec", "mrad", "degC", "deg", "rad", "um",
+                                                         "nm", "mm", "pm", "px", "mV", "ns", "ms", "V", "s", "m"});
 /// What the field calls the parts of a bench and the errors of an axis of rotation (ISO 230-7).
 constexpr auto kNames = std::to_array<std::pair<std::string_view, std::string_view>>(
     {{"target", "table under test"}, {"reference", "reference table"}, {"multitooth", "multi-tooth table"}, {"device", "device under test"},
@@ -49,10 +43,10 @@ std::string Spaced(std::string text) {
 
 NamedUnit NameAndUnit(const std::string& path) {
   const std::string key = WithoutBrackets(path);
-  for (const WrittenUnit& unit : kUnits) {
-    const std::string ending = "_" + std::string(unit.in_key);
+  for (const std::string_view unit : kUnits) {
+    const std::string ending = "_" + std::string(unit);
     if (key.size() > ending.size() && key.ends_with(ending))
-      return {Spaced(key.substr(0, key.size() - ending.size())), std::string(unit.spoken)};
+      return {Spaced(key.substr(0, key.size() - ending.size())), UnitInPrint(unit)};
   }
   return {Spaced(key), ""};
 }
