@@ -41,8 +41,9 @@ void CheckVariation(const Study& study, const Variation& variation) {
     throw InputError(variation.location, "the key " + variation.key + " cannot be varied",
                      variation.key == "seed" ? "the seed of the study, which gives every trial its own"
                                              : "one bench in one study");
-  if (std::ranges::count(study.vary, variation.key, &Variation::key) > 1)
-    throw InputError(variation.location, "the key " + variation.key + " is varied twice", "one [[vary]] for a key");
+  const Variation& first = *std::ranges::find(study.vary, variation.key, &Variation::key);
+  if (&first != &variation)
+    throw InputError(variation.location, "the key " + variation.key + " is varied twice, first in " + first.location, "one [[vary]] for a key");
   for (const std::string& value : ValuesOf(variation)) Try(study, variation.location, variation.key + "=" + value);
 }
 

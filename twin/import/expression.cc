@@ -79,9 +79,9 @@ class Parser {
 
  private:
   [[noreturn]] void Refuse() const {
+    const std::string rest = text_.substr(std::min(at_, text_.size()));
     throw InputError(
-        where_,
-        fmt::format("\"{}\" cannot be read from \"{}\" on", text_, text_.substr(std::min(at_, text_.size()))),
+        where_, rest.empty() ? fmt::format("\"{}\" ends where more is needed", text_) : fmt::format("\"{}\" cannot be read from \"{}\" on", text_, rest),
         "columns (in [ ] if their names have blanks or signs), numbers, + - * / ^ and functions such as "
         "atan2(a, b)");
   }

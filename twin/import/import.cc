@@ -137,8 +137,7 @@ class Maker {
     const auto [low, high] = std::ranges::minmax(shown);
     const std::string source = NameOf(name);
     if (low == high)
-      throw InputError(source,
-                       fmt::format("{} is {:g} in all {} rows: the channel is dead", name, low, shown.size()),
+      throw InputError(source, fmt::format("{} is {:g} in all {} rows: the channel is dead", name, low / UnitAtEnd(name)->to_SI, shown.size()),
                        "another column");
     const auto [first, last] = std::ranges::minmax(reference);
     if (first == last)

@@ -118,7 +118,7 @@ struct CircularSetup {
 struct CircularProcedureSettings {  // [circular_procedure]
   std::vector<CircularSetup> setups = {
       {"bar", 110.230 * units::mm}, {"bar", 156.278 * units::mm}, {"grid", 110.230 * units::mm}};
-  std::vector<double> feeds_m_s = {40.0 * units::mm / 60.0, 1000.0 * units::mm / 60.0};
+  std::vector<double> feeds_m_s = {40.0 * (units::mm / 60.0), 1000.0 * (units::mm / 60.0)};
   int points = 240;  // a turn in motion
   int stops = 36;    // a turn at rest; 0: none
   double dwell_s = 3.0;

@@ -71,7 +71,7 @@ struct HobProcedureSettings {  // [hob_procedure]
   std::vector<double> heads_rad = {0.0, units::kPi};
   /// The table's encoder counts from there, or from the table's origin: "reference_mark" or "table_origin".
   std::string encoder_zero = "table_origin";
-  std::vector<double> hob_speeds_rad_s = {50.0 * 2.0 * units::kPi / 60.0};
+  std::vector<double> hob_speeds_rad_s = {50.0 * (2.0 * units::kPi / 60.0)};
   std::vector<int> passes = {1, -1};  // directions of the table; at each speed
   int turns = 3;                      // of the table, a pass
   int samples_per_turn = 720;         // every so many edges of the table's encoder one is kept
