@@ -13,7 +13,7 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(CODE "execute_process(
   COMMAND ${PROJECT_SOURCE_DIR}/tools/program_pages $<TARGET_FILE:twinbench> ${PROJECT_VERSION}
     \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1
-    \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+    \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}
   COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
 
 # The rooms: find_package(twinbench), twinbench::benches and what it needs.

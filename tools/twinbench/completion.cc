@@ -16,32 +16,59 @@ std::string OptionsOf(const CLI::App& command) {
   return words;
 }
 
+/// The commands, and as cases of a shell the options of each, between what begins and ends a list there.
+struct Known {
+  std::string commands, cases;
+};
+
+Known KnownOf(const CLI::App& app, const char* begin, const char* end) {
+  Known known;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    known.commands += (known.commands.empty() ? "" : " ") + command->get_name();
+    known.cases += fmt::format("    {}) found={}{}{} ;;\n", command->get_name(), begin, OptionsOf(*command), end);
+  }
+  return known;
+}
+
 /// Commands first, then the options of the command, and files everywhere.
 std::string ForBash(const CLI::App& app) {
-  std::string commands, cases;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    commands += (commands.empty() ? "" : " ") + command->get_name();
-    cases += fmt::format("    {}) words=\"{}\" ;;\n", command->get_name(), OptionsOf(*command));
-  }
+  const Known known = KnownOf(app, "\"", "\"");
   return fmt::format(
       "# eval \"$(twinbench completion)\" in ~/.bashrc\n"
       "_twinbench() {{\n"
-      "  local here=\"${{COMP_WORDS[COMP_CWORD]}}\" words=\"\"\n"
+      "  local here=\"${{COMP_WORDS[COMP_CWORD]}}\" found=\"\"\n"
       "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
       "    COMPREPLY=($(compgen -W \"{} --help --version\" -- \"$here\"))\n"
       "    return\n"
       "  fi\n"
       "  case \"${{COMP_WORDS[1]}}\" in\n{}"
       "  esac\n"
-      "  COMPREPLY=($(compgen -W \"$words\" -- \"$here\") $(compgen -f -- \"$here\"))\n"
+      "  COMPREPLY=($(compgen -W \"$found\" -- \"$here\") $(compgen -f -- \"$here\"))\n"
       "}}\n"
       "complete -o filenames -F _twinbench twinbench\n",
-      commands, cases);
+      known.commands, known.cases);
 }
 
-/// zsh reads what bash does.
+/// The same; as a file _twinbench of $fpath too.
 std::string ForZsh(const CLI::App& app) {
-  return "# eval \"$(twinbench completion zsh)\" in ~/.zshrc\nautoload -Uz compinit bashcompinit && compinit && bashcompinit\n" + ForBash(app);
+  const Known known = KnownOf(app, "(", ")");
+  return fmt::format(
+      "#compdef twinbench\n"
+      "# eval \"$(twinbench completion zsh)\" in ~/.zshrc\n"
+      "_twinbench() {{\n"
+      "  local -a found\n"
+      "  if (( CURRENT == 2 )); then\n"
+      "    compadd -- {} --help --version\n"
+      "    return\n"
+      "  fi\n"
+      "  case $words[2] in\n{}"
+      "  esac\n"
+      "  compadd -- $found\n"
+      "  _files\n"
+      "}}\n"
+      "(( $+functions[compdef] )) || {{ autoload -Uz compinit && compinit }}\n"
+      "if [[ $funcstack[1] == _twinbench ]]; then _twinbench \"$@\"; else compdef _twinbench twinbench; fi\n",
+      known.commands, known.cases);
 }
 
 std::string ForFish(const CLI::App& app) {
