@@ -4,6 +4,7 @@
 
 #include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/progress.h"
@@ -76,8 +77,7 @@ void AddBudget(CLI::App& app) {
   command->add_option("scenario", options->scenario, "TOML file")->required();
   command->add_option("--of", options->figures, "the place in results.json of the figures to be shared out")
       ->capture_default_str();
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
-      ->allow_extra_args(false);
+  AddSet(*command, options->overrides);
   AnswerWith(*command, "the result", [options](JsonAnswer& answer) { Share(*options, answer); });
 }
 

@@ -9,6 +9,7 @@
 #include "tools/twinbench/campaign_page.h"
 #include "tools/twinbench/campaign_table.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
@@ -112,9 +113,8 @@ void AddCampaign(CLI::App& app) {
   auto* command = app.add_subcommand("campaign", "Simulate a scenario many times with other keys and seeds, and summarise the trials");
   auto options = std::make_shared<CampaignOptions>();
   command->add_option("study", options->study, "study file (TOML)")->required();
-  command->add_option("-o,--output", options->table, "table of the results (SQLite), made by the command");
-  command->add_option("--threads", options->threads, "trials at a time in this process; default: one for each core")
-      ->check(CLI::Range(1, 4096));
+  AddOutput(*command, options->table, "the table of the results (SQLite)");
+  AddThreads(*command, options->threads);
   command->add_flag("--resume", options->resume, "go on with a table; trials that are in it are not done again");
   command->add_flag("--mpi", options->mpi, "share the trials with the other ranks; the default under mpirun");
   command->add_option("--csv", options->csv, "also write the table here, one line per trial");

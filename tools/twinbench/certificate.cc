@@ -8,6 +8,7 @@
 
 #include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/xmllint.h"
@@ -148,7 +149,7 @@ void AddCertificate(CLI::App& app) {
   auto options = std::make_shared<CertificateOptions>();
   command->add_option("run", options->run, "folder of a run that is finished");
   command->add_option("--with", options->laboratory, "TOML file of the laboratory, its customer and the item");
-  command->add_option("-o,--output", options->output, "file to write, - for stdout")->capture_default_str();
+  AddTextOutput(*command, options->output, "the certificate")->capture_default_str();
   command->add_option("--schema", options->schema, "folder with dcc.xsd and the schemas that it imports: validate with xmllint first, and write nothing if it fails");
   command->add_flag("--template", options->wants_template, "write the TOML file to fill in instead");
   AddForce(*command, options->force);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/planned_run.h"
 #include "tools/twinbench/run_folder.h"
@@ -79,8 +80,7 @@ void AddCheck(CLI::App& app) {
   auto* command = app.add_subcommand("check", "Say whether a scenario can be simulated, how long it takes, which u to expect and what is not separable");
   auto options = std::make_shared<CheckOptions>();
   command->add_option("scenario", options->scenario, "scenario file (TOML)")->required();
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
-      ->allow_extra_args(false);
+  AddSet(*command, options->overrides);
   AnswerWith(*command, "what was found", [options](JsonAnswer& answer) { Check(*options, answer); });
 }
 

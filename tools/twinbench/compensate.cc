@@ -4,6 +4,7 @@
 
 #include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
@@ -81,8 +82,8 @@ void AddCompensate(CLI::App& app) {
       "compensate", "Compute from the index error of a table the corrections that its controller should add");
   auto options = std::make_shared<CompensateOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
-  command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
-  command->add_option("-o,--output", options->table, "write the table here");
+  AddScenarioOfReadings(*command, options->scenario);
+  AddOutput(*command, options->table, "the table");
   command->add_option("--form", options->form, FormsText())->capture_default_str();
   command->add_option("--axis", options->axis, "what the controller calls the axis")->capture_default_str();
   command->add_option("--points", options->how.points, "entries per turn; 0: as the orders and the form need")
@@ -97,8 +98,7 @@ void AddCompensate(CLI::App& app) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--check", options->check, "a run with this table at work: compare it with the prediction");
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
-      ->allow_extra_args(false);
+  AddSet(*command, options->overrides);
   AnswerWith(*command, "the result", [options](JsonAnswer& answer) { Compensate(*options, answer); });
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/follow.h"
 #include "tools/twinbench/json_answer.h"
@@ -43,7 +44,7 @@ namespace fs = std::filesystem;
 struct DiagnoseOptions {
   std::string source, scenario, extended, cache, model = "rigorous";
   std::vector<std::string> overrides, excluded;
-  bool follow = false, verbose = false;
+  bool follow = false;
   double false_alarm_rate = 0.01;
 };
 
@@ -164,7 +165,7 @@ void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
       fmt::print(stderr, "twinbench: {} is read-only: the diagnosis is not put into its results.json\n",
                  options.source);
   }
-  if (!answer.IsOnStdout()) fmt::print("{}", report::WithoutNoNumbers(report::DiagnosisText(page, {LettersOfStdout(), options.verbose})));
+  if (!answer.IsOnStdout()) fmt::print("{}", report::WithoutNoNumbers(report::DiagnosisText(page, {LettersOfStdout(), answer.verbose()})));
   if (!disagreement.is_plausible)
     throw InputError(options.source, disagreement.line, "readings that the scenario describes");
 }
@@ -180,17 +181,13 @@ void AddDiagnose(CLI::App& app) {
   auto* command = app.add_subcommand("diagnose", "Identify the causes by which readings differ from a scenario");
   auto options = std::make_shared<DiagnoseOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
-  command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
-  command->add_option("-o,--output", options->extended, "write the scenario extended by what was found");
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
-      ->allow_extra_args(false);
-  command->add_option("--model", options->model, "rigorous: the exact model; published: the paper's equations")
-      ->check(CLI::IsMember({"published", "rigorous"}))
-      ->capture_default_str();
+  AddScenarioOfReadings(*command, options->scenario);
+  AddOutput(*command, options->extended, "the scenario extended by what was found");
+  AddSet(*command, options->overrides);
+  AddEstimator(*command, options->model, ",--model");
   command->add_option("--strike", options->excluded, "exclude an effect of the catalogue")
       ->allow_extra_args(false);
   command->add_option("--cache", options->cache, "folder that keeps calibrated thresholds; else the user's cache");
-  command->add_flag("--verbose", options->verbose, "print every block, not only the summary");
   command->add_flag("--follow", options->follow, "watch a run while it is recorded and raise alarms");
   command->add_option("--false-alarm-rate", options->false_alarm_rate, "of --follow, per run")->capture_default_str();
   AnswerWith(*command, "diagnosis.json", [options](JsonAnswer& answer) { Diagnose(*options, answer); });

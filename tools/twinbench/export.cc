@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/overwriting.h"
 #include "twin/core/csv.h"
@@ -67,7 +68,7 @@ void AddExport(CLI::App& app) {
   auto* command = app.add_subcommand("export", "Write the readings of a run as readings.csv");
   auto options = std::make_shared<ExportOptions>();
   command->add_option("run", options->folder, "folder of the run")->required();
-  command->add_option("--readings", options->readings, "file to write, - for stdout")->capture_default_str();
+  AddTextOutput(*command, options->readings, "the readings", ",--readings")->capture_default_str();
   AddForce(*command, options->force);
   AnswerWith(*command, "what was written, or without --readings the readings by their columns,", [options](JsonAnswer& answer) { Export(*options, answer); });
 }

@@ -10,6 +10,7 @@
 
 #include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/run_folder.h"
@@ -137,14 +138,13 @@ void AddImport(CLI::App& app) {
   auto options = std::make_shared<ImportOptions>();
   command->add_option("files", options->files, "readings.csv, or recordings of any layout")->required();
   command->add_option("--scenario", options->scenario, "the bench that made them; left out: its usual one");
-  command->add_option("-o,--output", options->folder, "folder of the new run");
+  AddOutput(*command, options->folder, "the folder of the run");
   command->add_flag("--look", options->look, "say what is understood and what is needed, write nothing");
   command->add_option("--map", options->map, "ready map or TOML file that says what the files do not (help map)");
   command->add_option("--column", options->columns, "one quantity: reference_deg='Axis 1.ActPos'")
       ->allow_extra_args(false);
   command->add_option("--most-readings", options->most_readings, "longer recordings are averaged in blocks");
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
-      ->allow_extra_args(false);
+  AddSet(*command, options->overrides);
   AnswerWith(*command, "what came of the import", [options](JsonAnswer& answer) { Import(*options, answer); });
 }
 

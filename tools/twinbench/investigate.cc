@@ -8,6 +8,7 @@
 
 #include "tools/twinbench/bench_means.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/investigated_bench.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/live_page.h"
@@ -129,9 +130,8 @@ void AddInvestigate(CLI::App& app) {
                       "smallest effect to detect: where nothing is found, measure on until a cause of so many noise standard deviations in "
                       "one run would be found; 0: stop after the first run. 2 unless there is a goal")
       ->check(CLI::Range(0.0, 100.0));
-  command->add_option("-o,--output", options->folder, "folder of the investigation; goes on if it was begun");
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
-      ->allow_extra_args(false);
+  AddOutput(*command, options->folder, "the folder of the investigation, which goes on if it was begun,");
+  AddSet(*command, options->overrides);
   command->add_flag("--ask", options->ask,
                     "confirm every run; also offers those for which somebody has to change the bench or its temperature");
   AddWebOption(*command, options->web);

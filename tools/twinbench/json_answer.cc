@@ -11,6 +11,7 @@
 #include <set>
 #include <string_view>
 
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/exit_code.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
@@ -94,7 +95,7 @@ std::string TextOf(const nlohmann::json& json) {
 
 }  // namespace
 
-JsonAnswer::JsonAnswer(std::string to) : to_(std::move(to)) {
+JsonAnswer::JsonAnswer(std::string to, bool verbose) : to_(std::move(to)), verbose_(verbose) {
   if (!IsOnStdout()) return;
   FlushStdout();
   stdout_ = dup(STDOUT_FILENO);
@@ -124,13 +125,15 @@ void AnswerWith(CLI::App& command, const std::string& what, std::function<void(J
       ->type_name("[FILE]")
       ->expected(0, 1)
       ->default_str("-");
-  const bool computes = Computes(command.get_name());
-  command.callback([to, computes, action = std::move(action)] {
-    JsonAnswer answer(*to);
+  const std::string name = command.get_name();
+  command.callback([to, name, talk = AddTalk(command), action = std::move(action)] {
+    JsonAnswer answer(*to, talk->verbose);
+    if (talk->quiet) ShowNoProgress();
     std::optional<StillWorking> patience;
-    if (computes) patience.emplace();
+    if (Computes(name)) patience.emplace();
     try {
       action(answer);
+      if (talk->verbose) SayWhatItTook(name);
     } catch (const std::exception& error) {
       if (answer.IsOnStdout() && !answer.IsWritten()) answer.Write(FailureJson(error));
       throw;

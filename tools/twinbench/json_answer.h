@@ -12,8 +12,9 @@ namespace twinbench::tools {
 /// Where the document of one command goes.
 class JsonAnswer {
  public:
-  /// @param to  Empty: nobody asked; "-": stdout, and what is printed while this lives goes to stderr; else a file.
-  explicit JsonAnswer(std::string to = "");
+  /// @param to       Empty: nobody asked; "-": stdout, and what is printed while this lives goes to stderr; else a file.
+  /// @param verbose  Whether the text beside it shall be in full.
+  explicit JsonAnswer(std::string to = "", bool verbose = false);
   ~JsonAnswer();
   JsonAnswer(const JsonAnswer&) = delete;
   JsonAnswer& operator=(const JsonAnswer&) = delete;
@@ -21,6 +22,7 @@ class JsonAnswer {
   const std::string& to() const { return to_; }
   bool IsWanted() const { return !to_.empty(); }
   bool IsOnStdout() const { return to_ == "-"; }
+  bool verbose() const { return verbose_; }
   /// Nothing where nobody asked. Once: a second document is no answer any more.
   /// @throws BenchError if a disk or pipe refuses.
   void Write(const nlohmann::json& json);
@@ -28,11 +30,12 @@ class JsonAnswer {
 
  private:
   std::string to_;
+  bool verbose_ = false;
   int stdout_ = -1;  // descriptor of what was stdout
   bool is_written_ = false;
 };
 
-/// Hangs the action under a command, with `--json`. Where the answer goes to stdout and the action throws before it has written one, the
+/// Hangs the action under a command, with `--json`, `--quiet`, `--verbose` and `--version`. Where the answer goes to stdout and the action throws before it has written one, the
 /// failure is the answer (FailureJson).
 /// @param what  The command writes: "the score".
 void AnswerWith(CLI::App& command, const std::string& what, std::function<void(JsonAnswer&)> action);

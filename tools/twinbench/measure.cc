@@ -8,6 +8,7 @@
 #include "hw_bridge/replay/replay_bench.h"
 #include "tools/twinbench/commanded.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/live_page.h"
 #include "tools/twinbench/measure.h"
@@ -156,9 +157,8 @@ void AddMeasure(CLI::App& app) {
   command->add_option("scenario", options->scenario, "scenario file (TOML)")->required();
   command->add_option("--bench", options->bench, "bench file (TOML): the devices and how they are reached")
       ->required();
-  command->add_option("-o,--output", options->folder, "folder of the run, made by the command");
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
-      ->allow_extra_args(false);
+  AddOutput(*command, options->folder, "the folder of the run");
+  AddSet(*command, options->overrides);
   command
       ->add_option("--compensation", options->compensations,
                    "target=FILE.csv: corrections that table is commanded with")

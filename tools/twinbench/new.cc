@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/overwriting.h"
 #include "twin/core/bench_format.h"
@@ -38,7 +39,7 @@ void AddNew(CLI::App& app) {
   auto* command = app.add_subcommand("new", "Write a scenario of a bench with every key explained");
   auto options = std::make_shared<NewOptions>();
   command->add_option("bench", options->bench, "name of the bench, as `twinbench list` has it")->required();
-  command->add_option("-o,--output", options->file, "file to write, - for stdout")->capture_default_str();
+  AddTextOutput(*command, options->file, "the scenario")->capture_default_str();
   AddForce(*command, options->force);
   AnswerWith(*command, "what was written", [options](JsonAnswer& answer) { MakeNew(*options, answer); });
 }

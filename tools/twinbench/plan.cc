@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/passing_run.h"
@@ -229,9 +230,8 @@ void AddPlan(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--goal", options->goal, "the result that counts: target.ez; left out: all");
-  command->add_option("-o,--output", options->next, "write the scenario of the run to be made next here; of a programme all, as next-1-of-3-NAME.toml");
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
-      ->allow_extra_args(false);
+  AddOutput(*command, options->next, "the scenario of the run to be made next, or all of a programme as next-1-of-3-NAME.toml,");
+  AddSet(*command, options->overrides);
   AddForce(*command, options->force);
   AnswerWith(*command, "the result", [options](JsonAnswer& answer) { Plan(*options, answer); });
 }

@@ -18,9 +18,11 @@ std::string Clock(double seconds_s) {
 
 using Steady = std::chrono::steady_clock;
 std::atomic<Steady::rep> last_said{0};
+std::atomic<bool> shows_progress{true};
 
 /// A terminal that is gone must not end a measurement.
 void Say(const std::string& text) {
+  if (!shows_progress) return;
   last_said = Steady::now().time_since_epoch().count();
   std::fputs(text.c_str(), stderr);
   std::fflush(stderr);
@@ -79,6 +81,10 @@ void TrialsLine::Show(std::int64_t done, std::int64_t planned, std::int64_t lost
       fmt::format("{:>5} of {} trials, {} lost, {} left", done, planned, lost, Clock(remaining_s));
   Say(on_terminal_ ? "\r\033[K" + text : text + "\n");
   line_open_ = on_terminal_;
+}
+
+void ShowNoProgress() {
+  shows_progress = false;
 }
 
 void Doing(const std::string& what) {

@@ -46,6 +46,9 @@ class TrialsLine {
   bool line_open_ = false;
 };
 
+/// From here on no progress is shown: --quiet.
+void ShowNoProgress();
+
 /// What the program computes now, "run 3 of 9: other dwells": StillWorking shows it. Empty: it is about to write.
 void Doing(const std::string& what);
 

@@ -4,6 +4,7 @@
 
 #include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/reported.h"
 #include "tools/twinbench/overwriting.h"
@@ -91,7 +92,7 @@ void AddReport(CLI::App& app) {
   auto options = std::make_shared<ReportOptions>();
   command->add_option("source", options->source, "folder of a run or an investigation, diagnosis.json, plan's JSON, or a campaign's table")->required();
   command->add_option("--score", options->score, "what `score --json` has written; else score.json of the folder, if there");
-  command->add_option("-o,--output", options->output, "write the page here, - for stdout; else report.html in the folder, or beside the file");
+  AddTextOutput(*command, options->output, "the page, else report.html in the folder or beside the file,");
   command->add_option("--svg", options->pictures, "write every plot as an SVG picture into this folder; without -o no page is made");
   AddForce(*command, options->force);
   AnswerWith(*command, "what was written", [options](JsonAnswer& answer) { MakeReport(*options, answer); });

@@ -4,6 +4,7 @@
 
 #include "tools/twinbench/commanded.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/live_page.h"
@@ -77,7 +78,7 @@ void AddRun(CLI::App& app) {
   auto* command = app.add_subcommand("run", "Simulate a scenario, then measure and separate its readings");
   auto options = std::make_shared<RunOptions>();
   command->add_option("scenario", options->scenario, "scenario file (TOML)")->required();
-  command->add_option("-o,--output", options->folder, "folder of the run, made by the command")->required();
+  AddOutput(*command, options->folder, "the folder of the run")->required();
   command->add_option("--seed", options->seed, "instead of the scenario's seed");
   command->add_flag("--noise-free", options->noise_free, "no random contribution and no quantisation");
   command->add_option("--fidelity", options->fidelity, "of the mechanics: kinematic, linear or bullet")
@@ -85,8 +86,7 @@ void AddRun(CLI::App& app) {
   command
       ->add_option("--errors", options->errors, "target=FILE.csv or reference=FILE.csv: that table's true errors")
       ->allow_extra_args(false);
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
-      ->allow_extra_args(false);
+  AddSet(*command, options->overrides);
   command
       ->add_option("--compensation", options->compensations,
                    "target=FILE.csv: corrections that table is commanded with")

@@ -5,12 +5,14 @@
 
 #include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/evaluated.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
+#include "twin/core/run_record.h"
 #include "twin/report/error_table.h"
 #include "twin/report/evaluation.h"
 #include "twin/report/page/scored.h"
@@ -26,8 +28,7 @@ struct ScoreOptions {
 void PrintScore(const ScoreOptions& options, JsonAnswer& answer) {
   const RunFolder folder{options.folder};
   RequireOutput(answer.to(), {folder.truth(), folder.scenario(), options.against});
-  if (!std::filesystem::exists(folder.record()))
-    throw InputError(folder.path, "there is no record.sqlite in it", "the folder of a run");
+  static_cast<void>(RunRecord::Open(folder.path));  // whatever is no run is told first
   if (!std::filesystem::exists(folder.truth()))
     throw InputError(folder.truth(), "is not there",
                      "a simulated run: what was measured or imported has no truth");
@@ -37,7 +38,7 @@ void PrintScore(const ScoreOptions& options, JsonAnswer& answer) {
   if (!options.against.empty()) score = report::ScoreAgainst(score.values, options.against);
   answer.Write(ScoreJson(score));
   if (answer.IsOnStdout()) return;
-  if (options.positions) fmt::print("{}\n", score.positions);
+  if (options.positions || answer.verbose()) fmt::print("{}\n", score.positions);
   fmt::print("{}", score.text);
 }
 
@@ -53,11 +54,9 @@ void AddScore(CLI::App& app) {
   auto* command = app.add_subcommand("score", "Compare a simulated run with its truth");
   auto options = std::make_shared<ScoreOptions>();
   command->add_option("run", options->folder, "folder of the run")->required();
-  command->add_option("--estimator", options->estimator, "rigorous: weighted least squares (exact model); published: the paper's equations")
-      ->check(CLI::IsMember({"published", "rigorous"}))
-      ->capture_default_str();
+  AddEstimator(*command, options->estimator);
   command->add_option("--against", options->against, "score your own result: CSV with columns result, value and u, as separate --tables writes them");
-  command->add_flag("--positions", options->positions, "also list every position");
+  command->add_flag("--positions", options->positions, "also list every position, as --verbose does");
   AnswerWith(*command, "the score", [options](JsonAnswer& answer) { PrintScore(*options, answer); });
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
@@ -46,14 +47,10 @@ void AddSeparate(CLI::App& app) {
       "separate", "Separate readings into the errors of the table under test and of its reference");
   auto options = std::make_shared<SeparateOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
-  command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
-  command->add_option("--tables", options->tables,
-                      "write errors by position with u (errors.csv) and the bench's other tables into this folder, or the errors alone into this FILE.csv");
-  command->add_option("--estimator", options->estimator, "rigorous: weighted least squares (exact model); published: the paper's equations")
-      ->check(CLI::IsMember({"published", "rigorous"}))
-      ->capture_default_str();
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
-      ->allow_extra_args(false);
+  AddScenarioOfReadings(*command, options->scenario);
+  AddOutput(*command, options->tables, "errors by position with u (errors.csv) and the bench's other tables into a folder, or the errors alone into a FILE.csv,", ",--tables");
+  AddEstimator(*command, options->estimator);
+  AddSet(*command, options->overrides);
   AnswerWith(*command, "separation.json", [options](JsonAnswer& answer) { Separate(*options, answer); });
 }
 

@@ -11,6 +11,7 @@
 #include "hw_bridge/machine_file.h"
 #include "hw_bridge/serve/server.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/live_page.h"
 #include "tools/twinbench/overwriting.h"
@@ -180,8 +181,7 @@ void AddServe(CLI::App& app) {
   auto* command = app.add_subcommand("serve", "Emulate the bench as network instruments, until Ctrl-C");
   auto arguments = std::make_shared<ServeArguments>();
   command->add_option("scenario", arguments->scenario, "scenario file (TOML)")->required();
-  command->add_option("--set", arguments->overrides, "override a key of the scenario: procedure.positions=12")
-      ->allow_extra_args(false);
+  AddSet(*command, arguments->overrides);
   command->add_option("--speed", arguments->speed, "bench seconds per real second, or max")->capture_default_str();
   command->add_option("--bind", arguments->serve.bind, "address to be reached at")->capture_default_str();
   AddPort(*command, "--iiod-port", arguments->serve.iiod_port, "A/D converter, IIOD; 0: any free port");

@@ -7,6 +7,7 @@
 
 #include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/progress.h"
@@ -88,19 +89,15 @@ void AddUncertainty(CLI::App& app) {
   auto options = std::make_shared<UncertaintyOptions>();
   options->trials.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
-  command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
-  command->add_option("--estimator", options->estimator, "rigorous: weighted least squares (exact model); published: the paper's equations")
-      ->check(CLI::IsMember({"rigorous", "published"}))
-      ->capture_default_str();
+  AddScenarioOfReadings(*command, options->scenario);
+  AddEstimator(*command, options->estimator);
   command->add_flag("--monte-carlo", options->monte_carlo, "propagate distributions by Monte Carlo trials as well (Supplement 1)");
   command->add_option("--trials", options->trials.most_trials, "stop after so many at the latest")
       ->check(CLI::Range(1000, 100000000))
       ->capture_default_str();
   command->add_option("--seed", options->trials.seed, "of the trials")->capture_default_str();
-  command->add_option("--threads", options->trials.threads, "that share the trials; the result is the same")
-      ->check(CLI::Range(1, 1024));
-  command->add_option("--set", options->overrides, "override a key: laser.u_wavelength_nm=0.01")
-      ->allow_extra_args(false);
+  AddThreads(*command, options->trials.threads);
+  AddSet(*command, options->overrides);
   AnswerWith(*command, "the result", [options](JsonAnswer& answer) { State(*options, answer); });
 }
 
