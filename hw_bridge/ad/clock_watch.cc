@@ -9,18 +9,18 @@
 namespace twinbench::hw {
 
 void ClockWatch::Compare(std::int64_t card_ns, Time bench, Duration latency) {
-  const bool compares = std::exchange(known_, false);
-  const double card_s = static_cast<double>(card_ns - last_.card_ns) * 1e-9,
-               bench_s = ToSeconds(bench - last_.bench);
-  const double allowed_s = 1e-4 * std::abs(bench_s) + ToSeconds(last_.latency + latency) + 1e-3;
+  const bool compares = std::exchange(known_, true) && bench >= last_.bench;  // else the bench has begun anew
+  const Meeting before = std::exchange(last_, {card_ns, bench, latency});
+  const double card_s = static_cast<double>(card_ns - before.card_ns) * 1e-9,
+               bench_s = ToSeconds(bench - before.bench);
+  const double allowed_s = 1e-4 * bench_s + ToSeconds(before.latency + latency) + 1e-3;
+  if (!compares) first_ = last_;
   if (compares && std::abs(card_s - bench_s) > allowed_s) {
+    first_ = last_;
     throw DeviceFault(FaultKind::kClock, "adc",
                       "since the block before " + std::to_string(card_s) + " s have passed on the card and " +
                           std::to_string(bench_s) + " s on the bench");
   }
-  known_ = true;
-  last_ = {card_ns, bench, latency};
-  if (!compares || bench < first_.bench) first_ = last_;  // either clock has begun anew
 }
 
 ClockWatch::Drift ClockWatch::DriftSoFar() const {

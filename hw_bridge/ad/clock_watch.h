@@ -14,8 +14,8 @@ class ClockWatch {
   /// @param card_ns  The card's time of a block's first scan.
   /// @param bench    Bench time when the block was asked for; the scan came at most `latency` later.
   /// @throws DeviceFault kClock if the times passed since the block before differ by more than 100 ppm, both
-  /// latencies
-  ///         and 1 ms. The next block is then the first.
+  /// latencies and 1 ms. The next block is held against this one all the same: stamps that stand still, or those of blocks that
+  /// are handed over again, do not pass at every second attempt.
   void Compare(std::int64_t card_ns, Time bench, Duration latency);
   void Forget() { known_ = false; }
 
