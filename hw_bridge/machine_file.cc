@@ -81,6 +81,7 @@ void AddIndexer(std::vector<ScenarioKey>& keys, MachineFile& file) {
   t.Described(file.indexer, {"scpi", "dialogue", "console", "none"});
   t.Text("move", &file.indexer.words.move, {}, "command that seats it at {tooth}, which is at {deg}");
   t.Text("done", &file.indexer.words.done, {}, "query that is answered by 1 once it is seated; empty: none");
+  t.Text("stop", &file.indexer.words.stop, {}, "command that ends a seating, which is not answered; empty: none");
   t.Add("move_timeout", kSeconds, Above(0.0, 3600.0), &file.indexer_timeout_s, "of one seating");
 }
 
@@ -99,7 +100,7 @@ class MachineFileCheck {
     file_.machine.kind == "linuxcnc" ? CheckLinuxCnc(axes) : RefuseLinuxCnc(axes);
     CheckInstruments();
     CheckConnection("indexer", file_.indexer);
-    if (file_.indexer.kind == "dialogue") RefuseWords("indexer", {"move", "done"});
+    if (file_.indexer.kind == "dialogue") RefuseWords("indexer", {"move", "done", "stop"});
     CheckPairs();
     CheckConnection("fixture", file_.fixture);
     CheckConnection("clock", file_.clock);

@@ -28,7 +28,7 @@ class OpenedMachine : public OpenMachine {
         clock_(OpenClock(file.clock, elapsed, run, stop_asked)),
         machine_(OpenAxes(file, axes)),
         instruments_(OpenInstruments(file, columns), *clock_),
-        indexer_(OpenIndexer(file)),
+        indexer_(OpenIndexer(file, stop_asked)),
         fixture_(OpenFixture(file.fixture)) {
     machine_->HearStop(stop_asked);
   }
@@ -106,11 +106,11 @@ class OpenedMachine : public OpenMachine {
                                               s.words.where);
   }
 
-  std::unique_ptr<Indexer> OpenIndexer(const MachineFile& file) {
+  std::unique_ptr<Indexer> OpenIndexer(const MachineFile& file, const std::function<bool()>& stop_asked) {
     if (file.indexer.kind == "none") return nullptr;
     if (file.indexer.kind == "console") return std::make_unique<ConsoleIndexer>(Operator(std::cin, std::cerr));
     return std::make_unique<DescribedIndexer>(conversations_.LineOf("indexer", file.indexer), file.indexer.words,
-                                              file.indexer_timeout_s);
+                                              file.indexer_timeout_s, stop_asked);
   }
 
   std::unique_ptr<MachineFixture> OpenFixture(const ControlSettings& settings) {

@@ -109,6 +109,24 @@ void DescribedGoniometer::MoveTo(double yaw_rad, double tilt_rad) {
 }
 
 void DescribedIndexer::IndexTo(int tooth, double angle_rad) {
+  try {
+    Seat(tooth, angle_rad);
+  } catch (const DeviceFault&) {
+    SayStop();
+    throw;
+  }
+}
+
+void DescribedIndexer::SayStop() {
+  if (words_.stop.empty()) return;
+  try {
+    line_.SayFirst(words_.stop);
+    line_.Tell(words_.stop);
+  } catch (const DeviceFault&) {  // why the seating failed is what is told
+  }
+}
+
+void DescribedIndexer::Seat(int tooth, double angle_rad) {
   const auto end = std::chrono::steady_clock::now() + FromSeconds(move_timeout_s_);
   const std::string command =
       Filled(words_.move, {{"{tooth}", std::to_string(tooth)}, {"{deg}", PrintInUnit(angle_rad, units::deg)}});
@@ -117,6 +135,7 @@ void DescribedIndexer::IndexTo(int tooth, double angle_rad) {
     if (std::chrono::steady_clock::now() > end)
       line_.Fail(FaultKind::kNotInPosition,
                  fmt::format("tooth {} is not seated after {:g} s", tooth, move_timeout_s_));
+    line_.RequireGoingOn();
     std::this_thread::sleep_for(kLookAtIndexer);
   }
 }

@@ -27,7 +27,12 @@ void DeviceLine::SayFirst(const std::string& command) {
 
 std::string DeviceLine::Ask(const std::string& query, Duration beyond) {
   const Waiting waiting(device_, beyond);
-  return dialogue_->Ask(device_, query + "\n", Patience() + beyond);
+  if (beyond == Duration(0) || !stop_asked_) return dialogue_->Ask(device_, query + "\n", Patience() + beyond);
+  return dialogue_->Ask(device_, query + "\n", Patience() + beyond, [this] { RequireGoingOn(); });
+}
+
+void DeviceLine::RequireGoingOn() const {
+  if (stop_asked_ && stop_asked_()) throw DeviceFault(FaultKind::kStopped, "operator", "the run was stopped");
 }
 
 double DeviceLine::AskNumber(const std::string& query, double to_SI) {

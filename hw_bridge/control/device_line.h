@@ -19,6 +19,10 @@ class DeviceLine {
   /// @param beyond  The answer may take so much longer than the timeout.
   /// @throws DeviceFault as Dialogue::Ask.
   std::string Ask(const std::string& query, Duration beyond = {});
+  /// From here on `stop_asked` is asked every 50 ms while an answer is waited for that may take longer than the timeout.
+  void HearStop(std::function<bool()> stop_asked) { stop_asked_ = std::move(stop_asked); }
+  /// @throws DeviceFault kStopped if the operator said so.
+  void RequireGoingOn() const;
   /// Says something that is not answered.
   void Tell(const std::string& command) { dialogue_->Tell(device_, command + "\n", Patience()); }
   /// Says, before anything else, what cannot wait (Dialogue::SayFirst); for some seconds from here on no answer is waited for longer
@@ -47,6 +51,7 @@ class DeviceLine {
   Dialogue* dialogue_;
   std::string device_;
   Duration timeout_;
+  std::function<bool()> stop_asked_;
   std::chrono::steady_clock::time_point hurries_until_{};
 };
 

@@ -14,6 +14,7 @@ constexpr Duration kFirstPause = std::chrono::milliseconds(20);
 constexpr Duration kLongestPause = std::chrono::milliseconds(500);
 /// A serial controller that answers at all has begun to within this time.
 constexpr Duration kQuiet = std::chrono::milliseconds(100);
+constexpr Duration kHearsWhileItWaits = std::chrono::milliseconds(50);  // from look to look whether a stop was asked for
 
 }  // namespace
 
@@ -124,10 +125,24 @@ void Dialogue::Tell(const std::string& device, const std::string& text, Duration
   Send(device, text, patience);
 }
 
-std::string Dialogue::Ask(const std::string& device, const std::string& text, Duration patience) {
+void Dialogue::AwaitSomething(Duration patience, const std::function<void()>& meanwhile) {
+  const auto end = SteadyClock::now() + patience;
+  while (!link_->HasUnread() && SteadyClock::now() < end) {
+    try {
+      meanwhile();
+    } catch (...) {
+      Close();
+      throw;
+    }
+    std::this_thread::sleep_for(kHearsWhileItWaits);
+  }
+}
+
+std::string Dialogue::Ask(const std::string& device, const std::string& text, Duration patience, const std::function<void()>& meanwhile) {
   Open(device, patience);
   if (link_->HasUnread()) Fail(FaultKind::kProtocol, device, "an answer came that nobody had asked for");
   Send(device, text, patience);
+  if (meanwhile) AwaitSomething(patience, meanwhile);
   return NextLine(device, patience);
 }
 

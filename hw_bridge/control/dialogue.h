@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,8 +38,9 @@ class Dialogue {
   void SayFirst(const std::string& word, const std::string& device, Duration patience);
 
   /// Sends `text`, lines with their ends, and returns the line that comes back.
+  /// @param meanwhile  Called every 50 ms until it comes; what it throws leaves the answer to nobody.
   /// @throws DeviceFault kTimeout, kDropped, kProtocol, and what Open throws.
-  std::string Ask(const std::string& device, const std::string& text, Duration patience);
+  std::string Ask(const std::string& device, const std::string& text, Duration patience, const std::function<void()>& meanwhile = {});
   /// Sends `text`, which is not answered.
   void Tell(const std::string& device, const std::string& text, Duration patience);
   /// Takes one more line, of an answer that has several.
@@ -57,6 +59,7 @@ class Dialogue {
   void ReadOldAnswersAway(Duration patience);
   void Identify(const std::string& device, Duration patience);
   void Introduce(const std::string& device, const std::string& introduction, Duration patience);
+  void AwaitSomething(Duration patience, const std::function<void()>& meanwhile);
   std::string AwaitIdentity(const std::string& device, Duration patience);
   void Send(const std::string& device, const std::string& text, Duration patience);
   [[noreturn]] void Fail(FaultKind kind, const std::string& device, const std::string& why);

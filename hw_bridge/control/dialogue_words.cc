@@ -147,6 +147,7 @@ std::vector<ScenarioKey> DialogueWords::Keys() {
       TextKey("move", "command", &move, "an indexer: seats at {tooth}, which is at {deg}"),
       TextKey("move", "done", &done, "query whether it is seated; empty: it answers when it is"),
       TextKey("move", "seated", &seated, "what that is answered then"),
+      TextKey("move", "stop", &stop, "command that ends a seating; it is not answered"),
       TextKey("tilt", "command", &tilt, "a goniometer: turns to {yaw}, {tilt}"),
       TextKey("tilt", "unit", &tilt_unit, "of both"),
   };

@@ -52,6 +52,7 @@ struct DialogueWords {
   std::string arm, fetch;    // of a memory, as InstrumentWords
   std::string move, done;    // an indexer: seats at {tooth}, which is at {deg}; query whether it is seated
   std::string seated = "1";  // what `done` is answered then
+  std::string stop;          // command that ends a seating, which is not answered; empty: there is none
   std::string tilt, tilt_unit = "arcsec";  // a goniometer: turns to {yaw}, {tilt}
 
   std::vector<ScenarioKey> Keys();

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <thread>
+#include <utility>
 
 #include "hw_bridge/control/instrument_box.h"
 #include "tests/core/input_error.h"
@@ -129,6 +132,24 @@ TEST(DescribedIndexer, KnowsAnAcknowledgementFromARefusal) {
   indexer.IndexTo(12, 12.0 * units::deg);
   EXPECT_EQ(looks, 3);
   EXPECT_EQ(KindOf([&] { indexer.IndexTo(99, 99.0 * units::deg); }), FaultKind::kRefused);
+}
+
+/// Its table is never seated, or takes a minute to answer.
+TEST(DescribedIndexer, IsToldToStopWhereTheOperatorStopsOrItsTimeIsOver) {
+  for (const char* done : {"POS?", ""}) {
+    FakeController device([](const std::string& line) -> FakeController::Reply { return {line == "POS?" ? "0\n" : ""}; });
+    const DialogueWords words = ParseDialogue(fmt::format("identify = \"\"\n[errors]\n{}[move]\ncommand = \"GO {{tooth}}\"\ndone = \"{}\"\nstop = \"HALT\"\n",
+                                                          *done ? "" : "acknowledged = \"OK\"\n", done), "my.toml");
+    Spoken spoken(device, words);
+    bool is_asked = false;
+    DescribedIndexer indexer(spoken.Line(), words, 60.0, [&] { return std::exchange(is_asked, true); });
+    EXPECT_EQ(KindOf([&] { indexer.IndexTo(12, 12.0 * units::deg); }), FaultKind::kStopped);
+    const auto is_told = [&] {
+      const std::vector<std::string> lines = device.Lines();
+      return std::ranges::find(lines, "HALT") != lines.end();
+    };
+    while (!is_told()) std::this_thread::yield();  // the word is on its way
+  }
 }
 
 TEST(DescribedDevices, ARefusalIsNoNumberAndALimitIsOne) {
