@@ -108,6 +108,28 @@ TEST(Recovery, ARealBenchGoesBackToItsLastStopIfEitherTableWasMovedMeanwhile) {
   EXPECT_EQ(MovesUntilTheNextBlock([&](RotaryBench& bench) { away(bench.reference); }), moves + 2);
 }
 
+TEST(Recovery, ARealBenchWhoseSpotsAreElsewhereBehindAFaultKeepsNoReadingMore) {
+  for (const double shift_V : {0.0, 0.5}) {
+    const Scenario scenario = test::RestlessBench();
+    sim::Twin twin(scenario);
+    RotaryBench real = twin.Bench();
+    real.simulation = nullptr;
+    MemoryLog log;
+    bool has_failed = false;
+    Course course;
+    course.before = [&](const std::string& device, const std::string&, CallAnswer&) {
+      if (device != "adc" || log.readings.size() != 20 || has_failed) return;
+      has_failed = true;
+      throw DeviceFault(FaultKind::kTimeout, device, "as asked for");
+    };
+    course.after = [&](const std::string& device, const std::string&, CallAnswer& answer) {
+      if (device == "adc" && has_failed) answer.block.channel[0].mean_V += shift_V;
+    };
+    EXPECT_EQ(EndOn(real, scenario, log, course), shift_V > 0.0 ? "implausible of psd_a_x" : "none");
+    EXPECT_EQ(log.readings.size() == 20u, shift_V > 0.0);
+  }
+}
+
 TEST(Recovery, ARecordOfAnotherSeedIsNotContinued) {
   Scenario scenario = test::RestlessBench();
   MemoryLog log;

@@ -91,6 +91,7 @@ void Sequencer::TakeAfter(Reading stop, double dwell_s, bool with_autocollimator
   sink_.Append(stop, block);
   journal_.Commit();
   last_ = stop;
+  state_.last = stop;
   state_.kept = ++next_reading_;
   if (progress_) progress_({next_reading_, planned_, stop.phase, bench().clock.Now()});
   if (next_reading_ < planned_) HearOperator(options_);
@@ -213,6 +214,23 @@ void Sequencer::ReturnToLastStop() {
     Send(bench, at_rad);
   }
   if (has_tilted_) bench.goniometer.MoveTo(yaw_rad_, tilt_rad_);
+  RequireAsBefore(bench);
+}
+
+/// A controller whose zero or unit is another than before the fault is told by the spots alone. What is read again is in no record.
+void Sequencer::RequireAsBefore(RotaryBench& bench) {
+  constexpr double kTimesScatter = 10.0, kShareOfRange = 1e-3;  // of single samples: means of blocks may wander by some of it
+  if (!state_.last || state_.last->status != ReadingStatus::kOk || state_.mounted_for == state_.kept) return;
+  const AdcSettings& adc = RotaryOf(scenario_).adc;
+  const Acquisition block = bench.adc.Acquire(adc.samples, false);
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const double was_V = state_.last->mean_V[c], is_V = block.channel[c].mean_V;
+    if (std::abs(is_V - was_V) <= kTimesScatter * state_.last->std_V[c] + kShareOfRange * adc.range_V) continue;
+    throw DeviceFault(FaultKind::kImplausible, kChannelNames[c],
+                      fmt::format("showed {:.4g} V at reading {} and shows {:.4g} V at its stop behind the fault: is a zero, a unit or the "
+                                  "mounting another than before?",
+                                  was_V, state_.last->reading, is_V));
+  }
 }
 
 }  // namespace twinbench::procedure

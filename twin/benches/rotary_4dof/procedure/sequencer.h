@@ -17,6 +17,7 @@ struct RunState {
   int kept = 0;                    // readings
   std::optional<int> mounted_for;  // reading before which a hand has mounted the grating on a real bench
   bool disturbed = false;          // the bench is not where the last kept reading left it
+  std::optional<Reading> last = {};  // that was kept since the program was started
 };
 
 /// The steps that all phases share: mount, go somewhere, dwell, take one reading.
@@ -68,6 +69,7 @@ class Sequencer {
   void RepeatCalls();
   std::optional<DeviceFault> RepeatOnce();
   void ReturnToLastStop();
+  void RequireAsBefore(RotaryBench& bench);
   void HomeIfLost(RotaryTable& table, const char* name);
 
   Journal& journal_;
