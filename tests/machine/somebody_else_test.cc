@@ -7,6 +7,7 @@
 #include "tests/machine/driven_twin.h"
 #include "tests/support/troubled_machine.h"
 #include "twin/core/bench_format.h"
+#include "twin/procedure/doubted_instruments.h"
 
 /// Somebody else - a pendant, another program - stops or moves the machine in the middle of a run. The twin does not say that it is
 /// one, so that what is kept is what was taken.
@@ -106,6 +107,91 @@ TEST(SomebodyElse, WhoTurnsTheFeedOverrideEndsACircle) {
         [&] { return inner.clock.Now(); }, {inner.machine.Axes(), shown, false, nullptr});
     MachineBench bench = overridden.Bench();
     EXPECT_EQ(twin.FaultOn(bench), fault) << factor << twin.said;
+  }
+}
+
+/// A controller whose zero is set anew where the machine stands, as it is looked at for the n-th time: to itself all is in order.
+class Rezeroed : public MachineController {
+ public:
+  Rezeroed(MachineController& inner, int at_call) : inner_(inner), at_call_(at_call), zero_(inner.Axes().size(), 0.0) {}
+  const std::vector<MachineAxis>& Axes() const override { return inner_.Axes(); }
+  std::vector<AxisLimits> Travel() override { return inner_.Travel(); }
+  void StartMove(const std::vector<double>& to, double feed_m_s) override {
+    std::vector<double> really = to;
+    for (std::size_t k = 0; k < to.size(); ++k) really[k] += zero_[k];
+    inner_.StartMove(really, feed_m_s);
+  }
+  void StartArc(const Arc& arc) override { inner_.StartArc(arc); }
+  bool Settles(Duration within) override { return inner_.Settles(within); }
+  std::vector<AxisState> State() override {
+    std::vector<AxisState> states = inner_.State();
+    if (++calls_ == at_call_)
+      for (std::size_t k = 0; k < states.size(); ++k) zero_[k] = states[k].encoder;
+    for (std::size_t k = 0; k < states.size(); ++k) states[k].commanded -= zero_[k], states[k].encoder -= zero_[k];
+    return states;
+  }
+  void Stop() override { inner_.Stop(); }
+  void Home() override { inner_.Home(); }
+
+ private:
+  MachineController& inner_;
+  int at_call_, calls_ = 0;
+  std::vector<double> zero_;
+};
+
+/// Instruments that show what they are said to, of a noise that nobody need state here.
+void DoubtOn(procedure::MachineOptions& options, const Scenario& scenario) {
+  std::vector<procedure::ClaimedColumn> claims;
+  for (const ReadingColumn& column : FormatOf(scenario.bench).columns)
+    if (column.role == ColumnRole::kShown) claims.push_back({column, column.name.ends_with("arcsec") ? 5.0 * units::arcsec : 0.05});
+  options.require_as_before = [=](const Reading& again, const Reading& before) { procedure::RequireAsBefore(claims, again, before); };
+}
+
+TEST(SomebodyElse, WhoSetsTheZeroAnewEndsTheRunBeforeAReadingIsKeptElsewhere) {
+  for (Scenario (*make)() : {ShortFreeform, ShortTurntable}) {
+    DrivenTwin undisturbed(make());
+    MachineBench whole = AsHardware(undisturbed.bench);
+    ASSERT_EQ(undisturbed.FaultOn(whole), "");
+    for (const int at_call : {60, 71, 82, 93}) {
+      DrivenTwin twin(make());
+      DoubtOn(twin.options, twin.scenario);
+      Rezeroed machine(twin.bench.machine, at_call);
+      MachineBench bench = {twin.bench.clock, machine, twin.bench.instruments, twin.bench.fixture, nullptr, twin.bench.indexer};
+      const std::string fault = twin.FaultOn(bench);
+      EXPECT_TRUE(fault == "implausible" || fault == "moved") << fault << ": " << twin.said;
+      EXPECT_LT(twin.log.readings.size(), undisturbed.log.readings.size());
+      for (std::size_t k = 0; k < twin.log.readings.size(); ++k)
+        EXPECT_NO_THROW(twin.options.require_as_before(twin.log.readings[k], undisturbed.log.readings[k])) << k;
+    }
+  }
+}
+
+/// Shows nothing from the n-th reading on.
+class Blind : public InstrumentSet {
+ public:
+  Blind(InstrumentSet& inner, int sees) : inner_(inner), sees_(sees) {}
+  Reading Read() override {
+    const Reading shown = inner_.Read();
+    if (sees_-- > 0) return shown;
+    Reading nothing;
+    nothing.time = shown.time;
+    return nothing;
+  }
+  void Arm(int samples, int lines) override { inner_.Arm(samples, lines); }
+  LatchedSamples Latched() override { return inner_.Latched(); }
+
+ private:
+  InstrumentSet& inner_;
+  int sees_;
+};
+
+TEST(SomebodyElse, WhoTakesTheMirrorAwayLeavesNoEmptyReading) {
+  for (Scenario (*make)() : {ShortFreeform, ShortTurntable, ShortStops}) {
+    DrivenTwin twin(make());
+    Blind instruments(twin.bench.instruments, 4);
+    MachineBench bench = {twin.bench.clock, twin.bench.machine, instruments, twin.bench.fixture, nullptr, twin.bench.indexer};
+    EXPECT_EQ(twin.FaultOn(bench), "gap") << twin.said;
+    EXPECT_EQ(twin.log.readings.size(), 4u);
   }
 }
 

@@ -72,9 +72,34 @@ TEST(DoubtedInstruments, KeepNothingOfDeadStuckLateAndRangelessOnesAndAllOfGoodO
       {[](const auto&) { return 0.0; }, kNoise},                                       // dead
       {[](const auto& all) { return all[std::min<std::size_t>(all.size() - 1, 5)]; }, kNoise},  // stuck from the sixth on
       {[](const auto& all) { return all[all.size() < 2 ? 0 : all.size() - 2]; }, kNoise},       // late by one
+      {[](const auto& all) { return all.back() + (all.size() == 5 ? 1e-4 : 0.0); }, kNoise},      // one spike
+      {[](const auto& all) { return all[all.size() - (all.size() % 3 == 0 ? 2 : 1)]; }, kNoise},  // an old answer again, each third time
       {[](const auto& all) { return 1e3 * all.back(); }, kNoise},                               // in another unit
       {[](const auto&) { return 0.0; }, 0.0}};  // of one that claims nothing nothing is asked
   for (const auto& [fault, noise] : cases) EXPECT_KEPT(Measured(fault, noise));
+}
+
+/// The hob's encoder at an angle of the table's, and 20 times that.
+Reading OfHob(double table_deg, double hob_deg) {
+  Reading r;
+  r.measured_rad = table_deg * units::deg;
+  r.reference_rad = hob_deg * units::deg;
+  return r;
+}
+
+TEST(RequireGoesAlong, WhatFollowsGoesTheWayThatItShouldWithinHalfOfItAndARangedOneWithinAFiftiethOfItsRange) {
+  const auto& columns = FormatOf("hob_transmission").columns;
+  const ReadingColumn& column = *std::ranges::find(columns, "hob_encoder_deg", &ReadingColumn::name);
+  ClaimedColumn claim{column, 0.0, 0.0, [](const Reading& r) { return 20.0 * r.measured_rad; }, true};
+  const Reading before = OfHob(10.0, 200.0);
+  EXPECT_NO_THROW(RequireGoesAlong({claim}, OfHob(12.0, 240.01), before));
+  EXPECT_NO_THROW(RequireGoesAlong({claim}, OfHob(12.0, -119.99), before));  // of a counter that begins anew every turn
+  EXPECT_THROW(RequireGoesAlong({claim}, OfHob(12.0, 200.0), before), DeviceFault);
+  EXPECT_THROW(RequireGoesAlong({claim}, OfHob(12.0, 160.0), before), DeviceFault);
+  claim.is_angle = false;
+  claim.range = 1000.0 * units::deg;
+  EXPECT_NO_THROW(RequireGoesAlong({claim}, OfHob(10.1, 218.0), before));
+  EXPECT_THROW(RequireGoesAlong({claim}, OfHob(10.1, 223.0), before), DeviceFault);
 }
 
 TEST(RequireTogether, AReferenceGoesWhereTheEncoderOfItsAxisGoes) {

@@ -121,7 +121,7 @@ std::vector<procedure::ClaimedColumn> ClaimedColumns(const Scenario& scenario) {
   for (const plausible::Expected& expected : ExpectedOf(scenario, {})) {
     const auto column = std::ranges::find(format.columns, expected.column, &ReadingColumn::name);
     const double range = format.range_of ? format.range_of(scenario, expected.column) : 0.0;
-    claims.push_back({*column, scenario.noise_free ? 0.0 : expected.noise, range, expected.is_angle ? expected.nominal : nullptr});
+    claims.push_back({*column, scenario.noise_free ? 0.0 : expected.noise, range, expected.is_loose ? nullptr : expected.nominal, expected.is_angle});
   }
   return claims;
 }
@@ -152,11 +152,22 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
   record.Finish();
 }
 
+/// So does the replay of such a bench.
+bool IsReal(const hw::MachineFile& file, hw::OpenMachine& bench) {
+  const auto* replay = dynamic_cast<const RecordedMachine*>(&bench);
+  return replay ? !replay->IsOfSimulation() : file.kind == "hardware" && !bench.Devices().simulation;
+}
+
 void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const hw::MachineFile& file,
                         hw::OpenMachine& bench, BegunRun begun, bool allow_homing, LivePage& page) {
   const bool resumed = begun.record != nullptr;
   if (resumed) TakeUp(begun, bench.Identity());
-  const procedure::MachineOptions options = Carefully(file, bench, begun, allow_homing);
+  procedure::MachineOptions options = Carefully(file, bench, begun, allow_homing);
+  if (IsReal(file, bench)) {
+    using std::placeholders::_1, std::placeholders::_2;
+    options.require_goes_along = std::bind(procedure::RequireGoesAlong, ClaimedColumns(scenario), _1, _2);
+    options.require_as_before = std::bind(procedure::RequireAsBefore, ClaimedColumns(scenario), _1, _2);
+  }
   const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench.Identity());
   bench.HearClock([&](const std::string& notice) { record->AppendEvent(bench.Devices().clock.Now(), "clock", notice); });
   record->AppendEvent(bench.Devices().clock.Now(), "bench", bench.Identity());

@@ -11,10 +11,9 @@ namespace twinbench::procedure {
 namespace {
 
 constexpr int kAgain = 16;  // readings that are all the same: of steps so coarse that noise hides in them, one in many is another
-constexpr int kProveEvery = 16;
-constexpr int kProveFirst = 2;
 constexpr int kSamplesTheSame = 64;
 constexpr double kAgree = 10.0;                    // times the noise of a difference
+constexpr double kAsBefore = 30.0;                 // the same, of readings between which axes moved and time went by
 constexpr double kFollows_rad = 1.0 * units::deg;  // more than the steps of any encoder
 
 double ValueOf(const ClaimedColumn& claim, const Reading& reading) {
@@ -22,14 +21,18 @@ double ValueOf(const ClaimedColumn& claim, const Reading& reading) {
   return claim.column.number(copy);
 }
 
+bool IsAngle(const ClaimedColumn& claim) {
+  return claim.follows && claim.is_angle;
+}
+
 /// Of readings of two places, or of one that noise moves: the same to the last digit, where it should be another.
 bool IsTheSame(const ClaimedColumn& claim, const Reading& a, const Reading& b) {
   if (ValueOf(claim, a) != ValueOf(claim, b)) return false;
-  return claim.noise > 0.0 || (claim.follows && std::abs(claim.follows(b) - claim.follows(a)) > kFollows_rad);
+  return claim.noise > 0.0 || (IsAngle(claim) && std::abs(claim.follows(b) - claim.follows(a)) > kFollows_rad);
 }
 
 bool IsShown(const ClaimedColumn& claim, const Reading& reading) {
-  return (claim.noise > 0.0 || claim.follows) && std::isfinite(ValueOf(claim, reading));
+  return (claim.noise > 0.0 || IsAngle(claim)) && std::isfinite(ValueOf(claim, reading));
 }
 
 /// All that can be judged.
@@ -43,59 +46,85 @@ std::string Text(const ClaimedColumn& claim, const Reading& reading) {
   return fmt::format("{} = {}", claim.column.name, claim.column.print(reading));
 }
 
-}  // namespace
-
-void DoubtedInstruments::Fail(const std::string& what) {
-  unproven_ = kProveFirst;
+[[noreturn]] void Fail(const std::string& what) {
   throw DeviceFault(FaultKind::kStuck, "instruments", what);
 }
 
+}  // namespace
+
+void RequireGoesAlong(const std::vector<ClaimedColumn>& claims, const Reading& reading, const Reading& before) {
+  constexpr double kShareOfWay = 0.5, kShareOfRange = 0.02;
+  constexpr double kLeastWay_rad = 0.1 * units::deg;
+  if (reading.setup != before.setup) return;
+  for (const ClaimedColumn& claim : claims) {
+    const double least = claim.is_angle ? kLeastWay_rad : kShareOfRange * claim.range;
+    if (!claim.follows || !(least > 0.0)) continue;
+    const double way = claim.follows(reading) - claim.follows(before);
+    const double went = ValueOf(claim, reading) - ValueOf(claim, before);
+    const double off = claim.is_angle ? std::remainder(went - way, units::turn) : went - way;
+    if (!(std::abs(off) > std::max(kShareOfWay * std::abs(claim.is_angle ? std::remainder(way, units::turn) : way), least))) continue;
+    throw DeviceFault(FaultKind::kMoved, "instruments",
+                      fmt::format("went from {} to {}, which is not the way from the place of reading {} to that of {}: does anything stand "
+                                  "elsewhere than its controller says?",
+                                  Text(claim, before), claim.column.print(reading), before.reading, reading.reading));
+  }
+}
+
+void RequireAsBefore(const std::vector<ClaimedColumn>& claims, const Reading& again, const Reading& before) {
+  for (const ClaimedColumn& claim : claims) {
+    const double was = ValueOf(claim, before), off = std::abs(ValueOf(claim, again) - was);
+    if (!(claim.noise > 0.0) || !std::isfinite(was) || off <= kAsBefore * std::sqrt(2.0) * claim.noise) continue;
+    throw DeviceFault(FaultKind::kImplausible, "instruments",
+                      fmt::format("showed {} at reading {} and show {} at its place behind the fault: is a zero, a unit or the mounting "
+                                  "another than before?",
+                                  Text(claim, before), before.reading, claim.column.print(again)));
+  }
+}
+
 Reading DoubtedInstruments::Read() {
-  const Reading shown = inner_.Read();
-  if (shown.status != ReadingStatus::kOk) return shown;
+  const Reading first = inner_.Read();
+  if (first.status != ReadingStatus::kOk) return first;
+  const Reading shown = Alive(first);
   RequireInRange(shown);
-  RequireAlive(shown);
-  if (is_late_ || unproven_ > 0 || ++read_ % kProveEvery == 0) RequireOfThisPlace(shown);
-  unproven_ = std::max(0, unproven_ - 1);
-  last_ = shown;
+  const bool shows_noise = std::ranges::any_of(claims_, [](const ClaimedColumn& claim) { return claim.noise > 0.0; });
+  last_ = shows_noise ? OfThisPlace(shown) : shown;
   return shown;
 }
 
 void DoubtedInstruments::RequireInRange(const Reading& shown) {
   for (const ClaimedColumn& claim : claims_) {
     if (!(claim.range > 0.0) || !(std::abs(ValueOf(claim, shown)) > claim.range)) continue;
-    unproven_ = kProveFirst;
     throw DeviceFault(FaultKind::kProtocol, "instruments", Text(claim, shown) + " is out of range");
   }
 }
 
-void DoubtedInstruments::RequireAlive(const Reading& shown) {
+Reading DoubtedInstruments::Alive(const Reading& shown) {
   bool says_nothing = false, says_anything = false;
   for (const ClaimedColumn& claim : claims_) {
     if (!(claim.noise > 0.0) || !IsShown(claim, shown)) continue;
     (ValueOf(claim, shown) == 0.0 ? says_nothing : says_anything) = true;
   }
-  if ((says_anything || !says_nothing) && !(last_ && AreTheSame(claims_, *last_, shown))) return;
+  if ((says_anything || !says_nothing) && !(last_ && AreTheSame(claims_, *last_, shown))) return shown;
   for (int again = 0; again < kAgain; ++again) {
     const Reading other = inner_.Read();
     if (std::ranges::any_of(claims_, [&](const ClaimedColumn& claim) {
           return IsShown(claim, shown) && ValueOf(claim, other) != ValueOf(claim, shown);
         }))
-      return;
+      return inner_.Read();
   }
   const auto shows = std::ranges::find_if(claims_, [&](const ClaimedColumn& claim) { return IsShown(claim, shown); });
   Fail(fmt::format("show {} as before, and in {} readings more: they are dead or stuck", Text(*shows, shown), kAgain));
 }
 
-void DoubtedInstruments::RequireOfThisPlace(const Reading& shown) {
+Reading DoubtedInstruments::OfThisPlace(const Reading& shown) {
   const Reading again = inner_.Read();
   for (const ClaimedColumn& claim : claims_) {
     if (!(claim.noise > 0.0) || !(std::abs(ValueOf(claim, again) - ValueOf(claim, shown)) > kAgree * std::sqrt(2.0) * claim.noise))
       continue;
-    is_late_ = true;
     Fail(fmt::format("show {} and then {} at one place, by more than noise: do they answer late by one, or move still?",
                      Text(claim, shown), Text(claim, again)));
   }
+  return again;
 }
 
 void DoubtedInstruments::Arm(int samples, int lines) {

@@ -13,15 +13,24 @@ struct ClaimedColumn {
   ReadingColumn column;
   double noise = 0.0;  // of one reading; 0: not stated, or less than the instrument's steps
   double range = 0.0;  // largest size; 0: not known
-  /// An angle that it follows, of those that are shown with it; empty or NaN: none.
+  /// What it should show, but for a constant of each set-up; empty or NaN: not known.
   std::function<double(const Reading&)> follows = {};
+  bool is_angle = false;  // follows: by what is shown with it, whole turns apart
 };
 
-/// Instruments of a real bench, which are not believed at once. Readings at rest: the first two, those behind a fault and every
-/// sixteenth are taken twice at their place, and must agree within ten times the noise; of instruments that once did not, all are
-/// (those that answer late by one show the place before); a reading that is the one before to the last digit, or nothing but zeros,
-/// is taken again until it is another. In motion: no column shows the very same for 64 samples. What is read again is in no record:
-/// replays need it not.
+/// Of a reading and the one before in its set-up.
+/// @throws DeviceFault kMoved where from one to the next a column did not go the way that it should by places and angles, within half
+///         of it and a fiftieth of its range: what should have moved stands elsewhere than its controller says.
+void RequireGoesAlong(const std::vector<ClaimedColumn>& claims, const Reading& reading, const Reading& before);
+
+/// Of a reading that is taken again at its place.
+/// @throws DeviceFault kImplausible where a column shows something else than before, by thirty times the noise, or nothing.
+void RequireAsBefore(const std::vector<ClaimedColumn>& claims, const Reading& again, const Reading& before);
+
+/// Instruments of a real bench, which are not believed at once. Every reading at rest is taken twice at its place, and both must agree
+/// within ten times the noise: those that answer late by one show the place before, and a spike comes alone. One that is the reading
+/// before to the last digit, or nothing but zeros, is taken again until another comes, and then once more, which counts. In motion: no
+/// column shows the very same for 64 samples. What is read again is in no record: replays need it not.
 class DoubtedInstruments : public InstrumentSet {
  public:
   DoubtedInstruments(InstrumentSet& inner, std::vector<ClaimedColumn> claims)
@@ -33,18 +42,17 @@ class DoubtedInstruments : public InstrumentSet {
   LatchedSamples Latched() override;
 
  private:
-  [[noreturn]] void Fail(const std::string& what);
   void RequireInRange(const Reading& shown);
-  void RequireAlive(const Reading& shown);
-  void RequireOfThisPlace(const Reading& shown);
+  /// The one that was shown, or a fresh one in its place.
+  Reading Alive(const Reading& shown);
+  /// The second, which agrees with the one that was shown.
+  Reading OfThisPlace(const Reading& shown);
   void RequireMoving(const Reading& sample);
 
   InstrumentSet& inner_;
   std::vector<ClaimedColumn> claims_;
-  std::optional<Reading> last_;
+  std::optional<Reading> last_;  // of all answers
   std::vector<int> same_;  // samples in a row, a column
-  int unproven_ = 2, read_ = 0;
-  bool is_late_ = false;
 };
 
 }  // namespace twinbench::procedure

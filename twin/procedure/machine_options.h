@@ -21,6 +21,11 @@ struct MachineOptions {
   std::function<bool()> stop_requested = {};  // asked between moves, waits and readings
   std::function<void(const DeviceFault&)> hear_fault = {};  // before anything is done about it
   std::vector<Reading> kept = {};             // of a resumed run, which goes on behind these
+  /// On a real bench: throws where a reading did not go where it should from the one before, in the order of taking. None: not asked.
+  std::function<void(const Reading& reading, const Reading& before)> require_goes_along = {};
+  /// On a real bench: throws where a reading does not show what it showed before. Behind a fault the last one that was kept at
+  /// rest is taken again, and nothing else until it does: a zero or a unit may be another. None: it is not.
+  std::function<void(const Reading& again, const Reading& before)> require_as_before = {};
 };
 
 }  // namespace twinbench::procedure

@@ -27,6 +27,18 @@ double Radius_m(const Arc& arc, const std::vector<AxisState>& from) {
   return std::hypot(from[arc.axes[0]].encoder - arc.centre_m[0], from[arc.axes[1]].encoder - arc.centre_m[1]);
 }
 
+/// Whether the last reading can be taken again.
+bool CanProve(const MachineRunState& state, const MachineOptions& options) {
+  if (!options.require_as_before || state.kept.empty()) return false;
+  return state.mounted == state.kept.back().setup && WasAtRest(state.kept.back());
+}
+
+/// Somebody else had the axes, and nothing that was read at rest tells whether their zeros and units are still the same.
+bool IsBeyondProof(const DeviceFault& fault, const MachineRunState& state, const MachineOptions& options) {
+  const bool reads_at_rest = state.kept.empty() || WasAtRest(state.kept.back());
+  return fault.kind() == FaultKind::kMoved && options.require_as_before && reads_at_rest && !CanProve(state, options);
+}
+
 }  // namespace
 
 MachineSequencer::MachineSequencer(MachineBench bench, const MachinePlan& plan, ReadingSink& sink,
@@ -47,7 +59,7 @@ std::vector<double> MachineSequencer::WhereSent() {
 }
 
 int MachineSequencer::From(int first, int end) const {
-  return bench_.simulation ? first : std::clamp(static_cast<int>(state_.kept.size()), first, end);
+  return bench_.simulation ? first : std::clamp(static_cast<int>(state_.kept.size()) - (state_.is_doubted && CanProve(state_, options_) ? 1 : 0), first, end);
 }
 
 void MachineSequencer::ThroughPasses(const std::function<void(int first, int end)>& take) {
@@ -316,17 +328,25 @@ void MachineSequencer::Keep(int number, const Reading& sample, const std::functi
   Reading reading = Joined(plan()[static_cast<std::size_t>(number)], sample);
   if (enter) enter(reading);
   if (plan_.complete) plan_.complete(reading);
+  if (!bench_.simulation) RequireShown(reading, plan_.bench);
   const std::vector<Reading>& before = taken_.empty() ? state_.kept : taken_;
   if (!before.empty()) RequireTogether(reading, before.back(), plan_.bench);
+  if (!before.empty() && options_.require_goes_along) options_.require_goes_along(reading, before.back());
   const double room_degC = reading.temperature_degC;
   if (room_degC < options_.coldest_degC || room_degC > options_.hottest_degC)
     throw DeviceFault(FaultKind::kImplausible, "thermometer",
                       fmt::format("{:.4g} degC; no bench is measured in such a room", room_degC));
   if (static_cast<std::size_t>(number) < state_.kept.size()) {
-    RequireSame(reading);
-    if (static_cast<std::size_t>(number) + 1 == state_.kept.size()) bench_.simulation->SetPaced(true);
+    if (bench_.simulation) {
+      RequireSame(reading);
+      if (static_cast<std::size_t>(number) + 1 == state_.kept.size()) bench_.simulation->SetPaced(true);
+    } else {
+      options_.require_as_before(reading, state_.kept.back());
+      state_.is_doubted = false;
+    }
     return;
   }
+  state_.is_doubted = false;
   taken_.push_back(reading);
   if (taken_.size() >= Together() || IsLast(number)) Flush();
 }
@@ -431,9 +451,11 @@ void CarryOutPlan(MachineBench& bench, const MachinePlan& plan, const MachineWay
       if (options.log) options.log->ForgetCalls();
       const int next = static_cast<int>(state.kept.size());
       NoteFailure(options.log, next, TimeOf(bench, state), fault);
-      if (!options.log || !stands.is_sure || !IsWorthAnotherAttempt(fault.kind()) || !attempts.AnotherAt(next))
+      if (!options.log || !stands.is_sure || !IsWorthAnotherAttempt(fault.kind()) || IsBeyondProof(fault, state, options) ||
+          !attempts.AnotherAt(next))
         throw StoppedRun(fault, stands);
       state.lost_origin = fault.kind() == FaultKind::kRestarted && !bench.simulation;
+      state.is_doubted = true;
     } catch (...) {  // whatever it is, nothing goes on moving
       StopMachine(bench, options);
       throw;

@@ -21,12 +21,14 @@ struct MachineRunState {
   std::vector<Reading> kept;
   std::optional<int> mounted;  // set-up, on a real bench: a mounting outlives the fault that came after it
   bool lost_origin = false;    // behind a restart of a real bench's controller
+  bool is_doubted = false;     // behind a fault: whether a real bench still shows at a place what it showed
 };
 
 /// The steps that all runs of machines share: mount, go somewhere, go round, take readings.
 ///
 /// On a simulated bench every attempt goes the whole way from the start; readings that are kept already must come
-/// out the same and are not kept again. A real bench goes on with the first reading that is missing.
+/// out the same and are not kept again. A real bench goes on with the first reading that is missing; behind a fault with the one
+/// before, if it was taken at rest and nothing else has been mounted since, which is not kept again.
 class MachineSequencer {
  public:
   MachineSequencer(MachineBench bench, const MachinePlan& plan, ReadingSink& sink, const MachineOptions& options,

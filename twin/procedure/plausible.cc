@@ -44,6 +44,16 @@ void RequirePlausible(const Reading& reading, const Reading& before, const Optio
   }
 }
 
+void RequireShown(const Reading& reading, const std::string& bench) {
+  if (reading.status != ReadingStatus::kOk) return;
+  for (const ReadingColumn& column : FormatOf(bench).columns) {
+    if (column.role != ColumnRole::kShown || !column.print(reading).empty()) continue;
+    throw DeviceFault(FaultKind::kGap, "instruments",
+                      fmt::format("show no {} at reading {}: is it in view, and does everything stand where it was sent?", column.name,
+                                  reading.reading));
+  }
+}
+
 void RequireTogether(const Reading& reading, const Reading& before, const std::string& bench) {
   constexpr double kLeastWay_rad = 0.01 * units::deg;  // less may be noise of the reference
   const auto now = EncoderOf(reading), then = EncoderOf(before);

@@ -12,6 +12,10 @@ void RequirePlausible(const Reading& reading, const Reading& before, const Optio
 void RequireTimely(const Reading& sample, Time from, Time to);
 void RequireTimely(const Acquisition& block, Time asked, Time answered);
 
+/// @throws DeviceFault kGap for a reading of a real bench in which a column that its bench must show is empty without a reason: the
+///         mirror is out of view, the table was not seated at its tooth, the machine stands elsewhere than its encoders say.
+void RequireShown(const Reading& reading, const std::string& bench);
+
 /// @param before  The reading before, of a bench whose reference is read and not commanded. The encoder of its axis was looked at
 ///                about both.
 /// @throws DeviceFault kMoved if from one to the next the reference did not go the way that the encoder went.

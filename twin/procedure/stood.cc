@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "twin/core/device_fault.h"
@@ -37,6 +38,10 @@ void RequireOriginAboutReading(const std::string& axis, bool referenced) {
 }
 
 }  // namespace
+
+bool WasAtRest(const Reading& reading) {
+  return std::ranges::any_of(reading.extra, [](const auto& column) { return column.first.find("_encoder_before_") != std::string::npos; });
+}
 
 double StoodAt(const std::string& table, const TableState& state) {
   RequireOriginAboutReading(table, state.referenced);

@@ -25,6 +25,9 @@ struct Stood {
 /// columns beside those of the bench: files without them are whole.
 void EnterInto(Reading& reading, const Stood& stood);
 
+/// Whether it was entered into the reading where an axis stood: it was taken at rest.
+bool WasAtRest(const Reading& reading);
+
 /// Where the encoder of a table or axis that is looked at about a reading says it stands.
 /// @throws DeviceFault kRestarted if its controller has lost its origin: what was read meanwhile is no reading.
 double StoodAt(const std::string& table, const TableState& state);
