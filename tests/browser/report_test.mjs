@@ -6,13 +6,16 @@ import { close, exchangeResults, faintOf, faultsOf, folder, makeRun, open, scena
 
 const kEvil = "</script><script>document.title='caught'</script><img src=x onerror=\"document.title='caught'\">";
 
+const kRuns = ["rotary", "turntable", "circles", "diagnosed"];
+
 before(() => {
   makeRun("rotary", scenario("rotary_4dof"), "--images");
   makeRun("turntable", scenario("turntable_shifts"));
+  makeRun("circles", scenario("circular_motion"));
   const small = ["--set", "procedure.positions=12", "--set", "procedure.shifts=[0,1,5]", "--set", "procedure.passes=[1,-1]"];
   makeRun("diagnosed", scenario("rotary_4dof"), ...small, "--set", 'effect=[{name="psd_roll", where="psd_b", roll_mrad=20.0}]');
   twinbench("diagnose", "diagnosed", "--scenario", scenario("rotary_4dof"), ...small);
-  for (const run of ["rotary", "turntable", "diagnosed"]) twinbench("report", run);
+  for (const run of kRuns) twinbench("report", run);
 });
 after(close);
 
@@ -29,7 +32,7 @@ const boxOf = async (part) => {
 
 const plots = (page) => page.locator(".plot");
 
-for (const run of ["rotary", "turntable", "diagnosed"]) {
+for (const run of kRuns) {
   test(`${run}: every plot is drawn, the console is silent, contrast and names of all controls pass in light and dark`, async () => {
     const page = await open(`${run}/report.html`);
     assert.ok((await plots(page).count()) >= 4);
@@ -57,6 +60,21 @@ test("a page opens with what the run says: its title, tiles with U and units, an
   assert.match(await page.locator(".subtitle").innerText(), /simulated, seed \d+ · \d+ readings in \d+:\d\d h/);
   assert.match(await page.locator(".tile").first().innerText(), /Largest error\s+\S+ ± \S+ arcsec\s+Turntable: index error EZ, at \S+°/);
   assert.match(await firstCurve(page).locator("h3").innerText(), /\[arcsec\]$/);
+  await page.close();
+});
+
+test("a circle has both directions, says how much its deviations are magnified, and its errors are ranked", async () => {
+  const page = await open("circles/report.html");
+  const card = page.locator("#errors .choice figure.card");
+  assert.match(await card.locator("h3").innerText(), /^Radial deviation, set-up \d \((bar|grid)\), .* \[µm\]$/);
+  assert.deepEqual(await card.locator(".legend .entry").allInnerTexts(), ["counter-clockwise", "clockwise"]);
+  const times = async () => Number((await card.locator(".note").innerText()).match(/^R = \S+ mm, deviations magnified (.+) times$/)[1].replaceAll("\u202f", ""));
+  const whole = await times();
+  assert.ok(whole > 1000);
+  await card.getByRole("button", { name: "Zoom in" }).click();
+  assert.ok((await times()) > whole);
+  const shares = (await page.locator("#table-errors-ranked tbody tr td:last-child").allInnerTexts()).map((text) => Number(text.match(/[\d.]+/)[0]));
+  assert.ok(shares.length > 5 && shares.every((share, k) => k === 0 || share <= shares[k - 1]), String(shares));
   await page.close();
 });
 

@@ -98,6 +98,26 @@ TEST(RigorousCircle, FindsWhatAnIndependentRunWasMadeWith) {
   }
 }
 
+TEST(RadialParts, OfBothAxesTogetherAreWhatIsSeenOnACircle) {
+  CircleAnalysis a;
+  a.known = {1.0, 1.0, 1.0, 0.0};
+  a.points = OffCentre({0.0, 0.0});
+  for (CirclePoint& p : a.points) p.is_bar = false, p.rate_rad_s = 0.1;
+  a.fit.fitted = {0, 1, 4};  // lag of x and y, squareness
+  a.fit.errors.lag_s = {1e-3, 1e-3};
+  a.fit.errors.squareness_rad = 10.0 * units::arcsec;
+  a.fit.setups = {0};
+  a.fit.mountings.resize(1);
+  const std::vector<RadialPart> parts = RadialPartsOf(a);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_THAT(parts[0].keys, testing::ElementsAre("machine.squareness_arcsec"));
+  // Radius times angle times sin cos, whose mean square is 1/8; the lag turns it by 1e-4.
+  EXPECT_NEAR(parts[0].rms_m, 156.278 * mm * 10.0 * units::arcsec / std::sqrt(8.0), 1e-9);
+  EXPECT_THAT(parts[1].keys, testing::ElementsAre("machine.lag_x_s", "machine.lag_y_s"));
+  // Both as large turn the circle by 1e-4, and so the squareness's figure on it by twice as much; the radius shrinks by half the square.
+  EXPECT_LT(parts[1].rms_m, 156.278 * mm * (0.5e-8 + 2e-4 * 10.0 * units::arcsec));
+}
+
 TEST(RigorousCircle, StatesNoUncertaintyOfWhatOneBarCannotTellApart) {
   OracleRun run = Oracle();
   std::erase_if(run.readings, [](const Reading& r) { return r.setup != 0; });

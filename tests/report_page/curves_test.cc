@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "twin/report/page/circles.h"
 #include "twin/report/page/harmonics_of.h"
 #include "twin/report/page/scored.h"
 #include "twin/report/page/tiles.h"
@@ -85,17 +86,40 @@ TEST(CurveFigures, KeepCurvesOfOtherLengthsApartFromTheirAngles) {
   EXPECT_TRUE(CurveFigures(odd, {}).empty());
 }
 
-TEST(CurveFigures, PutThePassesOfASetUpIntoOneFigure) {
-  json paths = json::array();
+TEST(CircleChoice, HasBothDirectionsOfASetUpAndFeedOnceRoundAndBeginsWithTheLargest) {
+  json radial = json::array();
   for (const int setup : {0, 1}) {
-    for (const int pass : {0, 1})
-      paths.push_back({{"setup", setup}, {"pass", pass}, {"commanded_deg", {0, 1, 2}}, {"dx_um", {pass, 2, 3}}});
+    for (const int direction : {1, -1})
+      radial.push_back({{"setup", setup}, {"pass", radial.size()}, {"direction", direction}, {"instrument", "bar"}, {"radius_mm", 100.0}, {"feed_mm_min", 40.0},
+                        {"commanded_deg", {300, 420, 540}}, {"radial_um", {1.0 + setup, -direction, 0.5}}, {"u_radial_um", 0.1}});
   }
-  const std::vector<Figure> figures = CurveFigures({{"path", paths}}, {});
-  ASSERT_EQ(figures.size(), 2u);
-  EXPECT_EQ(figures[1].title, "Path: radial error DX, set-up 1");
-  ASSERT_EQ(figures[1].series.size(), 2u);
-  EXPECT_EQ(figures[1].series[1].name, "pass 1");
+  const PageChoice choice = CircleChoice({{"radial", radial}});
+  EXPECT_THAT(choice.answers, ElementsAre(ElementsAre("1 (bar)", "40 mm/min"), ElementsAre("0 (bar)", "40 mm/min")));
+  const Figure& largest = choice.figures[0];
+  EXPECT_EQ(largest.title, "Radial deviation, set-up 1 (bar), 40 mm/min");
+  EXPECT_EQ(largest.radius, 100000.0) << "in the unit of the deviations";
+  ASSERT_EQ(largest.series.size(), 2u);
+  EXPECT_EQ(largest.series[0].name, "counter-clockwise");
+  EXPECT_EQ(largest.series[1].name, "clockwise");
+  EXPECT_THAT(largest.series[1].x, ElementsAre(60, 180, 300));
+  EXPECT_THAT(largest.series[1].y, ElementsAre(1.0, 0.5, 2.0));
+  EXPECT_THAT(largest.series[1].u, ElementsAre(0.1, 0.1, 0.1));
+  EXPECT_TRUE(CurveFigures({{"radial", radial}}, {}).empty()) << "they are not drawn twice";
+  EXPECT_TRUE(CircleChoice(kResults).figures.empty());
+}
+
+TEST(ErrorRanks, AreSharesOfTheRadialDeviationWithTheSizesOfBothAxes) {
+  const json results = {{"errors", {{"machine.scale_x_um_m", {{"value", -0.25}, {"u", 0.125}, {"unit", "um/m"}}},
+                                    {"machine.scale_y_um_m", {{"value", 1.0}, {"u", nullptr}, {"unit", "um/m"}}},
+                                    {"bar.gain_error", {{"value", 0.5}, {"u", 0.05}, {"unit", "1"}}}}},
+                        {"radial_parts", {{{"errors", {"bar.gain_error"}}, {"rms_um", 0.4}},
+                                          {{"errors", {"machine.scale_x_um_m", "machine.scale_y_um_m"}}, {"rms_um", 0.2}},
+                                          {{"errors", {"machine.lag_x_s"}}, {"rms_um", 0.1}}}}};
+  const PageTable table = ErrorRankTable(results);
+  ASSERT_EQ(table.rows.size(), 2u) << "what the run does not show has no share";
+  EXPECT_THAT(table.rows[0], ElementsAre("bar gain error", "0.50 ± 0.10", "0.4", "80 %"));
+  EXPECT_THAT(table.rows[1], ElementsAre("machine scale x and y", "x −0.25 ± 0.25 µm/m", "0.2", "20 %"));
+  EXPECT_THAT(ErrorRankFigure(results).categories, ElementsAre("bar gain error", "machine scale x and y"));
 }
 
 TEST(SpectrumFigures, ReadListsAndListsOfTerms) {

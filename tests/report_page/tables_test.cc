@@ -68,7 +68,7 @@ TEST(ObjectTables, ShowValuesInGroupsWithTheUnitsOfTheirKeys) {
 
 TEST(NumberText, HasTwoDigitsOfItsUncertainty) {
   EXPECT_EQ(NumberText(1234.5678, 0.0123), "1234.568");
-  EXPECT_EQ(NumberText(1234.5678, 250.0), "1234.57");
+  EXPECT_EQ(NumberText(1234.5678, 250.0), "1230");
   EXPECT_EQ(NumberText(0.5, 0.0), "0.5");
 }
 

@@ -9,8 +9,6 @@ import { numbersTable } from "./table.js";
 import { isDark, onThemeChange, palette } from "./theme.js";
 import { viewsOf } from "./views.js";
 
-const kHeight = 320;
-
 /** A polar plot has no axis beside which the unit could stand. */
 const titleOf = ({ form, title, y }) => (form === "angle" && y.unit ? `${title} [${y.unit}]` : title);
 
@@ -47,11 +45,13 @@ class Card {
   }
 
   option() {
+    this.note.textContent = [this.figure.note, this.view.note?.(this.figure, this.shown, this.zoomed)].filter(Boolean).join(", ");
     return this.view.option(this.figure, this.shown, looks(this.figure), this.box());
   }
 
   size() {
-    this.plot.style.height = `${this.view.height?.(this.figure) ?? (this.view.square ? kHeight + 60 : kHeight)}px`;
+    this.plot.classList.toggle("square", Boolean(this.view.square));
+    if (this.view.height) this.plot.style.height = `${this.view.height(this.figure)}px`;
   }
 
   head() {
@@ -66,11 +66,8 @@ class Card {
       );
     }
     tools.append(this.numbersButton(), button("Save", () => this.save(), { title: "Save this picture" }));
-    return element(
-      "figcaption", {},
-      element("div", {}, element("h3", {}, titleOf(this.figure)), this.figure.note ? element("p", { class: "note" }, this.figure.note) : ""),
-      tools,
-    );
+    this.note = element("p", { class: "note" }, this.figure.note);
+    return element("figcaption", {}, element("div", {}, element("h3", {}, titleOf(this.figure)), this.note), tools);
   }
 
   viewButtons() {

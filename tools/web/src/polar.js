@@ -39,6 +39,13 @@ function radii(figure, shown, zoomed) {
   return { tick, outer, inner: -outer - tick };
 }
 
+/** How much larger deviations are drawn than the circle that they are deviations of. */
+export function magnification(figure, shown, zoomed) {
+  if (!figure.radius) return "";
+  const times = Number((figure.radius / -radii(figure, shown, zoomed).inner).toPrecision(2));
+  return `deviations magnified ${times.toLocaleString("en").replaceAll(",", "\u202f")} times`;
+}
+
 /** Where on the plot a point is drawn [px]. */
 export function polarPlace(figure, shown, box, x, y) {
   const { inner, outer } = radii(figure, shown, box.zoomed);

@@ -1,11 +1,11 @@
 // The ways in which each form of figure can be looked at; the first is how it opens.
 import { barsOption } from "./bars.js";
 import { planeOption } from "./plane.js";
-import { polarOption, polarPlace } from "./polar.js";
+import { magnification, polarOption, polarPlace } from "./polar.js";
 import { sharesHeight, sharesOption } from "./shares.js";
 
 const plane = { name: "Linear", option: (figure, shown, looks, box) => planeOption(figure, shown, looks, box), zooms: true };
-const polar = { name: "Polar", option: (figure, shown, looks, box) => polarOption(figure, shown, looks, box.zoomed), place: polarPlace, square: true };
+const polar = { name: "Polar", option: (figure, shown, looks, box) => polarOption(figure, shown, looks, box.zoomed), note: magnification, place: polarPlace, square: true };
 const bars = { name: "Linear", option: (figure, shown, looks) => barsOption(figure, shown, looks, false), zooms: true };
 const logarithmic = { name: "Logarithmic", option: (figure, shown, looks) => barsOption(figure, shown, looks, true), zooms: true };
 const shares = { name: "Shares", option: (figure, shown, looks) => sharesOption(figure, shown, looks), height: sharesHeight, wide: true };

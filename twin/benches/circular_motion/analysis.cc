@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "twin/core/errors.h"
 
@@ -83,10 +84,33 @@ bool IsOfWave(const std::string& key) {
   return std::ranges::any_of(Waves(), [&](const WaveKeys& w) { return w.cosine == key || w.sine == key; });
 }
 
+/// The key in the scenario: waves are there by their amplitude.
+std::string SizeKey(const std::string& unknown) {
+  const auto wave = std::ranges::find_if(Waves(), [&](const WaveKeys& w) { return w.cosine == unknown || w.sine == unknown; });
+  return wave == Waves().end() ? unknown : wave->amplitude;
+}
+
+CircleErrors Without(const CircleFit& fit, const std::vector<std::string>& keys) {
+  CircleErrors others = fit.errors;
+  for (const std::size_t k : fit.fitted)
+    if (std::ranges::count(keys, SizeKey(CircleUnknowns()[k].key)) > 0) CircleUnknowns()[k].in(others) = 0.0;
+  return others;
+}
+
+double RadialRms_m(const CircleAnalysis& a, const CircleErrors& others) {
+  double squares_m2 = 0.0;
+  for (const CirclePoint& p : a.points) {
+    const CircleMounting& mounting = a.fit.MountingOf(p.setup);
+    const double of_them_m = (Shown_m(p, a.fit.errors, mounting, a.known) - Shown_m(p, others, mounting, a.known)).x();
+    squares_m2 += of_them_m * of_them_m;
+  }
+  return std::sqrt(squares_m2 / static_cast<double>(a.points.size()));
+}
+
 void Fit(const Scenario& scenario, CircleAnalysis& a) {
-  const CircleConstants known = ConstantsOf(CircularOf(scenario));
-  a.fit = FitCircles(a.points, known);
-  a.paths = RigorousPaths(a.points, a.fit, known);
+  a.known = ConstantsOf(CircularOf(scenario));
+  a.fit = FitCircles(a.points, a.known);
+  a.paths = RigorousPaths(a.points, a.fit, a.known);
   a.deviations = CircularDeviations(a.paths, a.fit.shared);
 }
 
@@ -185,6 +209,20 @@ std::vector<ErrorValue> ErrorsOf(const CircleFit& fit) {
   }
   for (const WaveKeys& wave : Waves()) AddWave(fit, wave, errors);
   return errors;
+}
+
+std::vector<RadialPart> RadialPartsOf(const CircleAnalysis& a) {
+  std::map<std::string, RadialPart> kinds;
+  for (const std::size_t k : a.fit.fitted) {
+    const std::string key = SizeKey(CircleUnknowns()[k].key);
+    const std::size_t axis = std::min(key.find("_x_"), key.find("_y_"));
+    std::vector<std::string>& keys = kinds[axis == key.npos ? key : std::string(key).erase(axis, 2)].keys;
+    if (std::ranges::count(keys, key) == 0) keys.push_back(key);
+  }
+  std::vector<RadialPart> parts;
+  for (auto& [kind, part] : kinds) parts.push_back({part.keys, RadialRms_m(a, Without(a.fit, part.keys))});
+  std::ranges::stable_sort(parts, std::greater(), &RadialPart::rms_m);
+  return parts;
 }
 
 double WavePart::Of(double amplitude_of_wave, double azimuth_deg) const {

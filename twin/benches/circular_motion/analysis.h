@@ -22,6 +22,7 @@ struct PathBias {
 /// What either estimator makes of a run.
 struct CircleAnalysis {
   std::vector<separate::circular::CirclePoint> points;
+  separate::circular::CircleConstants known = {};
   separate::circular::CircleFit fit;  // published: nothing is fitted
   std::vector<separate::circular::CirclePath> paths;
   std::vector<separate::circular::Iso230_4> deviations;
@@ -46,6 +47,15 @@ struct ErrorValue {
 };
 /// Waves as amplitude and azimuth, as the scenario has them.
 std::vector<ErrorValue> ErrorsOf(const separate::circular::CircleFit& fit);
+
+/// What errors of one kind, those of both axes together, make of the radial deviation that the instruments show. Together, because what lags
+/// on both axes alike is hardly seen on a circle, however much it is.
+struct RadialPart {
+  std::vector<std::string> keys;  // of ErrorsOf
+  double rms_m = kNaN;            // over all readings
+};
+/// One kind each, the largest first.
+std::vector<RadialPart> RadialPartsOf(const CircleAnalysis& a);
 
 /// Cosine or sine part of a wave. Unlike its amplitude, which is never below zero, a part is as likely too small as
 /// too large however small the wave is: it is what an interval of +- U is right for.

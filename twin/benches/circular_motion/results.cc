@@ -106,6 +106,24 @@ uncertainty::Joint JointOf(const CircleFit& fit) {
   return joint;
 }
 
+double Feed_mm_min(double feed_m_s) {
+  return feed_m_s * 60.0 / units::mm;
+}
+
+/// What the page draws: the uncertainty is one number a pass, so that thousands of points are no results of their own.
+json RadialJson(const CirclePath& path, const SharedUncertainty& shared) {
+  json entry = {{"setup", path.setup}, {"pass", path.pass}, {"direction", path.direction}, {"instrument", path.is_bar ? "bar" : "grid"},
+                {"radius_mm", path.radius_m / units::mm}, {"feed_mm_min", In(1.0, Feed_mm_min(path.feed_m_s))}};
+  double squares_m2 = 0.0;
+  for (const PathPoint& point : path.points) {
+    entry["commanded_deg"].push_back(In(units::deg, point.commanded_rad));
+    entry["radial_um"].push_back(In(um, point.Radial_m()));
+    squares_m2 += std::pow(RadialUncertainty_m(point, shared), 2);
+  }
+  entry["u_radial_um"] = In(um, std::sqrt(squares_m2 / static_cast<double>(path.points.size())));
+  return entry;
+}
+
 json PathJson(const CirclePath& path, const SharedUncertainty& shared) {
   json entry = {{"setup", path.setup}, {"pass", path.pass}};
   for (const PathPoint& point : path.points) {
@@ -117,10 +135,6 @@ json PathJson(const CirclePath& path, const SharedUncertainty& shared) {
     entry["u_dy_um"].push_back(In(um, u_m.y()));
   }
   return entry;
-}
-
-double Feed_mm_min(double feed_m_s) {
-  return feed_m_s * 60.0 / units::mm;
 }
 
 json IsoJson(const Iso230_4& d) {
@@ -237,6 +251,8 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
                         {"errors", evaluation.separation["errors"]},
                         {"iso230_4", evaluation.separation["iso230_4"]},
                         {"comparison", evaluation.separation["comparison"]}};
+  for (const CirclePath& path : a.paths) evaluation.results["radial"].push_back(RadialJson(path, a.fit.shared));
+  for (const RadialPart& part : RadialPartsOf(a)) evaluation.results["radial_parts"].push_back({{"errors", part.keys}, {"rms_um", In(um, part.rms_m)}});
   evaluation.summary = fmt::format("{} of {} readings have radius and angle\n", a.points.size(), readings.size());
   if (a.IsFitted()) evaluation.summary += ErrorsText(a);
   if (!a.method_bias.empty()) evaluation.results["method_bias"] = BiasJson(a.method_bias);

@@ -20,9 +20,7 @@ std::string ParametersOf(const json& cause) {
   for (const auto& [name, p] : cause.at("parameters").items()) {
     const double u = NumberAt(p, "u");
     if (!IsDetermined(u, NumberAt(p, "lower"), NumberAt(p, "upper"))) continue;
-    const std::string unit = TextAt(p, "unit");
-    text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", NameAndUnit(name).name, NumberText(NumberAt(p, "value"), u),
-                        u > 0.0 ? " ± " + NumberText(u, u) : "", unit == "1" ? "" : AfterNumber(ShownUnit(unit)));
+    text += (text.empty() ? "" : ", ") + NameAndUnit(name).name + " " + MeasuredText(NumberAt(p, "value"), u, TextAt(p, "unit"));
   }
   return text;
 }
@@ -74,6 +72,7 @@ void AddFilled(PageTable table, PageSection& section) {
 }
 
 std::string Percent(double share) {
+  if (share > 0.0 && share < 0.001) return "< 0.1 %";
   return std::isfinite(share) ? fmt::format("{:.3g} %", 100.0 * share) : "";
 }
 

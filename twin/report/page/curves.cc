@@ -36,12 +36,8 @@ std::string Spoken(const json& object, const std::vector<Circumstance>& circumst
   return words;
 }
 
-/// What tells one of several objects of a list from the others: passes are curves of the figure of their set-up.
-std::string FigureOf(const json& object) {
-  return object.contains("pass") ? Spoken(object, {{"setup", "set-up"}}) : "";
-}
+/// What tells one of several objects of a list from the others.
 std::string SeriesOf(const json& object) {
-  if (object.contains("pass")) return Spoken(object, {{"pass", "pass"}});
   return Spoken(object, {{"setup", "set-up"}, {"direction", "direction"}, {"head_deg", "head [deg]"}});
 }
 
@@ -66,16 +62,6 @@ bool IsNameOf(std::string name, const std::string& path) {
   return name == path;
 }
 
-/// The coverage factor that the budget of results.json states for a list; 2 if it has none.
-double CoverageOf(const json& results, const std::string& path) {
-  if (!results.is_object() || !results.contains("uncertainty_budget")) return 2.0;
-  for (const json& budget : results.at("uncertainty_budget")) {
-    if (IsNameOf(budget.value("name", ""), path) && budget.contains("k") && budget.at("k").is_number())
-      return budget.at("k").get<double>();
-  }
-  return 2.0;
-}
-
 /// All lists of one object that go with its list `by`.
 struct Lists {
   const json& results;  // the whole file
@@ -91,9 +77,8 @@ void AddList(const Lists& lists, const json& object, const std::string& key, con
   if (!y || y->size() != x.size()) return;
   const std::string path = lists.path + "." + key;
   const auto [name, unit] = NameAndUnit(key);
-  const std::string where = FigureOf(object), of = SeriesOf(object);
-  const std::string rest = where.empty() ? "" : ", " + where;
-  Figure figure{lists.form, CurveTitle(lists.path, name) + rest, "", lists.x, {name, unit}, {}, {}, PathInWords(lists.path) + ", " + name + rest};
+  const std::string of = SeriesOf(object);
+  Figure figure{lists.form, CurveTitle(lists.path, name), "", lists.x, {name, unit}, {}, {}, PathInWords(lists.path) + ", " + name};
   FigureSeries series{of.empty() ? "estimate" : of, SeriesRole::kEstimate, x, *y, {}, CoverageOf(lists.results, path)};
   if (const auto u = NumbersAt(object, "u_" + key); u && u->size() == x.size()) series.u = *u;
   Figure& to = FigureFor(figures, figure);
@@ -167,11 +152,20 @@ void AddTerms(const json& results, const json& score, const std::string& path, c
 
 }  // namespace
 
+double CoverageOf(const json& results, const std::string& path) {
+  if (!results.is_object() || !results.contains("uncertainty_budget")) return 2.0;
+  for (const json& budget : results.at("uncertainty_budget")) {
+    if (IsNameOf(budget.value("name", ""), path) && budget.contains("k") && budget.at("k").is_number())
+      return budget.at("k").get<double>();
+  }
+  return 2.0;
+}
+
 std::vector<Figure> CurveFigures(const json& results, const json& score) {
   std::vector<Figure> figures;
   ForEachObject(results, [&](const std::string& path, const json& object) {
     const auto angle = AngleOf(object);
-    if (!angle) return;
+    if (!angle || object.contains("pass")) return;
     const Lists lists{results, score, path, *angle, FigureForm::kAngle, {NameAndUnit(*angle).name, "deg"}};
     for (const auto& [key, value] : object.items()) {
       if (key != *angle && !IsUncertainty(key) && !IsCounter(key))

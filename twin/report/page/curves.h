@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 #include <vector>
 
 #include "twin/report/page/figure.h"
@@ -12,8 +13,11 @@ namespace twinbench::report {
 ///
 /// @param results  results.json, or a part of it.
 /// @param score    score.json; null if there is none.
-/// @return a figure a curve, in the order of the file; passes of the same curve in one figure.
+/// @return a figure a curve, in the order of the file. Passes round a circle are no curves of their own (CircleChoice).
 std::vector<Figure> CurveFigures(const nlohmann::json& results, const nlohmann::json& score);
+
+/// The coverage factor that the budget of results.json states for a result or a list of them; 2 if it has none.
+double CoverageOf(const nlohmann::json& results, const std::string& path);
 
 /// What the estimates of these curves are beside their truth, with the same u; a curve without truth has none.
 std::vector<Figure> DeviationFigures(const std::vector<Figure>& curves);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <variant>
@@ -44,6 +45,7 @@ struct Figure {
   std::vector<FigureSeries> series;
   std::vector<std::string> categories = {};  // what each bar is, where that is a word
   std::string file = {};                     // what its picture is called; empty: as its title
+  double radius = NAN;                       // of the circle that is zero in a polar plot, in the unit of y; NaN: it has none
 };
 
 struct PageTable {

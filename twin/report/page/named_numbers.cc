@@ -117,8 +117,17 @@ std::string NumberText(double value, double u) {
   if (!std::isfinite(value)) return "";
   if (!std::isfinite(u) || u <= 0.0) return NumberText(value);
   const int digits = 1 - static_cast<int>(std::floor(std::log10(u)));
-  if (digits < 0 || digits > 12) return fmt::format("{:.6g}", value);
+  if (digits > 12) return NumberText(value);
+  const double tens = std::pow(10.0, std::max(0, -digits));
+  if (digits < 0) return fmt::format("{:.0f}", std::round(value / tens) * tens);
   return fmt::format("{:.{}f}", value, digits);
+}
+
+std::string MeasuredText(double value, double u, const std::string& unit) {
+  std::string text = NumberText(value, u);
+  if (text.starts_with('-')) text.replace(0, 1, "−");
+  if (u > 0.0) text += " ± " + NumberText(u, u);
+  return text + (unit == "1" ? "" : AfterNumber(ShownUnit(unit)));
 }
 
 }  // namespace twinbench::report

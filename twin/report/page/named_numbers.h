@@ -44,4 +44,8 @@ std::string TextAt(const nlohmann::json& object, const std::string& key);
 std::string NumberText(double value);
 std::string NumberText(double value, double u);
 
+/// "−2.50 ± 0.67 arcsec", with a true minus.
+/// @param u  Standard or expanded; NaN: none is stated.
+std::string MeasuredText(double value, double u, const std::string& unit);
+
 }  // namespace twinbench::report

@@ -64,6 +64,7 @@ Json BlockJson(const Figure& figure) {
                {"x", AxisJson(figure.x)}, {"y", AxisJson(figure.y)}, {"series", Json::array()}};
   for (const FigureSeries& series : figure.series) made["series"].push_back(SeriesJson(series));
   if (!figure.categories.empty()) made["categories"] = figure.categories;
+  if (std::isfinite(figure.radius)) made["radius"] = figure.radius;
   return made;
 }
 

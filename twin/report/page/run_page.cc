@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "twin/core/bench_format.h"
+#include "twin/report/page/causes.h"
+#include "twin/report/page/circles.h"
 #include "twin/report/page/curves.h"
 #include "twin/report/page/diagnosis_page.h"
 #include "twin/report/page/harmonics_of.h"
@@ -21,7 +23,7 @@ void AddFigures(const std::vector<Figure>& figures, PageSection& section) {
   for (const Figure& figure : figures) section.blocks.emplace_back(figure);
 }
 
-PageSection CurveSection(const std::vector<Figure>& curves) {
+PageSection CurveSection(const PageChoice& circles, const nlohmann::json& results, const std::vector<Figure>& curves) {
   PageSection section{"Errors", "Each curve with its expanded uncertainty U as a band. Polar: the distance from the dashed circle is the error.", {}};
   if (std::vector<Figure> less = DeviationFigures(curves); !less.empty()) {
     section.lead += " Truth: the simulated errors, without those orders that the design does not separate.";
@@ -33,6 +35,9 @@ PageSection CurveSection(const std::vector<Figure>& curves) {
     section.blocks.emplace_back(std::move(choice));
   }
   AddFigures(curves, section);
+  if (!circles.figures.empty()) section.blocks.emplace_back(circles);
+  if (Figure ranks = ErrorRankFigure(results); !ranks.series.empty()) section.blocks.emplace_back(std::move(ranks));
+  AddFilled(ErrorRankTable(results), section);
   return section;
 }
 
@@ -116,13 +121,15 @@ PageSection ProvenanceSection(const PageSource& source) {
 Page RunPage(const PageSource& source, const nlohmann::json& results, const nlohmann::json& score, const std::vector<Reading>& readings,
              const std::vector<PageImage>& images) {
   const std::vector<Figure> curves = CurveFigures(results, score);
-  Page page{TitleOf(source), SubtitleOf(source, readings), "", VerdictTone::kPlain, {}, TilesOf(results, score, curves)};
+  const PageChoice circles = CircleChoice(results);
+  const std::vector<Figure>& first = circles.figures.empty() ? curves : circles.figures;
+  Page page{TitleOf(source), SubtitleOf(source, readings), "", VerdictTone::kPlain, {}, TilesOf(results, score, first)};
   if (results.contains("diagnosis")) {
     const PageVerdict verdict = VerdictOf(results.at("diagnosis"));
     page.verdict = verdict.text, page.tone = verdict.tone;
     page.sections = DiagnosisSections(results.at("diagnosis"));
   }
-  for (PageSection& section : std::vector{CurveSection(curves), SpectrumSection(curves, SpectrumFigures(results, score)),
+  for (PageSection& section : std::vector{CurveSection(circles, results, curves), SpectrumSection(curves, SpectrumFigures(results, score)),
                                           VolumetricSection(results), ValueSection(results, score), BudgetSection(results),
                                           ReadingsSection(readings, source.provenance.bench), ImageSection(images)}) {
     if (!section.blocks.empty()) page.sections.push_back(std::move(section));

@@ -40,7 +40,7 @@ void AddRow(const json& results, const json& score, const Value& value, PageTabl
   const std::vector<double> truth = TruthOf(score, value.path, 1);
   table.rows.push_back({value.name, NumberText(value.value, u), value.unit, NumberText(u, u),
                         budget ? NumberText(NumberAt(*budget, "k"), 0.01) : "",
-                        budget ? NumberText(NumberAt(*budget, "U"), NumberAt(*budget, "u")) : "",
+                        budget ? NumberText(NumberAt(*budget, "U"), NumberAt(*budget, "U")) : "",
                         truth.empty() ? "" : NumberText(truth[0], u)});
 }
 
@@ -99,10 +99,12 @@ PageTable WithoutEmptyColumns(PageTable table) {
   return table;
 }
 
-std::string CellText(const json& value) {
+/// @param u  Of a number; NaN: it has none.
+std::string CellText(const json& value, double u) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  return value.is_number() ? NumberText(value.get<double>()) : "";
+  if (!value.is_number()) return "";
+  return MeasuredText(value.get<double>(), u, "");
 }
 
 bool IsPlain(const json& value) {
@@ -125,9 +127,7 @@ void AddGroup(const json& group, std::map<std::string, std::string>& cells) {
     const std::optional<std::string> unit = UnitOfValue(member);
     if (!unit) continue;
     const double value = NumberAt(member, "value_" + *unit), u = NumberAt(member, "u_" + *unit);
-    std::string& cell = cells[key + "_" + *unit];
-    cell = std::isfinite(value) ? NumberText(value, u) : "";
-    if (std::isfinite(u)) cell += " ± " + NumberText(u, u);
+    cells[key + "_" + *unit] = CellText(value, u);
   }
 }
 
@@ -136,10 +136,10 @@ std::map<std::string, std::string> CellsOf(const json& object) {
   std::map<std::string, std::string> cells;
   for (const auto& [key, value] : object.items()) {
     AddGroup(value, cells);
-    if (IsPlain(value)) cells[key] = CellText(value);
+    const bool is_uncertainty = key.starts_with("u_") && object.contains(key.substr(2));
+    if (IsPlain(value) && !is_uncertainty) cells[key] = CellText(value, NumberAt(object, "u_" + key));
     if (IsMeasured(value)) {
-      cells[key] = NumberText(NumberAt(value, "value"), NumberAt(value, "u"));
-      if (value.contains("u")) cells[key] += " ± " + NumberText(NumberAt(value, "u"), NumberAt(value, "u"));
+      cells[key] = CellText(value.at("value"), NumberAt(value, "u"));
     }
   }
   return cells;
@@ -150,9 +150,9 @@ bool IsListOfObjects(const json& node) {
          std::all_of(node.begin(), node.end(), [](const json& e) { return e.is_object(); });
 }
 
-/// Orders with their amplitudes are a spectrum, which has a figure.
-bool IsSpectrum(const json& list) {
-  return list.front().contains("order") && list.size() > kMostRowsOfASpectrum;
+/// Orders with their amplitudes are a spectrum, points of a pass are a curve.
+bool HasFigure(const json& list) {
+  return (list.front().contains("order") && list.size() > kMostRowsOfASpectrum) || list.front().contains("commanded_deg");
 }
 
 std::string ColumnTitle(const std::string& key) {
@@ -193,7 +193,7 @@ PageTable ListTable(const json& results) {
     const auto [name, unit] = NameAndUnit(budget.value("name", ""));
     const double u = NumberAt(budget, "u");
     table.rows.push_back({PathInWords(name), unit, NumberText(NumberAt(budget, "values")), NumberText(u, u),
-                          NumberText(NumberAt(budget, "k"), 0.01), NumberText(NumberAt(budget, "U"), u)});
+                          NumberText(NumberAt(budget, "k"), 0.01), NumberText(NumberAt(budget, "U"), NumberAt(budget, "U"))});
   }
   return WithoutEmptyColumns(table);
 }
@@ -237,7 +237,7 @@ std::vector<PageTable> ObjectTables(const json& results) {
   std::vector<PageTable> tables;
   ForEachObject(results, [&](const std::string& path, const json& object) {
     for (const auto& [key, value] : object.items()) {
-      if (key == "not_separable" || key == "uncertainty_budget" || key == "diagnosis" || !IsListOfObjects(value) || IsSpectrum(value))
+      if (key == "not_separable" || key == "uncertainty_budget" || key == "diagnosis" || !IsListOfObjects(value) || HasFigure(value))
         continue;
       if (auto table = TableOfObjects(PathInWords(Joined(path, key)), value)) tables.push_back(std::move(*table));
     }

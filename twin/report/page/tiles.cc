@@ -16,12 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-/// With a true minus.
-std::string WithUnit(std::string number, const std::string& unit) {
-  if (number.starts_with('-')) number.replace(0, 1, "−");
-  return number + AfterNumber(ShownUnit(unit));
-}
-
 const FigureSeries* FirstEstimate(const std::vector<Figure>& curves) {
   if (curves.empty()) return nullptr;
   for (const FigureSeries& series : curves.front().series)
@@ -44,10 +38,9 @@ void AddCurve(const std::vector<Figure>& curves, std::vector<PageTile>& tiles) {
   }
   if (counted == 0) return;
   const double U = curve->u.empty() ? std::nan("") : curve->k * curve->u[largest], rms = std::sqrt(squares / counted);
-  const std::string plus_minus = std::isfinite(U) ? " ± " + NumberText(U, U) : "";
-  tiles.push_back({"Largest error", WithUnit(NumberText(curve->y[largest], U) + plus_minus, figure.y.unit),
+  tiles.push_back({"Largest error", MeasuredText(curve->y[largest], U, figure.y.unit),
                    fmt::format("{}, at {:.6g}°", figure.title, curve->x[largest])});
-  tiles.push_back({"Rms error", WithUnit(NumberText(rms, U), figure.y.unit), figure.title});
+  tiles.push_back({"Rms error", NumberText(rms, U) + AfterNumber(ShownUnit(figure.y.unit)), figure.title});
 }
 
 void AddScore(const json& score, std::vector<PageTile>& tiles) {

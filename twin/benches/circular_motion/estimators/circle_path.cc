@@ -101,6 +101,12 @@ Eigen::Vector2d Uncertainty_m(const PathPoint& point, const SharedUncertainty& s
   return (own.array().square() + variance).sqrt();
 }
 
+double RadialUncertainty_m(const PathPoint& point, const SharedUncertainty& shared) {
+  if (point.slope.cols() == 0) return point.u_own_m.x();
+  const Eigen::Vector2d radial(std::cos(point.commanded_rad), std::sin(point.commanded_rad));
+  return std::sqrt(point.u_own_m.x() * point.u_own_m.x() + shared.Variance(point.slope.transpose() * radial));
+}
+
 BarAgainstGrid CompareWithGrid(const std::vector<CirclePath>& paths) {
   const std::vector<Difference> all = Differences(paths);
   if (all.empty()) return {};

@@ -41,6 +41,9 @@ Eigen::Vector2d PublishedOffsetOf_m(const std::vector<CirclePoint>& points, int 
 /// Standard uncertainty of x and y of a point.
 Eigen::Vector2d Uncertainty_m(const PathPoint& point, const SharedUncertainty& shared);
 
+/// Standard uncertainty of its radial deviation.
+double RadialUncertainty_m(const PathPoint& point, const SharedUncertainty& shared);
+
 /// Bar minus grid at the same radius, feed, direction and angle, with centre, zero and mean radius taken out of the
 /// difference.
 struct BarAgainstGrid {
