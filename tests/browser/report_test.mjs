@@ -1,5 +1,5 @@
 import assert from "node:assert/strict";
-import { statSync } from "node:fs";
+import { mkdirSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { close, exchangeResults, faintOf, faultsOf, folder, makeRun, open, scenario, twinbench, write } from "./bench.mjs";
@@ -321,10 +321,28 @@ test("pages of plans and investigations are drawn and pass the same checks", asy
     twinbench("report", `${name}.json`);
     const page = await open(`${name}.html`);
     assert.equal(await plots(page).count(), 2);
+    if (name === "investigation") {
+      const words = await page.locator("#figure-probability-of-each-hypothesis svg text").allTextContents();
+      assert.ok(["0", "0.2", "0.4", "0.6", "0.8", "1"].every((tick) => words.includes(tick)), `not from 0 to 1: ${words}`); // the points are from 0.1 to 0.9
+    }
     assert.deepEqual(await faultsOf(page), []);
     assert.deepEqual(page.said, []);
     await page.close();
   }
+});
+
+test("the page of an investigation leads to the pages of its runs, which are made with it", async () => {
+  mkdirSync(join(folder, "asked"));
+  makeRun("asked/01-first", scenario("turntable_shifts"));
+  const steps = ["01-first", "../turntable"].map((run, k) => ({ number: k + 1, run, folder: run, believed: [] }));
+  write("asked/investigation.json", JSON.stringify({ ended: "budget spent", minutes: 10, causes: [], steps }));
+  twinbench("report", "asked");
+  const page = await open("asked/report.html");
+  const links = page.locator("#table-runs a");
+  assert.deepEqual(await links.allInnerTexts(), ["1 01-first"]); // nothing outside of the folder is looked at
+  await links.click();
+  assert.match(await page.locator("h1").innerText(), /: 01-first$/);
+  await page.close();
 });
 
 test("nothing that results or a folder's name say is read as markup or script", async () => {

@@ -49,19 +49,25 @@ TEST(PlanPage, SaysWhichRunToMakeAndWhatMayBeMistaken) {
 TEST(InvestigationPage, ShowsProbabilitiesOverTheRuns) {
   const json investigation = json::parse(R"({
     "told": "tied", "ended": "nothing more can be told", "minutes": 52, "goal": {"text": "target.ez 0.1arcsec", "u": 0.05, "met": true},
-    "unlisted": 0.02, "refused": [], "causes": [{"name": "a", "probability": 0.8, "chi2": 100}, {"name": "b", "probability": 0.18, "chi2": 103}],
+    "unlisted": 0.02, "refused": [], "causes": [{"name": "a", "probability": 0.8, "chi2": 100, "effects": [{"effect": "a", "parameters": {"width_deg": 0.004, "u_width_deg": 0.001}}]}, {"name": "b", "probability": 0.18, "chi2": 103}],
     "steps": [{"number": 1, "run": "first", "words": "own", "reason": "first", "minutes": 30, "expected_bit": 0, "gained_bit": 0, "u_goal": 0.2,
                "unlisted": 0, "believed": [{"name": "a", "probability": 0.5}, {"name": "b", "probability": 0.5}]},
               {"number": 2, "run": "slow", "words": "slowly", "reason": "tells most", "minutes": 22, "expected_bit": 1.5, "gained_bit": 1.25, "u_goal": 0.05,
                "unlisted": 0.02, "believed": [{"name": "a", "probability": 0.8}, {"name": "b", "probability": 0.18}]}]})");
-  const Page page = InvestigationPage({}, investigation);
+  const Page page = InvestigationPage({}, investigation, {"01-first/report.html"});
   EXPECT_EQ(page.verdict, "Not resolvable on this bench: a 80 %, b 18 %");
   const std::vector<Figure> figures = test::BlocksOf<Figure>(page.sections);
   ASSERT_EQ(figures.size(), 3u);
   EXPECT_THAT(figures[0].series[0].y, ElementsAre(0.5, 0.8));
+  EXPECT_EQ(figures[0].y.high, 1.0) << "a probability is seen on the whole of its axis";
   EXPECT_EQ(figures[0].series[2].name, "not in the catalogue");
   EXPECT_THAT(figures[0].series[2].x, ElementsAre(2));
   EXPECT_THAT(figures[1].series[1].y, ElementsAre(0, 1.25));
+  EXPECT_EQ(page.tiles[0].value, "a, 80 %");
+  EXPECT_EQ(page.tiles[0].note, "width 0.0040 ± 0.0010°");
+  const std::vector<PageTable> tables = test::BlocksOf<PageTable>(page.sections);
+  EXPECT_THAT(tables[0].links, ElementsAre("01-first/report.html"));
+  EXPECT_EQ(tables[1].rows[0][1], "width 0.0040 ± 0.0010°");
   EXPECT_EQ(figures[2].note, "target.ez 0.1arcsec, met");
 }
 

@@ -1,7 +1,5 @@
 #include "tools/twinbench/investigated_bench.h"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <system_error>
 
@@ -17,9 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "runs/02-sweeps": of one step.
-RunFolder FolderOf(const std::string& folder, const investigate::Step& step) {
-  return {fmt::format("{}/{:02}-{}", folder, step.number, step.run.name)};
+RunFolder FolderIn(const std::string& folder, const investigate::Step& step) {
+  return {folder + "/" + investigate::FolderOf(step)};
 }
 
 /// A run that is there whole. @throws InputError if it is another scenario's.
@@ -36,7 +33,7 @@ class HiddenTwin : public InvestigatedBench {
       : hidden_(LoadScenario(hidden)), believed_(believed), folder_(folder), page_(page) {}
 
   std::vector<Reading> Measure(const investigate::Step& step, const Scenario& asked) override {
-    const RunFolder run = FolderOf(folder_, step);
+    const RunFolder run = FolderIn(folder_, step);
     if (!IsFinished(run, asked)) MakeAnew(run, step, asked);
     return RunRecord::Open(run.path)->Readings();
   }
@@ -62,7 +59,7 @@ class MeasuredBench : public InvestigatedBench {
       : bench_(bench_file), folder_(folder), page_(page) {}
 
   std::vector<Reading> Measure(const investigate::Step& step, const Scenario& asked) override {
-    const RunFolder run = FolderOf(folder_, step);
+    const RunFolder run = FolderIn(folder_, step);
     if (!IsFinished(run, asked)) {
       fs::create_directories(folder_);
       const std::string scenario = run.path + ".toml";

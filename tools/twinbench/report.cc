@@ -1,15 +1,20 @@
 #include <fmt/core.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/common_options.h"
+#include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/reported.h"
 #include "tools/twinbench/overwriting.h"
+#include "tools/twinbench/run_folder.h"
 #include "tools/web/bundle.h"
 #include "twin/core/errors.h"
+#include "twin/core/run_record.h"
+#include "twin/core/scenario.h"
 #include "twin/report/page/page_json.h"
 #include "twin/report/page/svg.h"
 
@@ -64,13 +69,29 @@ void WritePage(const report::Page& page, const ReportOptions& options) {
   }
 }
 
+/// An investigation measures its runs and does not evaluate them.
+/// @return whether the run has results, and so a page.
+bool WriteRunPage(const RunFolder& run) try {
+  if (!std::filesystem::exists(run.results())) {
+    const auto record = RunRecord::Open(run.path);
+    record->WriteBeside(kResultsFile, JsonText(EvaluatedWithBudget(LoadScenario(run.scenario()), record->Readings()).evaluation.results));
+  }
+  WritePage(PageOf(run.path, "", ""), {run.path, "", "", "", false});
+  return true;
+} catch (const InputError& error) {
+  fmt::print(stderr, "{} has no page: {}\n", run.path, error.what());
+  return false;
+}
+
 void MakeReport(const ReportOptions& options, JsonAnswer& answer) {
   RequireOutput(answer.to(), {options.source, options.score, RunFolder{options.source}.results()});
   if (options.output == "-" && answer.IsOnStdout()) throw InputError("report", "page and --json both go to stdout", "-o FILE, or --json FILE");
   const bool wants_page = options.pictures.empty() || !options.output.empty();
   if (wants_page) RequirePages();
-  const report::Page page = PageOf(options.source, options.score);
   nlohmann::json json = {{"source", options.source}};
+  for (const std::string& run : RunsOfInvestigation(options.source))
+    if (wants_page && WriteRunPage({run})) json["pages_of_runs"].push_back(UsualPagePath(run));
+  const report::Page page = PageOf(options.source, options.score, OutputOf(options));
   if (!options.pictures.empty()) json["pictures"] = {{"folder", options.pictures}, {"files", WritePictures(page, options.pictures)}};
   if (wants_page) {
     WritePage(page, options);
@@ -83,7 +104,7 @@ void MakeReport(const ReportOptions& options, JsonAnswer& answer) {
 
 void WriteReport(const std::string& source, const std::string& score, const std::string& output) {
   RequirePages();
-  WriteFileAtOnce(output, HtmlFor(PageOf(source, score), {source, score, output, ""}));
+  WriteFileAtOnce(output, HtmlFor(PageOf(source, score, output), {source, score, output, ""}));
 }
 
 void AddReport(CLI::App& app) {

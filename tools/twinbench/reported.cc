@@ -70,6 +70,19 @@ report::Page OfDiagnosis(const report::PageSource& source, const nlohmann::json&
   return page;
 }
 
+std::string InvestigationOf(const std::string& source) {
+  return source + "/investigation.json";
+}
+
+report::Page OfInvestigation(const std::string& folder, const std::string& output) {
+  std::vector<std::string> links;
+  for (const std::string& run : RunsOfInvestigation(folder)) {
+    const std::string page = UsualPagePath(run);
+    links.push_back(output != "-" && fs::exists(page) ? fs::proximate(page, fs::absolute(output).parent_path()).string() : "");
+  }
+  return report::InvestigationPage(SourceOf(folder, {InvestigationOf(folder)}), ReadJson(InvestigationOf(folder)), links);
+}
+
 report::Page OfJson(const std::string& path) {
   const nlohmann::json json = ReadJson(path);
   const report::PageSource source = SourceOf(path, {path});
@@ -93,10 +106,9 @@ report::Page OfCampaign(const std::string& path) {
   return page;
 }
 
-report::Page PageOfWhatIsThere(const std::string& source, const std::string& score) {
+report::Page PageOfWhatIsThere(const std::string& source, const std::string& score, const std::string& output) {
   const RunFolder folder{source};
-  const std::string investigation = source + "/investigation.json";
-  if (fs::exists(investigation)) return report::InvestigationPage(SourceOf(source, {investigation}), ReadJson(investigation));
+  if (fs::exists(InvestigationOf(source))) return OfInvestigation(source, output);
   if (fs::exists(folder.results())) return OfRun(folder, score);
   if (!fs::exists(source)) throw NothingToRead(source, kExpected);
   if (fs::is_directory(source)) throw InputError(source, "there is no results.json", kExpected);
@@ -105,12 +117,20 @@ report::Page PageOfWhatIsThere(const std::string& source, const std::string& sco
 
 }  // namespace
 
-report::Page PageOf(const std::string& source, const std::string& score) {
+report::Page PageOf(const std::string& source, const std::string& score, const std::string& output) {
   try {
-    return PageOfWhatIsThere(source, score);
+    return PageOfWhatIsThere(source, score, output);
   } catch (const nlohmann::json::exception& error) {
     throw InputError(source, std::string("a result in it is not as it is written: ") + error.what(), kExpected);
   }
+}
+
+std::vector<std::string> RunsOfInvestigation(const std::string& source) {
+  std::vector<std::string> runs;
+  if (!fs::exists(InvestigationOf(source))) return runs;
+  for (const nlohmann::json& step : ReadJson(InvestigationOf(source)).value("steps", nlohmann::json::array()))
+    if (step.contains("folder")) runs.push_back((fs::path(source) / fs::path(step.at("folder").get<std::string>()).filename()).string());
+  return runs;
 }
 
 std::string UsualPagePath(const std::string& source) {

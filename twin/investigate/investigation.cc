@@ -549,6 +549,10 @@ const char* ToldName(Told told) {
   return "";
 }
 
+std::string FolderOf(const Step& step) {
+  return fmt::format("{:02}-{}", step.number, step.run.name);
+}
+
 const char* EndedName(Ended ended) {
   switch (ended) {
     case Ended::kTold:

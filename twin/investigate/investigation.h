@@ -34,6 +34,9 @@ struct Step {
   double u_goal = 0.0;  // so far; NaN without a goal
 };
 
+/// Where its run is, in the folder of the investigation: "02-sweeps".
+std::string FolderOf(const Step& step);
+
 enum class Told { kNothing, kNamed, kTied, kUnknown };
 enum class Ended { kTold, kBudget, kNothingMore, kDeclined };
 const char* ToldName(Told told);     // "nothing", "named", "tied", "unknown"

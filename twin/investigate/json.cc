@@ -41,6 +41,7 @@ json StepJson(const Step& step) {
     believed.push_back({{"name", name}, {"probability", probability}});
   return {{"number", step.number},
           {"run", step.run.name},
+          {"folder", FolderOf(step)},
           {"words", step.run.words},
           {"sets", step.run.sets},
           {"reason", step.reason},

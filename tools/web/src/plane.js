@@ -78,13 +78,16 @@ export function planeOption(figure, shown, looks, box) {
     if (s.u) series.push(band(s, (x, y) => [x, y], { colour: looks[k].colour, clip: true }));
     series.push(drawn(figure, s, looks[k], colours.paper));
   });
+  const [low, high] = figure.y.ends ?? [];
   const [x, y] = figure.form === "track" ? equalRanges(figure, shown, box) : [{}, {}];
+  const yRange = figure.form === "track" ? y : figure.y.ends ? { min: low, max: high } : rangeWithBands(figure, shown);
+  const wholeNumbers = figure.series.every((s) => s.x.every(Number.isInteger));
   const trigger = figure.form === "track" || figure.form === "points" ? "item" : "axis";
   return {
     ...base(),
     grid,
-    xAxis: axis(figure.x, { ...x, ...(trigger === "axis" ? { min: "dataMin", max: "dataMax" } : {}) }),
-    yAxis: axis(figure.y, { nameGap: 48, ...(figure.form === "track" ? y : rangeWithBands(figure, shown)) }),
+    xAxis: axis(figure.x, { ...x, minInterval: wholeNumbers ? 1 : 0, ...(trigger === "axis" ? { min: "dataMin", max: "dataMax" } : {}) }),
+    yAxis: axis(figure.y, { nameGap: 48, ...yRange }),
     dataZoom: [...zoom({ xAxisIndex: 0 }), ...zoom({ yAxisIndex: 0 })],
     tooltip: {
       ...base().tooltip, trigger,

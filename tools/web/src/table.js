@@ -2,15 +2,15 @@
 import { element, slug } from "./dom.js";
 import { axisTitle, number } from "./format.js";
 
-const isNumber = (text) => text !== "" && /^[-\u2212+]?[\d.]/.test(text) && !/[a-z]{3}/i.test(text);
+const isNumber = (text) => text !== "" && /^[-\u2212+<]? ?[\d.]/.test(text) && !/[a-z]{3}/i.test(text);
 const kMostRows = 2000;
 
-function rowsOf(columns, rows) {
+function rowsOf(columns, rows, links = []) {
   const numeric = columns.map((_, c) => rows.every((row) => row[c] === "" || isNumber(row[c])));
   const cell = (tag, text, c, more = {}) => element(tag, { class: numeric[c] ? "number" : undefined, ...more }, text);
   return [
     element("thead", {}, element("tr", {}, ...columns.map((name, c) => cell("th", name, c, { scope: "col" })))),
-    element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((text, c) => (c === 0 ? cell("th", text, c, { scope: "row" }) : cell("td", text.replace(/^-/, "\u2212"), c)))))),
+    element("tbody", {}, ...rows.map((row, r) => element("tr", {}, ...row.map((text, c) => (c === 0 ? cell("th", links[r] ? element("a", { href: encodeURI(links[r]) }, text) : text, c, { scope: "row" }) : cell("td", text.replace(/^-/, "\u2212"), c)))))),
   ];
 }
 
@@ -23,7 +23,7 @@ export function tableCard(table) {
   return element(
     "section", { class: "card wide", id: `table-${slug(table.title)}` },
     element("h3", {}, table.title),
-    scrolled(table.title, ...rowsOf(table.columns, table.rows)),
+    scrolled(table.title, ...rowsOf(table.columns, table.rows, table.links)),
   );
 }
 

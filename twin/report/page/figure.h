@@ -13,6 +13,7 @@ namespace twinbench::report {
 /// What is plotted along an axis. The unit is empty where there is none.
 struct FigureAxis {
   std::string name, unit;
+  double low = NAN, high = NAN;  // its ends; NaN: as far as the points go
 };
 
 /// What a series is. Truth is known of a twin only and is, like what chance would do, drawn unlike anything that was estimated.
@@ -52,6 +53,7 @@ struct PageTable {
   std::string title;
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;  // each as long as `columns`
+  std::vector<std::string> links = {};         // of each row, from where the page is; empty: there is none
 };
 
 /// Lines as they are, in type of equal width.

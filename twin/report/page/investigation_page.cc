@@ -19,7 +19,7 @@ constexpr const char* kUnlisted = "not in the catalogue";
 
 /// Probabilities of every hypothesis over the steps.
 Figure BeliefFigure(const json& steps) {
-  Figure figure{FigureForm::kLine, "Probability of each hypothesis", "probability after each run", {"run", ""}, {"probability", ""}, {}};
+  Figure figure{FigureForm::kLine, "Probability of each hypothesis", "probability after each run", {"run", ""}, {"probability", "", 0.0, 1.0}, {}};
   std::map<std::string, FigureSeries> beliefs;
   const auto add = [&](const std::string& name, double number, double probability) {
     FigureSeries& series = beliefs[name];
@@ -82,19 +82,35 @@ std::string Ending(const json& investigation) {
   return ending;
 }
 
-PageTable StepTable(const json& steps) {
-  PageTable table{"Runs", {"run", "what", "why", "minutes", "bit expected", "bit gained"}, {}};
+PageTable StepTable(const json& steps, const std::vector<std::string>& links) {
+  PageTable table{"Runs", {"run", "what", "why", "minutes", "bit expected", "bit gained"}, {}, links};
   for (const json& step : steps)
     table.rows.push_back({fmt::format("{:g}  {}", NumberAt(step, "number"), TextAt(step, "run")), TextAt(step, "words"), TextAt(step, "reason"),
-                          NumberText(NumberAt(step, "minutes")), NumberText(NumberAt(step, "expected_bit")), NumberText(NumberAt(step, "gained_bit"))});
+                          fmt::format("{:.1f}", NumberAt(step, "minutes")), fmt::format("{:.2f}", NumberAt(step, "expected_bit")),
+                          fmt::format("{:.2f}", NumberAt(step, "gained_bit"))});
   return table;
 }
 
+/// "width 0.00405 ± 0.00003°", of all causes of a hypothesis.
+std::string SizesOf(const json& hypothesis) {
+  std::string sizes;
+  for (const json& effect : ListAt(hypothesis, "effects")) {
+    const json parameters = effect.value("parameters", json::object());
+    for (const auto& [key, value] : parameters.items()) {
+      const double u = NumberAt(parameters, "u_" + key);
+      if (!value.is_number() || !std::isfinite(u)) continue;  // what was not fitted is the catalogue's
+      const auto [name, unit] = NameAndUnit(key);
+      sizes += (sizes.empty() ? "" : ", ") + name + " " + MeasuredText(value.get<double>(), u, unit);
+    }
+  }
+  return sizes;
+}
+
 PageTable HypothesisTable(const json& investigation) {
-  PageTable table{"Hypotheses at the end", {"hypothesis", "probability", "chi square"}, {}};
+  PageTable table{"Hypotheses at the end", {"hypothesis", "size with u", "probability", "chi square"}, {}};
   for (const json& cause : ListAt(investigation, "causes"))
-    table.rows.push_back({TextAt(cause, "name"), NumberText(NumberAt(cause, "probability")), NumberText(NumberAt(cause, "chi2"))});
-  if (const double unlisted = NumberAt(investigation, "unlisted"); unlisted > 0.0) table.rows.push_back({kUnlisted, NumberText(unlisted), ""});
+    table.rows.push_back({TextAt(cause, "name"), SizesOf(cause), Percent(NumberAt(cause, "probability")), fmt::format("{:.1f}", NumberAt(cause, "chi2"))});
+  if (const double unlisted = NumberAt(investigation, "unlisted"); unlisted > 0.0) table.rows.push_back({kUnlisted, "", Percent(unlisted), ""});
   return table;
 }
 
@@ -104,18 +120,28 @@ PageTable RefusedTable(const json& investigation) {
   return table;
 }
 
+/// What is most probable, with its size, and what that took.
+std::vector<PageTile> TilesOf(const json& investigation, const json& steps, VerdictTone tone) {
+  std::vector<PageTile> tiles;
+  if (const json causes = ListAt(investigation, "causes"); !causes.empty())
+    tiles.push_back({"Most probable", TextAt(causes[0], "name") + ", " + Percent(NumberAt(causes[0], "probability")), SizesOf(causes[0]), tone});
+  tiles.push_back({"Runs", fmt::format("{}", steps.size()), fmt::format("in {:.0f} min", NumberAt(investigation, "minutes"))});
+  return tiles;
+}
+
 }  // namespace
 
-Page InvestigationPage(const PageSource& source, const json& investigation) {
+Page InvestigationPage(const PageSource& source, const json& investigation, const std::vector<std::string>& links) {
   const json steps = ListAt(investigation, "steps");
   Page page{source.name, fmt::format("investigation of {} runs, {:.0f} min", steps.size(), NumberAt(investigation, "minutes")), "", VerdictTone::kDoubt, {}};
   page.verdict = Ending(investigation);
   if (TextAt(investigation, "ended") == "told") page.tone = VerdictTone::kGood;
+  page.tiles = TilesOf(investigation, steps, page.tone);
   PageSection section{"Investigation", "", {}};
   section.blocks.emplace_back(BeliefFigure(steps));
   section.blocks.emplace_back(InformationFigure(steps));
   if (Figure goal = GoalFigure(investigation, steps); !goal.series.empty()) section.blocks.emplace_back(std::move(goal));
-  AddFilled(StepTable(steps), section);
+  AddFilled(StepTable(steps, links), section);
   AddFilled(HypothesisTable(investigation), section);
   AddFilled(RefusedTable(investigation), section);
   page.sections = {section, ProvenanceSection(source)};

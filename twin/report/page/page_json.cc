@@ -50,7 +50,9 @@ const char* Word(VerdictTone tone) {
 }
 
 Json AxisJson(const FigureAxis& axis) {
-  return {{"name", axis.name}, {"unit", ShownUnit(axis.unit)}};
+  Json made = {{"name", axis.name}, {"unit", ShownUnit(axis.unit)}};
+  if (std::isfinite(axis.low) && std::isfinite(axis.high)) made["ends"] = {axis.low, axis.high};
+  return made;
 }
 
 Json SeriesJson(const FigureSeries& series) {
@@ -69,7 +71,7 @@ Json BlockJson(const Figure& figure) {
 }
 
 Json BlockJson(const PageTable& table) {
-  return {{"type", "table"}, {"title", table.title}, {"columns", table.columns}, {"rows", table.rows}};
+  return {{"type", "table"}, {"title", table.title}, {"columns", table.columns}, {"rows", table.rows}, {"links", table.links}};
 }
 
 Json BlockJson(const PageText& text) {

@@ -160,6 +160,7 @@ std::string PlaneSvg(const Figure& figure) {
   const bool joined = figure.form == FigureForm::kLine || figure.form == FigureForm::kAngle;
   const bool equal = figure.form == FigureForm::kTrack;
   Range x_range = RangeOfX(figure), y_range = RangeWithBands(figure);
+  y_range.Add(figure.y.low), y_range.Add(figure.y.high);
   if (equal) MakeEqual(x_range, y_range, kWidth_px - kRight_px - kLeft_px, kHeight_px - kBottom_px - kTop_px);
   const Scale x = ScaleFor(x_range, kLeft_px, kWidth_px - kRight_px, !joined && !equal);
   const Scale y = ScaleFor(y_range, kHeight_px - kBottom_px, kTop_px, !equal);
