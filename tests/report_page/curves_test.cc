@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <random>
 
 #include "twin/report/page/circles.h"
 #include "twin/report/page/harmonics_of.h"
@@ -124,13 +125,15 @@ TEST(ErrorRanks, AreSharesOfTheRadialDeviationWithTheSizesOfBothAxes) {
 
 TEST(SpectrumFigures, ReadListsAndListsOfTerms) {
   const std::vector<Figure> figures = SpectrumFigures(kResults, {});
-  ASSERT_EQ(figures.size(), 2u);
+  ASSERT_EQ(figures.size(), 1u) << "uncertainties of orders are the limits of a spectrum, and none of their own";
   EXPECT_EQ(figures[0].title, "Model terms: amplitude");
   EXPECT_THAT(figures[0].series[0].x, ElementsAre(1, 7));
   EXPECT_THAT(figures[0].series[0].y, ElementsAre(6.5, 0.25));
   EXPECT_THAT(figures[0].series[0].u, ElementsAre(0.5, 0.125));
-  EXPECT_EQ(figures[1].note, "standard uncertainty of each order");
-  EXPECT_THAT(figures[1].series[0].y, ElementsAre(0.01, 0.02));
+  // Rayleigh: with probability 0.05 the root of the sum of two squares is above 2.4477 of their standard deviation.
+  ASSERT_EQ(figures[0].series.size(), 2u);
+  EXPECT_EQ(figures[0].series[1].role, SeriesRole::kExpected);
+  EXPECT_THAT(figures[0].series[1].y, Pointwise(DoubleNear(1e-4), {1.2239, 0.3060}));
 }
 
 Figure CurveOf(int n, double amplitude, int order) {
@@ -148,6 +151,24 @@ TEST(HarmonicsOf, AWaveIsItsAmplitudeAtItsOrderAndNothingElse) {
   EXPECT_THAT(figure->series[0].x, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9));
   // Rounding of a sum of 20 terms: 1e-14.
   EXPECT_THAT(figure->series[0].y, Pointwise(DoubleNear(1e-12), {0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
+}
+
+TEST(HarmonicsOf, OfNoiseFivePercentAreAboveTheLineOfItsPoints) {
+  constexpr int kPoints = 2000;
+  Figure noise = CurveOf(kPoints, 0.0, 1);
+  FigureSeries& points = noise.series[0];
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal(0.0, 0.25);
+  for (double& y : points.y) y += normal(random);
+  points.u.assign(kPoints, 0.25);
+  const Figure spectrum = *HarmonicsOf(noise);
+  ASSERT_EQ(spectrum.series.size(), 2u);
+  int above = 0;
+  for (std::size_t k = 0; k < spectrum.series[0].y.size(); ++k) above += spectrum.series[0].y[k] > spectrum.series[1].y[k] ? 1 : 0;
+  // 999 orders: 50 with a standard deviation of 7.
+  EXPECT_NEAR(above, 50, 21);
+  points.u_order = {0.5};
+  EXPECT_NEAR(HarmonicsOf(noise)->series[1].y[0], 1.2239, 1e-4) << "as it is stated, where it is";
 }
 
 TEST(HarmonicsOf, ThereAreNoneOfACurveWithAGapOrOfPartOfACircle) {

@@ -1,4 +1,4 @@
-// y +- k u: a band along a curve, whiskers on bars. Drawn in the coordinates of the chart, so they zoom with it.
+// y +- k u as a band along a curve, drawn in the coordinates of the chart, so that it zooms with it.
 
 /** Runs of points that follow each other without a gap. */
 function runs(series) {
@@ -27,31 +27,6 @@ export function band(series, at, how) {
         type: "polygon",
         shape: { points: [...upper, ...lower] },
         style: { fill: how.colour, opacity: 0.2 },
-      };
-    },
-  };
-}
-
-/** @param placeOf  x -> its place on the axis: a number, or the index of a category. */
-export function whiskers(series, placeOf, how) {
-  const with_u = series.y.map((_, k) => k).filter((k) => series.y[k] !== null && series.u[k] !== null);
-  return {
-    type: "custom", ...how, silent: true, z: 5, tooltip: { show: false }, animation: false, clip: true,
-    data: with_u.map((k) => [placeOf(series.x[k]), series.y[k]]),
-    renderItem: (params, api) => {
-      const k = with_u[params.dataIndex];
-      const half = series.k * series.u[k];
-      const low = Math.max(series.y[k] - half, how.lowest ?? -Infinity);
-      const [top, foot] = [api.coord([api.value(0), series.y[k] + half]), api.coord([api.value(0), low])];
-      const style = { stroke: how.colour, lineWidth: 1 };
-      const line = (x1, y1, x2, y2) => ({ type: "line", shape: { x1, y1, x2, y2 }, style });
-      return {
-        type: "group",
-        children: [
-          line(top[0], top[1], foot[0], foot[1]),
-          line(top[0] - 3, top[1], top[0] + 3, top[1]),
-          line(foot[0] - 3, foot[1], foot[0] + 3, foot[1]),
-        ],
       };
     },
   };

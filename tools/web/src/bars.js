@@ -1,5 +1,4 @@
-// Spectra and histograms: a bar for each place on the axis.
-import { whiskers } from "./bands.js";
+// Spectra and histograms: a bar for each place on the axis, and a line for what noise or chance would do.
 import { axis, base, grid, lineStyle, zoom } from "./common.js";
 import { number } from "./format.js";
 import { headAt, tipElement, valuesAt } from "./tip.js";
@@ -10,10 +9,12 @@ function placesOf(figure) {
   return [...new Set(figure.series.flatMap((series) => series.x))].sort((a, b) => a - b);
 }
 
-/** A logarithmic axis ends a little below the smallest bar. */
+/** A logarithmic axis ends below the line of noise, or else a little below the smallest bar; what is rounded to nothing is none. */
 function smallest(figure) {
-  const sizes = figure.series.flatMap((series) => series.y).filter((y) => y > 0);
-  return 10 ** Math.floor(Math.log10(Math.min(...sizes)));
+  const noise = figure.series.filter(({ role }) => role === "expected");
+  const sizes = (noise.length ? noise : figure.series).flatMap(({ y }) => y).filter((y) => y > 0);
+  const least = Math.max(Math.min(...sizes), 1e-6 * Math.max(...sizes));
+  return 10 ** Math.floor(Math.log10(noise.length ? least / 5 : least));
 }
 
 export function barsOption(figure, shown, looks, logarithmic) {
@@ -24,7 +25,7 @@ export function barsOption(figure, shown, looks, logarithmic) {
   visible.forEach(({ series: s, look }) => {
     const at = new Map(s.x.map((x, k) => [x, k]));
     const size = (x) => (at.has(x) ? s.y[at.get(x)] : null);
-    if (figure.form === "histogram" && s.role === "expected") {
+    if (s.role === "expected") {
       series.push({ type: "line", name: s.name, data: places.map((x) => [String(x), size(x)]), symbol: "none", lineStyle: lineStyle(look), itemStyle: { color: look.colour } });
       return;
     }
@@ -36,13 +37,12 @@ export function barsOption(figure, shown, looks, logarithmic) {
         borderType: look.dash,
       },
     });
-    if (s.u && visible.length === 1) series.push(whiskers(s, (x) => places.indexOf(x), { colour: palette().ink, lowest }));
   });
   return {
     ...base(),
     grid,
     xAxis: axis(figure.x, { type: "category", data: places.map(String), splitLine: { show: false }, axisLabel: { color: palette().soft, fontSize: 11, formatter: (x) => number(Number(Number(x).toPrecision(3))), hideOverlap: true } }),
-    yAxis: axis(figure.y, { nameGap: 46, scale: false, ...(logarithmic ? { type: "log", min: lowest } : {}) }),
+    yAxis: axis(figure.y, { nameGap: 46, scale: false, ...(logarithmic ? { type: "log", min: lowest, startValue: lowest } : {}) }),
     dataZoom: zoom({ xAxisIndex: 0 }),
     tooltip: {
       ...base().tooltip, trigger: "axis", axisPointer: { type: "shadow" },

@@ -136,8 +136,8 @@ class Card {
       entry.append(swatch(look[s]), element("span", {}, series.name));
       return entry;
     });
-    const bands = this.figure.series.find((series) => series.u);
-    const note = bands ? element("span", { class: "band" }, `${bands.x.length && this.figure.form === "bars" ? "whisker" : "band"}: U, k = ${bands.k.toFixed(2)}`) : "";
+    const banded = this.figure.form !== "bars" && this.figure.series.find((series) => series.u);
+    const note = banded ? element("span", { class: "band" }, `band: U, k = ${banded.k.toFixed(2)}`) : "";
     this.legendElement = element("div", { class: "legend", role: "group", "aria-label": `Series of ${this.figure.title}` }, ...entries, note);
     return this.legendElement;
   }

@@ -23,4 +23,7 @@ const views = {
   ranks: [ranks],
 };
 
-export const viewsOf = (figure) => views[figure.form] ?? [plane];
+/** A spectrum is about what is beyond noise, and noise is small. */
+const isSpectrum = (figure) => figure.form === "bars" && figure.series.some(({ role }) => role === "expected");
+
+export const viewsOf = (figure) => (isSpectrum(figure) ? [logarithmic, bars] : views[figure.form] ?? [plane]);

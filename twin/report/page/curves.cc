@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "twin/report/page/harmonics_of.h"
 #include "twin/report/page/named_numbers.h"
 #include "twin/report/page/scored.h"
 #include "twin/report/page/walk.h"
@@ -23,22 +24,15 @@ bool IsUncertainty(const std::string& key) {
   return key.starts_with("u_");
 }
 
-struct Circumstance {
-  const char *key, *spoken;
-};
-
-std::string Spoken(const json& object, const std::vector<Circumstance>& circumstances) {
+/// What tells one of several objects of a list from the others: "set-up 1, head 12°".
+std::string SeriesOf(const json& object) {
   std::string words;
-  for (const auto& [key, spoken] : circumstances) {
-    if (const double value = NumberAt(object, key); std::isfinite(value))
-      words += (words.empty() ? "" : ", ") + std::string(spoken) + " " + NumberText(value);
+  for (const std::string key : {"setup", "direction", "head_deg"}) {
+    if (!std::isfinite(NumberAt(object, key))) continue;
+    const auto [name, unit] = NameAndUnit(key);
+    words += (words.empty() ? "" : ", ") + (key == "setup" ? "set-up" : name) + " " + MeasuredText(NumberAt(object, key), std::nan(""), unit);
   }
   return words;
-}
-
-/// What tells one of several objects of a list from the others.
-std::string SeriesOf(const json& object) {
-  return Spoken(object, {{"setup", "set-up"}, {"direction", "direction"}, {"head_deg", "head [deg]"}});
 }
 
 /// The figure with that title and unit, made if there is none.
@@ -81,6 +75,7 @@ void AddList(const Lists& lists, const json& object, const std::string& key, con
   Figure figure{lists.form, CurveTitle(lists.path, name), "", lists.x, {name, unit}, {}, {}, PathInWords(lists.path) + ", " + name};
   FigureSeries series{of.empty() ? "estimate" : of, SeriesRole::kEstimate, x, *y, {}, CoverageOf(lists.results, path)};
   if (const auto u = NumbersAt(object, "u_" + key); u && u->size() == x.size()) series.u = *u;
+  if (object.contains("u_harmonics")) series.u_order = NumbersAt(object.at("u_harmonics"), key).value_or(std::vector<double>());
   Figure& to = FigureFor(figures, figure);
   to.series.push_back(series);
   AddTruth(lists.score, path, x, of, to.series);
@@ -128,14 +123,9 @@ json ListsOf(const json& terms) {
 
 void AddSpectrum(const Lists& lists, const json& object, std::vector<Figure>& figures) {
   const auto orders = NumbersAt(object, "order");
-  if (!orders) return;
-  const bool of_uncertainties = lists.path.ends_with("u_harmonics");
-  for (const auto& [key, value] : object.items()) {
-    if (!IsAmplitude(key)) continue;
-    const std::size_t before = figures.size();
-    AddList(lists, object, key, *orders, figures);
-    if (of_uncertainties && figures.size() > before) figures.back().note = "standard uncertainty of each order";
-  }
+  if (!orders || lists.path.ends_with("u_harmonics")) return;  // those are the limits of the spectrum of their curve
+  for (const auto& [key, value] : object.items())
+    if (IsAmplitude(key)) AddList(lists, object, key, *orders, figures);
 }
 
 /// Lists of terms, which are objects of their own.
@@ -199,6 +189,7 @@ std::vector<Figure> SpectrumFigures(const json& results, const json& score) {
     AddSpectrum({results, score, path, "order", FigureForm::kBars, {"order", ""}}, object, figures);
     AddTerms(results, score, path, object, figures);
   });
+  for (Figure& figure : figures) AddNoiseLimit(figure);
   return figures;
 }
 

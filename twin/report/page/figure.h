@@ -26,6 +26,7 @@ struct FigureSeries {
   std::vector<double> x, y;  // as long as each other; NaN: not available. Bars of a figure with categories have no x
   std::vector<double> u;     // standard uncertainty of y; empty: none is stated
   double k = 2.0;            // coverage factor: the band is y +- k u
+  std::vector<double> u_order = {};  // of a curve: standard uncertainty of the amplitude of its orders from 1 on; empty: none is stated
 };
 
 enum class FigureForm {

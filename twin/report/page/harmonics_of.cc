@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <complex>
+#include <utility>
 
+#include "twin/core/reading.h"
 #include "twin/separate/fourier.h"
 
 namespace twinbench::report {
@@ -21,6 +23,13 @@ bool GoesRoundInEqualSteps(const FigureSeries& series) {
   return true;
 }
 
+/// Of the amplitude of any order, where the points are independent.
+double OfIndependent(const std::vector<double>& u) {
+  double squares = 0.0;
+  for (const double one : u) squares += one * one;
+  return std::sqrt(2.0 * squares) / static_cast<double>(u.size());
+}
+
 FigureSeries AmplitudesOf(const FigureSeries& curve) {
   const int n = static_cast<int>(curve.y.size());
   separate::Fourier transform(n);
@@ -30,18 +39,33 @@ FigureSeries AmplitudesOf(const FigureSeries& curve) {
   for (int order = 1; order <= (n - 1) / 2; ++order) {
     bars.x.push_back(order);
     bars.y.push_back(2.0 * std::abs(lines[order]) / n);
+    const auto k = static_cast<std::size_t>(order) - 1;
+    if (!curve.u_order.empty()) bars.u.push_back(k < curve.u_order.size() ? curve.u_order[k] : kNaN);
+    else if (!curve.u.empty()) bars.u.push_back(OfIndependent(curve.u));
   }
   return bars;
 }
 
 }  // namespace
 
+void AddNoiseLimit(Figure& spectrum) {
+  const double in_u = std::sqrt(-2.0 * std::log(0.05));  // 95th percentile of Rayleigh's distribution
+  FigureSeries limit{"95 % of noise", SeriesRole::kExpected, {}, {}, {}};
+  for (const FigureSeries& series : spectrum.series) {
+    if (series.u.empty()) continue;
+    if (limit.x.empty()) limit.x = series.x, limit.y.assign(series.x.size(), kNaN);
+    for (std::size_t k = 0; k < series.u.size() && k < limit.y.size(); ++k) limit.y[k] = std::fmax(limit.y[k], in_u * series.u[k]);
+  }
+  if (!limit.x.empty()) spectrum.series.push_back(std::move(limit));
+}
+
 std::optional<Figure> HarmonicsOf(const Figure& curve) {
-  Figure figure{FigureForm::kBars, curve.title + ": harmonics", "amplitudes of the plotted points",
-                {"order", ""},     {"amplitude", curve.y.unit}, {}, {}, curve.file.empty() ? "" : curve.file + ": harmonics"};
+  Figure figure{FigureForm::kBars, curve.title + ": amplitude spectrum", "of the plotted points",
+                {"order", ""},     {"amplitude", curve.y.unit}, {}, {}, curve.file.empty() ? "" : curve.file + ": spectrum"};
   for (const FigureSeries& series : curve.series) {
     if (GoesRoundInEqualSteps(series)) figure.series.push_back(AmplitudesOf(series));
   }
+  AddNoiseLimit(figure);
   return figure.series.empty() ? std::nullopt : std::optional(figure);
 }
 

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 
 #include "twin/core/bench_format.h"
 #include "twin/report/page/causes.h"
@@ -41,12 +43,16 @@ PageSection CurveSection(const PageChoice& circles, const nlohmann::json& result
   return section;
 }
 
-PageSection SpectrumSection(const std::vector<Figure>& curves, const std::vector<Figure>& spectra) {
-  PageSection section{"Spectra", "Amplitudes order by order.", {}};
-  for (const Figure& curve : curves) {
-    if (const auto harmonics = HarmonicsOf(curve)) section.blocks.emplace_back(*harmonics);
-  }
-  AddFigures(spectra, section);
+/// @param curves, circles  Of which the spectra are, beside those that the results hold.
+PageSection SpectrumSection(const std::vector<Figure>& curves, const std::vector<Figure>& circles, std::vector<Figure> spectra) {
+  for (const std::vector<Figure>* figures : {&curves, &circles})
+    for (const Figure& figure : *figures)
+      if (auto harmonics = HarmonicsOf(figure)) spectra.push_back(std::move(*harmonics));
+  std::ranges::stable_sort(spectra, std::greater(), [](const Figure& figure) { return figure.series.front().x.size(); });
+  PageChoice choice{"Amplitude spectrum", "", {"of"}, {}, std::move(spectra)};
+  for (const Figure& figure : choice.figures) choice.answers.push_back({figure.title.substr(0, figure.title.find(": amplitude spectrum"))});
+  PageSection section{"Spectra", "Amplitudes order by order. Of 100 orders that hold nothing but noise, 95 stay below the dashed line.", {}};
+  if (!choice.figures.empty()) section.blocks.emplace_back(std::move(choice));
   return section;
 }
 
@@ -129,7 +135,7 @@ Page RunPage(const PageSource& source, const nlohmann::json& results, const nloh
     page.verdict = verdict.text, page.tone = verdict.tone;
     page.sections = DiagnosisSections(results.at("diagnosis"));
   }
-  for (PageSection& section : std::vector{CurveSection(circles, results, curves), SpectrumSection(curves, SpectrumFigures(results, score)),
+  for (PageSection& section : std::vector{CurveSection(circles, results, curves), SpectrumSection(curves, circles.figures, SpectrumFigures(results, score)),
                                           VolumetricSection(results), ValueSection(results, score), BudgetSection(results),
                                           ReadingsSection(readings, source.provenance.bench), ImageSection(images)}) {
     if (!section.blocks.empty()) page.sections.push_back(std::move(section));

@@ -24,7 +24,8 @@ const Ink kZero = {"#545c66", 1.0, "5 4"};
 Ink InkOf(const FigureSeries& series, std::size_t k) {
   static const std::vector<std::string> colours = {"#0b62a8", "#b84a00", "#00735a", "#8a3f97", "#7a5b00", "#a8284b", "#3d5a80", "#5b6470"};
   static const std::vector<std::string> dashes = {"", "7 4", "2 3", "10 3 2 3", "4 2", "", "7 4", "2 3"};
-  if (series.role == SeriesRole::kTruth || series.role == SeriesRole::kExpected) return {"#1c2126", 1.5, "2 4"};
+  if (series.role == SeriesRole::kTruth) return {"#1c2126", 1.5, "2 4"};
+  if (series.role == SeriesRole::kExpected) return {"#1c2126", 1.5, "8 4"};
   return {colours[k % colours.size()], 2.0, dashes[k % dashes.size()]};
 }
 
@@ -84,7 +85,7 @@ void DrawHead(const Figure& figure, SvgCanvas& canvas) {
   for (std::size_t k = 0; k < figure.series.size(); ++k) {
     const FigureSeries& series = figure.series[k];
     canvas.Line(x, 46, x + 24, 46, InkOf(series, k));
-    canvas.Dot(x + 12, 46, InkOf(series, k), IsOpen(series));
+    if (series.role != SeriesRole::kExpected) canvas.Dot(x + 12, 46, InkOf(series, k), IsOpen(series));
     const std::string text = series.name + (series.u.empty() ? "" : fmt::format(" (band: U, k = {:.2f})", series.k));
     canvas.Text(x + 30, 50, text);
     x += 54.0 + 6.6 * static_cast<double>(text.size());
@@ -138,7 +139,7 @@ void DrawSeries(const FigureSeries& series, const Ink& ink, bool joined, const A
     canvas.Area(upper, {ink.colour, 0.0, "", 0.2});
   }
   if (joined) canvas.Path(middle, ink);
-  if (joined && middle.size() > kMostDots) return;
+  if (series.role == SeriesRole::kExpected || (joined && middle.size() > kMostDots)) return;
   for (const auto& [x, y] : middle) canvas.Dot(x, y, ink, IsOpen(series));
 }
 
@@ -218,6 +219,11 @@ std::string PolarSvg(const Figure& figure) {
   return canvas.Text();
 }
 
+/// What noise or chance would do is a line over the bars.
+bool IsBar(const FigureSeries& series) {
+  return series.role != SeriesRole::kExpected;
+}
+
 std::string BarsSvg(const Figure& figure) {
   SvgCanvas canvas(kWidth_px, kHeight_px);
   DrawHead(figure, canvas);
@@ -230,9 +236,13 @@ std::string BarsSvg(const Figure& figure) {
   const Scale y = ScaleFor(y_range, kHeight_px - kBottom_px, kTop_px, true);
   DrawAxes(figure, x, y, canvas);
   const double group_px = 0.8 * gap / (x.high - x.low) * (x.to_px - x.from_px);
-  const double bar_px = group_px / static_cast<double>(figure.series.size());
+  const double bar_px = group_px / static_cast<double>(std::max<std::ptrdiff_t>(1, std::ranges::count_if(figure.series, IsBar)));
   for (std::size_t s = 0; s < figure.series.size(); ++s) {
     const FigureSeries& series = figure.series[s];
+    if (!IsBar(series)) {
+      DrawSeries(series, InkOf(series, s), true, [&](std::size_t k, double value) { return std::pair(x.At(series.x[k]), y.At(value)); }, canvas);
+      continue;
+    }
     for (std::size_t k = 0; k < series.x.size(); ++k) {
       if (!std::isfinite(series.y[k])) continue;
       const double top_px = std::min(y.At(series.y[k]), y.At(0.0));
