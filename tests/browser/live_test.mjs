@@ -72,6 +72,12 @@ test("a served twin is seen while it is measured, and stopped by the page as by 
   await page.locator("#live-residual-of-psd-a-x .plot[data-points]").waitFor();
   assert.match(await page.locator("#judged").innerText(), /^\d+ readings predicted by those before them; no alarm at a false-alarm rate of 1 % a run$/);
 
+  for (const last of await page.locator("#residuals dd").allInnerTexts()) assert.match(last, /^(not predicted|\S+ of ± \S+ µm)$/);
+  const [saved] = await Promise.all([page.waitForEvent("download"), page.locator("#save").click()]);
+  const [head, ...rows] = readFileSync(await saved.path(), "utf8").trimEnd().split("\n").map((line) => line.split(","));
+  assert.deepEqual(head.slice(0, 6), ["reading", "time_s", "setup", "pass", "phase", "status"]);
+  assert.ok(head.includes("psd_a_x_V") && rows.length > 0 && rows.every((row) => row.length === head.length), String(head));
+
   const pause = page.locator("#pause"), paused = page.locator("#pause-said");
   await pause.click();
   await page.locator('#pause-said[data-state="paused"]').waitFor();
@@ -130,9 +136,9 @@ test("a served twin shows where clients have moved its tables, and is stopped fr
   await until(() => existsSync(join(folder, "watched.toml")), () => "no bench file");
   const port = Number(readFileSync(join(folder, "watched.toml"), "utf8").match(/kind = "scpi"[^[]*tcp:127\.0\.0\.1:(\d+)/)[1]);
   const target = page.locator(".now dd").first();
-  await until(async () => /^0(\.0+)? deg$/.test(await target.innerText()), () => "the target does not begin at 0");
+  await until(async () => /^0(\.0+)?°$/.test(await target.innerText()), () => "the target does not begin at 0");
   await ask(port, "ROT1:ANGL 30;STAT?");
-  await until(async () => /^(30(\.0+)?|29\.99+\d*|30\.00+\d*) deg$/.test(await target.innerText()), () => "the target is not seen to get to 30 deg");
+  await until(async () => /^(30(\.0+)?|29\.99+\d*|30\.00+\d*)°$/.test(await target.innerText()), () => "the target is not seen to get to 30 deg");
   assert.deepEqual(await faultsOf(page), []);
   await page.getByRole("button", { name: "Stop serving" }).click();
   await page.locator("#stop-sure").click();

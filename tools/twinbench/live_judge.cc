@@ -9,6 +9,7 @@
 #include "tools/twinbench/alarm_text.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
+#include "twin/report/page/named_numbers.h"
 
 namespace twinbench::tools {
 namespace {
@@ -34,7 +35,7 @@ nlohmann::json JudgedNumber(double value, double scale) {
 nlohmann::json ResidualsJson(const Watched& watched, int after) {
   nlohmann::json channels = nlohmann::json::array(), readings = nlohmann::json::array();
   for (std::size_t c = 0; c < watched.channels.size(); ++c)
-    channels.push_back({{"name", watched.channels[c]}, {"unit", watched.units[c].name}});
+    channels.push_back({{"name", report::PathInWords(watched.channels[c])}, {"unit", report::ShownUnit(watched.units[c].name)}});
   for (const diagnose::PredictedReading& p : watched.report.predicted) {
     if (p.reading <= after) continue;
     nlohmann::json v = nlohmann::json::array(), u = nlohmann::json::array();
@@ -46,7 +47,7 @@ nlohmann::json ResidualsJson(const Watched& watched, int after) {
     }
     readings.push_back({{"n", p.reading}, {"v", v}, {"u", u}});
   }
-  return {{"channels", channels}, {"readings", readings}};
+  return {{"channels", channels}, {"readings", readings}, {"limit_u", watched.report.limit_u}};
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "tools/web/bundle.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
+#include "twin/report/page/named_numbers.h"
 
 namespace twinbench::tools {
 namespace {
@@ -37,6 +38,11 @@ std::vector<const ReadingColumn*> Shown(const BenchFormat& format) {
 const char* RoleName(const ReadingColumn& column) {
   if (column.role == ColumnRole::kRequired) return "axis";
   return column.IsShown() ? "shown" : "circumstance";
+}
+
+nlohmann::json ColumnJson(const std::string& column, const char* role) {
+  const auto [name, unit] = report::NameAndUnit(column);
+  return {{"column", column}, {"name", name}, {"unit", report::ShownUnit(unit)}, {"role", role}};
 }
 
 /// Text of a number, as it stands in readings.csv; nothing is null.
@@ -73,7 +79,7 @@ void LivePage::Watch(RunRecord& record, const Scenario& scenario, const std::str
       scenario, [this](const char* kind, const std::string& json) { server_->Post(kind, json); });
   const std::vector<const ReadingColumn*> columns = Shown(FormatOf(scenario.bench));
   nlohmann::json named = nlohmann::json::array();
-  for (const ReadingColumn* column : columns) named.push_back({{"name", column->name}, {"role", RoleName(*column)}});
+  for (const ReadingColumn* column : columns) named.push_back(ColumnJson(column->name, RoleName(*column)));
   const std::string run = OneLine(
       {{"command", command_}, {"bench", scenario.bench}, {"folder", folder}, {"can_pause", can_pause}, {"columns", named}});
   server_->Begin(run);
@@ -140,7 +146,7 @@ Pause::Ears LivePage::Ears() {
 void LivePage::Serve(const std::string& bench, const std::string& where, const std::vector<std::string>& axes) {
   if (!server_) return;
   nlohmann::json columns = nlohmann::json::array();
-  for (const std::string& axis : axes) columns.push_back({{"name", axis}, {"role", "axis"}});
+  for (const std::string& axis : axes) columns.push_back(ColumnJson(axis, "axis"));
   Begin({{"bench", bench}, {"folder", where}, {"columns", columns}});
 }
 

@@ -265,6 +265,7 @@ WatchReport Watch(const LinearRun& run, const WatchOptions& options) {
     scale.Add(innovation);
   }
   report.noise_scale = scale.value();
+  report.limit_u = limits.single * scale.value();
   return report;
 }
 

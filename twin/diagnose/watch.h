@@ -37,6 +37,7 @@ struct WatchReport {
   std::vector<PredictedReading> predicted;  // every reading of the run, in its order
   std::vector<Alarm> alarms;  // in the order in which they came
   int judged = 0;             // readings that those before them determine
+  double limit_u = kNaN;      // of a single reading's deviation, in its u, as the noise is seen now
   double noise_scale = 1.0;   // readings' scatter about their predictions / what is stated
 };
 

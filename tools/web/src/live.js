@@ -5,7 +5,7 @@ import { liveFigures, residualFigures } from "./live_figures.js";
 import { inquiry } from "./live_inquiry.js";
 import { pausePanel } from "./live_pause.js";
 import { stopPanel } from "./live_stop.js";
-import { number } from "./format.js";
+import { measured, number, withUnit } from "./format.js";
 import { isDark, setTheme } from "./theme.js";
 
 const token = new URLSearchParams(location.search).get("token") ?? "";
@@ -19,11 +19,13 @@ const verdict = element("p", { class: "verdict", role: "status", id: "state" }, 
 const bar = element("progress", { max: 1, value: 0, "aria-label": "Readings done" });
 const counted = element("p", { class: "subtitle", id: "counted" }, "");
 const axes = element("dl", { class: "now", "aria-label": "Last reading" });
+const save = button("Save readings (CSV)", saveCsv, { class: "theme", id: "save", hidden: true });
 const cards = element("div", { class: "cards" });
 const residualCards = element("div", { class: "cards" });
 const judged = element("p", { class: "subtitle", id: "judged" }, "No reading is predicted by those before it yet");
 const alarms = element("ol", { class: "alarms", id: "alarms" });
-const residualPart = element("section", { class: "part", "aria-label": "Residuals" }, element("h2", {}, "Against the twin's prediction"), judged, element("div", { role: "log", "aria-label": "Alarms" }, alarms), residualCards);
+const lastResiduals = element("dl", { class: "now", id: "residuals", "aria-label": "Last reading less its prediction, of the limit that raises an alarm" });
+const residualPart = element("section", { class: "part", "aria-label": "Residuals" }, element("h2", {}, "Against the twin's prediction"), judged, lastResiduals, element("div", { role: "log", "aria-label": "Alarms" }, alarms), residualCards);
 const send = (path) => fetch(address(path), { method: "POST" });
 const stop = stopPanel(() => send("/stop"));
 const pause = pausePanel(send);
@@ -38,6 +40,7 @@ let residuals = null;
 let predicted = 0;
 let raised = 0;
 let columns = [];
+let rows = []; // of every reading that the page was told
 let ended = false;
 let paused = null; // what the program says of its pause
 let heard = performance.now();
@@ -52,15 +55,6 @@ function clock(seconds) {
   const whole = Math.round(seconds);
   const two = (n) => String(n).padStart(2, "0");
   return whole < 3600 ? `${Math.floor(whole / 60)}:${two(whole % 60)}` : `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)}`;
-}
-
-const spoken = { um: "µm", urad: "µrad", degC: "°C" };
-
-/** "spindle_x_um" -> ["spindle x", "µm"] */
-function parted(name) {
-  const at = name.lastIndexOf("_");
-  const unit = name.slice(at + 1);
-  return at > 0 ? [name.slice(0, at).replaceAll("_", " "), spoken[unit] ?? unit] : [name, ""];
 }
 
 function begin({ command, bench, folder, can_pause, columns: named }) {
@@ -85,10 +79,9 @@ function begin({ command, bench, folder, can_pause, columns: named }) {
     bar.setAttribute("aria-label", "Trials done");
     stop.isOf("Stop the campaign", "Stop the campaign?", "Trials that have begun are finished and kept, and no others begin. The same command with --resume goes on.");
   }
-  columns = named.map((column) => {
-    const [name, unit] = parted(column.name);
-    return { ...column, name, unit, column: column.name };
-  });
+  columns = named;
+  rows = [];
+  save.hidden = counts || serves;
   figures = liveFigures(columns);
   axes.replaceChildren(...columns.map(({ name }) => element("div", {}, element("dt", {}, name), element("dd", {}, "\u2013"))));
   cards.replaceChildren(...figures.cards);
@@ -105,37 +98,58 @@ function held(event) {
   if (!ended) sayState();
 }
 
+function showLast(values) {
+  columns.forEach(({ unit }, c) => (axes.children[c].lastChild.textContent = values[c] === null ? "\u2013" : withUnit(number(values[c]), unit)));
+}
+
 /** Axes that others move. */
 function moved({ t, v, moving }) {
   figures?.add({ t, v });
-  columns.forEach(({ unit }, c) => (axes.children[c].lastChild.textContent = `${number(v[c])} ${unit}`));
+  showLast(v);
   subtitle.textContent = `bench time ${clock(t)}, ${moving ? "moving" : "at rest"}`;
   changed = true;
 }
 
 function reading(r) {
   figures?.add(r);
-  columns.forEach(({ unit }, c) => (axes.children[c].lastChild.textContent = `${number(r.v[c])} ${unit}`));
-  subtitle.textContent = `reading ${r.n}: ${r.phase.replace("_", " ")}, set-up ${r.setup}, pass ${r.pass}, ${r.status.replace("_", " ")}`;
+  showLast(r.v);
+  rows.push([r.n, r.t, r.setup, r.pass, r.phase, r.status, ...r.v]);
+  subtitle.textContent = `reading ${r.n}: ${r.phase.replaceAll("_", " ")}, set-up ${r.setup}, pass ${r.pass}, ${r.status.replace("_", " ")}`;
   changed = true;
 }
 
 function progress({ done, planned, bench_s, left_s }) {
   bar.max = planned;
   bar.value = done;
-  counted.textContent = `${done} of ${planned} readings, bench time ${clock(bench_s)}, ${left_s < 0 ? "time left not known yet" : `${clock(left_s)} left, ends at ${new Date(Date.now() + 1000 * left_s).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" })}`}`;
+  counted.textContent = `${done} of ${planned} readings, bench time ${clock(bench_s)}, ${left_s < 0 ? "time left not known yet" : done === planned ? "complete" : `${clock(left_s)} left, ends at ${new Date(Date.now() + 1000 * left_s).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" })}`}`;
 }
 
-/** What the twin, set to the readings before, said that these should be. */
-function compare({ channels, readings }) {
+/** The record has every reading; this is what the page was told. */
+function saveCsv() {
+  const head = ["reading", "time_s", "setup", "pass", "phase", "status", ...columns.map(({ column }) => column)];
+  const text = [head, ...rows].map((row) => row.join(",")).join("\n");
+  element("a", { href: URL.createObjectURL(new Blob([`${text}\n`], { type: "text/csv" })), download: "readings.csv" }).click();
+}
+
+/** What the twin, set to the readings before, said that these should be. @param limit_u  That raises an alarm. */
+function compare({ channels, readings, limit_u }) {
   if (!residuals) {
     residuals = residualFigures(channels);
     residualCards.replaceChildren(...residuals.cards);
   }
-  residuals.add(readings);
+  readings.forEach((reading) => residuals.add(reading, limit_u));
+  showResiduals(channels, readings.at(-1), limit_u);
   predicted += readings.filter(({ v }) => v.some((value) => value !== null)).length;
   sayJudged();
   changed = true;
+}
+
+function showResiduals(channels, { v, u }, limit_u) {
+  lastResiduals.replaceChildren(...channels.map(({ name, unit }, c) => {
+    const limit = limit_u * u[c];
+    const is = v[c] === null ? "not predicted" : withUnit(measured(v[c], limit, 1), unit).replace("\u00b1", "of \u00b1");
+    return element("div", {}, element("dt", {}, name), element("dd", { class: Math.abs(v[c]) > limit ? "beyond" : undefined }, is));
+  }));
 }
 
 function sayJudged() {
@@ -206,5 +220,5 @@ const theme = button(isDark() ? "Light" : "Dark", () => {
 
 document.getElementById("page").append(
   element("header", {}, element("div", { class: "brand" }, element("span", {}, "twinbench, live"), theme), title, subtitle, verdict),
-  element("main", { id: "content", tabindex: -1 }, element("div", { class: "halts" }, stop.element, pause.element), steps.element, element("section", { class: "part" }, bar, counted, axes), trials.element, cards, residualPart),
+  element("main", { id: "content", tabindex: -1 }, element("div", { class: "halts" }, stop.element, pause.element), steps.element, element("section", { class: "part" }, bar, counted, axes, save), trials.element, cards, residualPart),
 );

@@ -9,7 +9,7 @@ import { onThemeChange } from "./theme.js";
 const kShown = 600; // readings; older ones leave the plots
 
 class LiveCard {
-  /** @param figure  With empty series.  @param take  (reading, values) -> [x, y] of each series. */
+  /** @param figure  With empty series.  @param take  (reading) -> [x, y, u] of each series: y null is a gap, undefined is not there. */
   constructor(figure, take) {
     Object.assign(this, { figure, take });
     this.plot = element("div", { class: "plot", role: "img", "aria-label": `${figure.title}, ${axisTitle(figure.y)} against ${axisTitle(figure.x)}` });
@@ -29,19 +29,28 @@ class LiveCard {
       this.legend.replaceChildren(...this.figure.series.map((series, s) => element("span", { class: "entry" }, swatch(look[s]), series.name)));
   }
 
-  add(reading) {
-    this.take(reading).forEach(([x, y], s) => {
+  /** Lines are not drawn across a re-mounting. */
+  add(reading, ...more) {
+    const points = this.take(reading, ...more);
+    if (this.setup !== undefined && reading.setup !== this.setup) this.push(points.map(([x]) => [x, null, null]));
+    this.setup = reading.setup;
+    this.push(points);
+  }
+
+  push(points) {
+    points.forEach(([x, y, u], s) => {
       const series = this.figure.series[s];
-      if (x === null || y === null) return;
-      series.x.push(x);
-      series.y.push(y);
-      if (series.x.length > kShown) series.x.shift(), series.y.shift();
+      if (x === null || y === undefined) return;
+      [[series.x, x], [series.y, y], ...(series.u ? [[series.u, u]] : [])].forEach(([list, value]) => {
+        list.push(value);
+        if (list.length > kShown) list.shift();
+      });
     });
     this.plot.dataset.points = this.figure.series.reduce((sum, series) => sum + series.x.length, 0);
   }
 }
 
-const empty = (name) => ({ name, role: "estimate", x: [], y: [] });
+const empty = (name, more) => ({ name, role: "estimate", x: [], y: [], ...more });
 
 /** Pairs of columns that are x and y of one thing, by their names: "psd a x", "psd a y". */
 function pairs(columns) {
@@ -54,7 +63,7 @@ function pairs(columns) {
 
 function trackCard(columns, { x, y, name }) {
   const axis = (c) => ({ name: columns[c].name, unit: columns[c].unit });
-  return new LiveCard({ form: "track", title: name, x: axis(x), y: axis(y), series: [empty(name)] }, ({ v }) => [[v[x], v[y]]]);
+  return new LiveCard({ form: "track", title: name, x: axis(x), y: axis(y), series: [empty(name)] }, ({ v }) => [[v[x], v[y] ?? undefined]]);
 }
 
 /** Everything with one unit and one role in one plot against the bench's time. */
@@ -65,48 +74,36 @@ function timeCards(columns, role, title) {
     const name = units.length > 1 ? `${title}, ${unit || "numbers"}` : title;
     return new LiveCard(
       { form: "line", title: name, x: { name: "bench time", unit: "s" }, y: { name: of.length > 1 ? "" : columns[of[0]].name, unit }, series: of.map((k) => empty(columns[k].name)) },
-      ({ t, v }) => of.map((k) => [t, v[k]]),
+      ({ t, v }) => of.map((k) => [t, v[k] ?? undefined]),
     );
   });
 }
 
-/** What the readings deviate by from their prediction, one plot a channel, with twice the standard uncertainty about it. */
+/** What the readings deviate by from their prediction, one plot a channel, with its expanded uncertainty and the limits that raise an alarm about zero. */
 export function residualFigures(channels) {
-  const cards = channels.map(({ name, unit }, c) => new LiveCard(
-    { form: "line", title: `Residual of ${name.replaceAll("_", " ")}`, x: { name: "reading", unit: "" }, y: { name: "reading - prediction", unit },
-      series: [empty("residual"), empty("+2 u"), empty("-2 u")] },
-    ({ n, v, u }) => [[n, v[c]], [n, u[c] === null ? null : 2 * u[c]], [n, u[c] === null ? null : -2 * u[c]]],
-  ));
-  return {
-    cards: cards.map((card) => card.element),
-    add: (readings) => readings.forEach((reading) => cards.forEach((card) => card.add(reading))),
-    draw: () => cards.forEach((card) => card.chart.draw()),
-  };
+  const limit = (name) => empty(name, { role: "expected" });
+  return figuresOf(channels.map(({ name, unit }, c) => new LiveCard(
+    { form: "line", title: `Residual of ${name}`, x: { name: "reading", unit: "" }, y: { name: "reading less prediction", unit },
+      series: [empty("residual"), empty("U, k = 2", { u: [], k: 2 }), limit("upper limit"), limit("lower limit")] },
+    ({ n, v, u }, limit_u) => {
+      const at = (y) => [n, u[c] === null ? null : y, u[c]];
+      return [[n, v[c]], at(0), at(limit_u * u[c]), at(-limit_u * u[c])];
+    },
+  )));
 }
 
 /** Means over the trials so far, one plot a result, with the standard uncertainty of the mean about it where there is one. */
-export function meanFigures(names) {
-  const cards = names.map((name, r) => new LiveCard(
-    { form: "line", title: `Mean of ${name}`, x: { name: "trials", unit: "" }, y: { name: "mean", unit: "" }, series: [empty("mean"), empty("+ u"), empty("- u")] },
-    ({ trials, results }) => {
-      const { mean, u_mean } = results[r];
-      const edge = (way) => [trials, mean === null || u_mean === null ? null : mean + way * u_mean];
-      return [[trials, mean], edge(1), edge(-1)];
-    },
-  ));
-  return {
-    cards: cards.map((card) => card.element),
-    add: (told) => cards.forEach((card, r) => told.results[r] && card.add(told)),
-    draw: () => cards.forEach((card) => card.chart.draw()),
-  };
-}
+export const meanFigures = (names) => figuresOf(names.map((name, r) => new LiveCard(
+  { form: "line", title: `Mean of ${name}`, x: { name: "trials", unit: "" }, y: { name: "mean", unit: "" }, series: [empty("mean and u", { u: [], k: 1 })] },
+  ({ trials, results }) => [[trials, results[r]?.mean ?? null, results[r]?.u_mean ?? null]],
+)));
+
+const figuresOf = (all) => ({
+  cards: all.map((card) => card.element),
+  add: (...told) => all.forEach((card) => card.add(...told)),
+  draw: () => all.forEach((card) => card.chart.draw()),
+});
 
 /** @param columns  Of the readings: name, unit, role. */
-export function liveFigures(columns) {
-  const all = [...pairs(columns).map((pair) => trackCard(columns, pair)), ...timeCards(columns, "axis", "Axes"), ...timeCards(columns, "shown", "Shown")];
-  return {
-    cards: all.map((card) => card.element),
-    add: (reading) => all.forEach((card) => card.add(reading)),
-    draw: () => all.forEach((card) => card.chart.draw()),
-  };
-}
+export const liveFigures = (columns) =>
+  figuresOf([...pairs(columns).map((pair) => trackCard(columns, pair)), ...timeCards(columns, "axis", "Axes"), ...timeCards(columns, "shown", "Shown")]);
