@@ -12,12 +12,6 @@
 namespace twinbench::sim {
 namespace {
 
-const EffectEntry& EntryOf(const EffectSettings& effect, const Scenario& scenario) {
-  const EffectEntry* const entry = FindEffect(effect.name, scenario.bench);
-  Require(entry, "the loader knows every effect");
-  return *entry;
-}
-
 std::span<double> NumbersOf(const Field& field) {
   if (const auto* const one = std::get_if<double*>(&field)) return {*one, 1};
   if (const auto* const list = std::get_if<std::span<double>>(&field)) return *list;
@@ -52,11 +46,12 @@ void ChangeKeys(Scenario& actual) {
   if (actual.effects.empty()) return;
   const std::vector<ScenarioKey> keys = KeysOf(actual);
   for (const EffectSettings& effect : actual.effects) {
-    const EffectEntry& entry = EntryOf(effect, actual);
-    for (const EffectParameter& parameter : entry.parameters) {
+    const EffectEntry* const entry = FindEffect(effect.name, actual.bench);
+    if (!entry) continue;  // a signal, which is in no catalogue
+    for (const EffectParameter& parameter : entry->parameters) {
       for (const KeyChange& change : parameter.changes) {
         if (!change.only_at.empty() && !std::ranges::count(change.only_at, effect.where)) continue;
-        for (double& number : NumbersAt(keys, change.key, effect, entry))
+        for (double& number : NumbersAt(keys, change.key, effect, *entry))
           Change(change.how, change.share * Parameter(effect, parameter.name.c_str()), number);
       }
     }
@@ -65,7 +60,10 @@ void ChangeKeys(Scenario& actual) {
 
 std::vector<EffectSettings> BeyondKeys(const Scenario& scenario) {
   std::vector<EffectSettings> effects = scenario.effects;
-  std::erase_if(effects, [&](const EffectSettings& e) { return EntryOf(e, scenario).ChangesKeysAlone(); });
+  std::erase_if(effects, [&](const EffectSettings& e) {
+    const EffectEntry* const entry = FindEffect(e.name, scenario.bench);
+    return entry && entry->ChangesKeysAlone();
+  });
   return effects;
 }
 
