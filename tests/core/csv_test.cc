@@ -44,7 +44,7 @@ TEST(Csv, NamesLineAndFaultOfABadFile) {
   const CsvTable table = ParseTable("a,b\n1,x\n");
   EXPECT_KEPT(MessageOf([&] { CsvNumber(table, table.rows[0], 1, 1.0); }));
   EXPECT_KEPT(MessageOf([] { ReadCsv("no_such.csv"); }));
-  EXPECT_KEPT(MessageOf([] { ReadCsv(testing::TempDir()); }));
+  EXPECT_KEPT(MessageOf([] { ReadCsv("/"); }));
   EXPECT_KEPT(MessageOf([] { ReadCsv("/dev/null"); }));
   for (const char* header : {"mesured_deg", "measured_arcsec", "nothing_like_it"}) {
     const CsvTable other = ParseTable(std::string(header) + "\n1\n");

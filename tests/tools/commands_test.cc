@@ -167,7 +167,7 @@ TEST_F(Commands, BashCompletesCommandsAndOptions) {
 }
 
 TEST_F(Commands, ZshAndFishCompleteToo) {
-  EXPECT_THAT(Succeed({"completion", "zsh"}), testing::AllOf(StartsWith("#compdef twinbench\n"), HasSubstr("    measure) found=(--help")));
+  EXPECT_THAT(Succeed({"completion", "zsh"}), testing::AllOf(testing::StartsWith("#compdef twinbench\n"), HasSubstr("    measure) found=(--help")));
   EXPECT_THAT(Succeed({"completion", "fish"}), HasSubstr("complete -c twinbench -n '__fish_seen_subcommand_from measure' -l allow-homing\n"));
   ExpectRefused({"completion", "tcsh"});
 }

@@ -1,19 +1,14 @@
 #include "tools/twinbench/common_options.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <chrono>
+#include <ctime>
 
 namespace twinbench::tools {
 namespace {
 
-using SteadyClock = std::chrono::steady_clock;
-const SteadyClock::time_point program_began = SteadyClock::now();
-
-double Seconds(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
+const auto program_began = std::chrono::steady_clock::now();
 
 }  // namespace
 
@@ -26,10 +21,8 @@ std::shared_ptr<const Talk> AddTalk(CLI::App& command) {
 }
 
 void SayWhatItTook(const std::string& command) {
-  rusage used{};
-  getrusage(RUSAGE_SELF, &used);
-  fmt::print(stderr, "twinbench {}: {:.1f} s, {:.1f} s of CPU time, {} MB\n", command,
-             std::chrono::duration<double>(SteadyClock::now() - program_began).count(), Seconds(used.ru_utime) + Seconds(used.ru_stime), used.ru_maxrss / 1024);
+  const double real_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - program_began).count();
+  fmt::print(stderr, "twinbench {}: {:.1f} s, {:.1f} s of CPU time\n", command, real_s, static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
 }
 
 CLI::Option* AddOutput(CLI::App& command, std::string& to, const std::string& what, const std::string& also) {
@@ -45,10 +38,6 @@ void AddSet(CLI::App& command, std::vector<std::string>& overrides) {
   command.add_option("--set", overrides, "override a key of the scenario: procedure.positions=12")->allow_extra_args(false);
 }
 
-void AddScenarioOfReadings(CLI::App& command, std::string& scenario) {
-  command.add_option("--scenario", scenario, "bench and procedure behind a readings.csv");
-}
-
 void AddEstimator(CLI::App& command, std::string& estimator, const std::string& also) {
   command.add_option("--estimator" + also, estimator, "rigorous: weighted least squares (exact model); published: the paper's equations")
       ->check(CLI::IsMember({"published", "rigorous"}))
@@ -56,10 +45,7 @@ void AddEstimator(CLI::App& command, std::string& estimator, const std::string& 
 }
 
 void AddThreads(CLI::App& command, int& threads) {
-  constexpr int kMost = 4096;
-  command.add_option("--threads", threads, "that share the work; the result is the same; left out: one for each core")
-      ->check(CLI::Range(1, kMost))
-      ->default_str("");
+  command.add_option("--threads", threads, "that share the work; the result is the same; left out: one for each core")->check(CLI::Range(1, 4096))->default_str("");
 }
 
 }  // namespace twinbench::tools

@@ -16,27 +16,16 @@ struct Talk {
 /// `--quiet`, `--verbose` and `--version`, which every command has (AnswerWith).
 std::shared_ptr<const Talk> AddTalk(CLI::App& command);
 
-/// What `--verbose` says last: how long the command took and how much memory.
+/// What `--verbose` says last: how long the command took.
 void SayWhatItTook(const std::string& command);
 
-/// `-o`: where a command writes what it makes.
-/// @param what  "the page".
+/// `-o`: where a command writes what it makes, as "the page". A text may go to stdout.
 /// @param also  Another name of the option, as it was called first: ",--tables".
 CLI::Option* AddOutput(CLI::App& command, std::string& to, const std::string& what, const std::string& also = "");
-
-/// The same of a text, which may go to stdout: "-".
 CLI::Option* AddTextOutput(CLI::App& command, std::string& to, const std::string& what, const std::string& also = "");
 
-/// `--set` of a scenario's keys.
 void AddSet(CLI::App& command, std::vector<std::string>& overrides);
-
-/// `--scenario` of readings that do not know theirs.
-void AddScenarioOfReadings(CLI::App& command, std::string& scenario);
-
-/// `--estimator`, by which readings are evaluated.
 void AddEstimator(CLI::App& command, std::string& estimator, const std::string& also = "");
-
-/// `--threads`.
 void AddThreads(CLI::App& command, int& threads);
 
 }  // namespace twinbench::tools

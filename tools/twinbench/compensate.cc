@@ -82,7 +82,7 @@ void AddCompensate(CLI::App& app) {
       "compensate", "Compute from the index error of a table the corrections that its controller should add");
   auto options = std::make_shared<CompensateOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
-  AddScenarioOfReadings(*command, options->scenario);
+  command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
   AddOutput(*command, options->table, "the table");
   command->add_option("--form", options->form, FormsText())->capture_default_str();
   command->add_option("--axis", options->axis, "what the controller calls the axis")->capture_default_str();

@@ -181,7 +181,7 @@ void AddDiagnose(CLI::App& app) {
   auto* command = app.add_subcommand("diagnose", "Identify the causes by which readings differ from a scenario");
   auto options = std::make_shared<DiagnoseOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
-  AddScenarioOfReadings(*command, options->scenario);
+  command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
   AddOutput(*command, options->extended, "the scenario extended by what was found");
   AddSet(*command, options->overrides);
   AddEstimator(*command, options->model, ",--model");

@@ -47,7 +47,7 @@ void AddSeparate(CLI::App& app) {
       "separate", "Separate readings into the errors of the table under test and of its reference");
   auto options = std::make_shared<SeparateOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
-  AddScenarioOfReadings(*command, options->scenario);
+  command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
   AddOutput(*command, options->tables, "errors by position with u (errors.csv) and the bench's other tables into a folder, or the errors alone into a FILE.csv,", ",--tables");
   AddEstimator(*command, options->estimator);
   AddSet(*command, options->overrides);

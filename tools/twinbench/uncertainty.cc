@@ -89,7 +89,7 @@ void AddUncertainty(CLI::App& app) {
   auto options = std::make_shared<UncertaintyOptions>();
   options->trials.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
-  AddScenarioOfReadings(*command, options->scenario);
+  command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
   AddEstimator(*command, options->estimator);
   command->add_flag("--monte-carlo", options->monte_carlo, "propagate distributions by Monte Carlo trials as well (Supplement 1)");
   command->add_option("--trials", options->trials.most_trials, "stop after so many at the latest")
