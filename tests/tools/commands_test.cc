@@ -1,6 +1,7 @@
 #include <regex>
 #include <sstream>
 
+#include "tests/support/night.h"
 #include "tests/tools/program_here.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/scenario.h"
@@ -164,6 +165,17 @@ TEST_F(Commands, BashCompletesCommandsAndOptions) {
                            "COMP_WORDS=(twinbench measure --all); COMP_CWORD=2; _twinbench; echo \"${COMPREPLY[*]}\"\n");
   ASSERT_EQ(std::system(("bash " + At("complete.sh") + " > " + At("said")).c_str()), 0);
   EXPECT_EQ(Read("said"), "diagnose\n--allow-homing\n");
+}
+
+/// Some looked at things for a minute and failed then.
+TEST_F(Commands, APlanOfEveryShippedScenarioEndsByNight) {
+  if (!IsNight()) GTEST_SKIP() << "some minutes";
+  for (const auto& entry : std::filesystem::directory_iterator(TWINBENCH_SOURCE_DIR "/scenarios")) {
+    if (entry.path().extension() != ".toml") continue;
+    const Outcome plan = Call({"plan", entry.path().string()});
+    EXPECT_EQ(plan.exit_code, 0) << entry.path() << "\n" << plan.err;
+    EXPECT_THAT(plan.out, HasSubstr("minutes")) << entry.path();
+  }
 }
 
 TEST_F(Commands, ZshAndFishCompleteToo) {

@@ -1,0 +1,80 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/support/night.h"
+#include "tools/twinbench/passing_run.h"
+#include "tools/twinbench/planned_run.h"
+#include "twin/benches/evaluated.h"
+#include "twin/core/estimator.h"
+#include "twin/report/evaluation.h"
+
+/// `check` says of a scenario in a second what its run would state (docs/plan.md): held against the runs of the shipped scenarios.
+namespace twinbench::tools {
+namespace {
+
+/// Scenario and result that are further off, and why.
+const std::set<std::string> kKnown = {
+    "circular_bodies bar.ball3",  // its bodies move as no kinematic machine does
+};
+
+std::vector<std::string> ShippedScenarios() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(TWINBENCH_SOURCE_DIR "/scenarios"))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+Scenario Shipped(const std::string& name) {
+  return LoadScenario(TWINBENCH_SOURCE_DIR "/scenarios/" + name + ".toml");
+}
+
+double CpuSecondsOfCheck(const std::string& name) {
+  const std::clock_t begin = std::clock();
+  OutlookAtOnce(Shipped(name));
+  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
+TEST(Check, TakesLessThanASecond) {
+  for (const std::string& name : ShippedScenarios()) {
+    double least_s = CpuSecondsOfCheck(name);
+    for (int again = 0; again < 2 && least_s >= 1.0; ++again) least_s = std::min(least_s, CpuSecondsOfCheck(name));  // others use the processor
+    EXPECT_LT(least_s, 1.0) << name;
+  }
+}
+
+/// Phases go with amplitudes that may be mere noise: their u is no promise.
+bool IsPromised(const std::string& scenario, const plan::Certainty& stated) {
+  const bool is_known = std::ranges::any_of(kKnown, [&](const std::string& known) { return (scenario + " " + stated.name).starts_with(known); });
+  return !is_known && stated.name.find("phase") == stated.name.npos && std::isfinite(stated.rms_u) && stated.rms_u > 0.0;
+}
+
+void ExpectWhatTheRunStates(const std::string& name) {
+  SCOPED_TRACE(name);
+  const Scenario scenario = Shipped(name);
+  const std::vector<Reading> readings = ReadingsOfTwin(scenario);
+  const plan::Outlook stated = plan::OutlookOf(EvaluationOf(scenario, readings, Estimator::kRigorous).results, static_cast<int>(readings.size()), 0.0);
+  const plan::Outlook said = OutlookAtOnce(scenario);
+  for (const plan::Certainty& result : stated.results) {
+    if (!IsPromised(name, result)) continue;
+    const auto before = std::ranges::find(said.results, result.name, &plan::Certainty::name);
+    ASSERT_NE(before, said.results.end()) << result.name;
+    // Where an evaluation finds the noise in its readings, two runs differ by 3 to 10 %: 20 % are two of that and more.
+    EXPECT_NEAR(before->rms_u / result.rms_u, 1.0, 0.2) << result.name;
+  }
+}
+
+TEST(Check, SaysTheUncertaintiesThatTheRunStates) {
+  const std::vector<std::string> quick = {"encoder_comparison", "hob_drive_orders", "turntable_shifts"};
+  for (const std::string& name : test::IsNight() ? ShippedScenarios() : quick) ExpectWhatTheRunStates(name);
+}
+
+}  // namespace
+}  // namespace twinbench::tools
