@@ -35,7 +35,7 @@ void AddTop(Keys& keys, BenchFile& f) {
   t.Text("name", &f.name, {}, "of the bench, for the record");
   t.Text("record", &f.record, {}, "replay: folder of the recorded run, from the bench file's folder");
   t.Number("attempts", kPure, {1, 100}, &f.attempts, "at one reading, before the run stops");
-  t.Number("jump", {"V"}, Positive(100), &f.jump_V, "of a channel between neighbouring stops; more is implausible");
+  t.Number("jump", {"V"}, Positive(100), &f.jump_V, "of a channel between neighbouring measuring positions; more is implausible");
 }
 
 void AddAd(Keys& keys, AdSettings& s) {

@@ -74,7 +74,7 @@ class OpenedBench : public OpenBench {
     }
     if (!watched_) return notices;
     for (const StandingTable& table : watched_->tables())
-      notices.push_back(fmt::format("{}: at most {:+.3g} arcsec off its stop while blocks were taken", table.name,
+      notices.push_back(fmt::format("{}: at most {:+.3g} arcsec off its measuring position while blocks were taken", table.name,
                                     table.furthest_rad / units::arcsec));
     return notices;
   }

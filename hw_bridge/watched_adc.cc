@@ -46,7 +46,7 @@ void WatchedAdc::Look(StandingTable& table) {
   if (!(std::abs(off_rad) > std::abs(table.furthest_rad))) return;
   if (std::abs(off_rad) > table.tolerance_rad)
     throw DeviceFault(FaultKind::kMoved, table.name,
-                      fmt::format("left its stop, {:.6f} deg, while a block was taken: {:.3g} arcsec off, and {:.3g} are allowed",
+                      fmt::format("left its measuring position, {:.6f} deg, while a block was taken: {:.3g} arcsec off, and {:.3g} are allowed",
                                   state.commanded_rad / units::deg, off_rad / units::arcsec,
                                   table.tolerance_rad / units::arcsec));
   table.furthest_rad = off_rad;

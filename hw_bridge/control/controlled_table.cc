@@ -45,7 +45,7 @@ void ControlledTable::RequireUnderstood(double angle_rad, const TableState& now)
   if (off_rad <= numbers_.Understood(units::deg)) return;
   StopAndFail(
       FaultKind::kRefused,
-      fmt::format("was told {} deg and understood {} deg, {:.4g} arcsec off", numbers_.Text(angle_rad, units::deg),
+      fmt::format("was commanded to {} deg and understood {} deg, {:.4g} arcsec off", numbers_.Text(angle_rad, units::deg),
                   PrintInUnit(now.commanded_rad, units::deg), off_rad / units::arcsec));
 }
 

@@ -198,8 +198,8 @@ double ScaleToColumn(const std::string& unit, const std::string& column, const s
   if (unit.empty() || unit == ending || !of_column) return 1.0;
   const DialogueUnit& told = UnitAt(unit, where);
   if (told.kind != of_column->kind)
-    throw InputError(where, fmt::format("the field for {} is told in {}", column, unit),
-                     "a unit that can be told in " + ending);
+    throw InputError(where, fmt::format("the field for {} is given in {}", column, unit),
+                     "a unit that can be given in " + ending);
   return told.to_SI / of_column->to_SI;
 }
 

@@ -71,7 +71,7 @@ void EspMachine::RequireUnderstood(const std::vector<double>& to) {
     if (!states[k].referenced)
       StopAndFail(FaultKind::kRestarted, fmt::format("axis {} lost its origin as the move began", Axes()[k].name));
     if (std::abs(states[k].commanded - to[k]) <= Understood(Axes()[k])) continue;
-    StopAndFail(FaultKind::kRefused, fmt::format("axis {} was told {} and understood {}", Axes()[k].name,
+    StopAndFail(FaultKind::kRefused, fmt::format("axis {} was commanded to {} and understood {}", Axes()[k].name,
                                                  Place(k, to[k]), Place(k, states[k].commanded)));
   }
 }

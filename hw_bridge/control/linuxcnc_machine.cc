@@ -161,7 +161,7 @@ std::vector<AxisLimits> LinuxCncMachine::Travel() {
   for (std::size_t k = 0; k < homed.size(); ++k) {
     if (homed[k] != "YES")
       line().Fail(FaultKind::kRestarted,
-                  fmt::format("axis {} is not homed, and its limits are told only then: home it at the machine",
+                  fmt::format("axis {} is not homed, and its limits are known only then: home it at the machine",
                               Axes()[k].name));
   }
   TakeCommands();

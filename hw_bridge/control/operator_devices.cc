@@ -16,7 +16,7 @@ void Operator::DoAndConfirm(const std::string& device, const std::string& what) 
 
 void ConsoleFixture::Mount(int setup, double clamp_rad, double reseat_rad) {
   hands_.DoAndConfirm("fixture",
-                      fmt::format("Set-up {}: clamp the grating {:.4f} deg back on the reference's rotor, seat the "
+                      fmt::format("Mounting {}: clamp the grating {:.4f} deg back on the reference's rotor, seat the "
                                   "reference's body at {:.4f} deg on the target.",
                                   setup, clamp_rad / units::deg, reseat_rad / units::deg));
 }
@@ -26,7 +26,7 @@ void ConsoleMachineFixture::Clear() {
 }
 
 void ConsoleMachineFixture::Mount(int setup, const std::string& what) {
-  hands_.DoAndConfirm("fixture", fmt::format("Set-up {}: mount {}.", setup, what));
+  hands_.DoAndConfirm("fixture", fmt::format("Mounting {}: mount {}.", setup, what));
 }
 
 void ConsoleIndexer::IndexTo(int tooth, double angle_rad) {

@@ -66,7 +66,7 @@ void RequireKnown(const CsvTable& table, const std::vector<std::string>& known) 
                        "columns of readings.csv; the nearest is " + Nearest(column, known));
   }
   if (!table.Column(kReading))
-    throw InputError(table.WhereHeader(), "there is no column reading", "the number of the stop, as in stops.csv");
+    throw InputError(table.WhereHeader(), "there is no column reading", "the number of the measuring position, as in stops.csv");
 }
 
 /// The program's rows by the number of their stop, the first of each.
@@ -131,7 +131,7 @@ ReadStops ReadStopsBack(const std::string& path, const std::vector<Reading>& pla
     PrintLine(merged, fields);
   }
   const std::size_t used = stops.rows.size() - static_cast<std::size_t>(back.missing);
-  if (used == 0) throw BenchError(path + ": no row is of a stop that was asked for");
+  if (used == 0) throw BenchError(path + ": no row is of a measuring position that was asked for");
   back.extra = static_cast<int>(written.rows.size() - used);
   back.readings = ParseReadingsCsv(merged, path, bench);
   return back;

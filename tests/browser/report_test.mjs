@@ -66,7 +66,7 @@ test("a page opens with what the run says: its title, tiles with U and units, an
 test("a circle has both directions, says how much its deviations are magnified, and its errors are ranked", async () => {
   const page = await open("circles/report.html");
   const card = page.locator("#errors .choice figure.card");
-  assert.match(await card.locator("h3").innerText(), /^Radial deviation, set-up \d \((bar|grid)\), .* \[µm\]$/);
+  assert.match(await card.locator("h3").innerText(), /^Radial deviation, mounting \d \((bar|grid)\), .* \[µm\]$/);
   assert.deepEqual(await card.locator(".legend .entry").allInnerTexts(), ["counter-clockwise", "clockwise"]);
   const times = async () => Number((await card.locator(".note").innerText()).match(/^R = \S+ mm, deviations magnified (.+) times$/)[1].replaceAll("\u202f", ""));
   const whole = await times();
@@ -312,7 +312,7 @@ test("pages of plans and investigations are drawn and pass the same checks", asy
   const planned = { name: "separation.target.ez_arcsec", order: [1, 2, 3], u: [0.01, 0.02, 0.015] };
   write("plan.json", JSON.stringify({
     runs: [{ run: "own", readings: 10, minutes: 5, dof: 3, shifts: {}, results: [{ name: planned.name, rms_u: 0.05 }], harmonics: [planned], not_separable: ["dx"] }],
-    next: "best", advice: [{ name: "best", words: "two more set-ups", bit_per_minute: 0.5, sets: [] }, { name: "same", words: "the same again", bit_per_minute: 0.1, sets: [] }],
+    next: "best", advice: [{ name: "best", words: "two more mountings", bit_per_minute: 0.5, sets: [] }, { name: "same", words: "the same again", bit_per_minute: 0.1, sets: [] }],
     ties: [{ present: cause("a"), blamed: cause("b"), told_from: 0.1, unit: "um" }], never_told_apart: [[cause("a"), cause("c")]], detectable: [], invisible: [],
   }));
   const step = (number, p) => ({ number, run: "r", words: "w", reason: "y", minutes: 5, expected_bit: 0.5, gained_bit: 0.4, u_goal: null, unlisted: 0, believed: [{ name: "a", probability: p }, { name: "b", probability: 1 - p }] });

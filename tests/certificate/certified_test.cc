@@ -59,10 +59,10 @@ TEST(Certified, LeavesOutWhatHasNoValueOrNoUncertainty) {
 
 TEST(Certified, LeavesOutAThingThatIsKnownInASumOnly) {
   json results = OneTable();
-  results["separation"]["not_separable"] = {{{"what", "target and reference"}, {"why", "one set-up"}}};
+  results["separation"]["not_separable"] = {{{"what", "target and reference"}, {"why", "one mounting"}}};
   const Certified certified = Take("rotary_4dof", results);
   EXPECT_TRUE(certified.quantities.empty());
-  EXPECT_EQ(WhyNot(certified, "table under test, ez"), "target and reference: one set-up");
+  EXPECT_EQ(WhyNot(certified, "table under test, ez"), "target and reference: one mounting");
 }
 
 TEST(Certified, SaysWhichOrderACurveDoesNotHold) {
@@ -109,7 +109,7 @@ TEST(Certified, LeavesOutPointsThatAreInvalidAndUnitsThatNobodyKnows) {
 
 TEST(Certified, NamesAStandardOnlyWhereTheReadingsAreAllThatItAsksFor) {
   json results = json::parse(R"({"iso230_2": [{"setup": 0, "missing": [], "axis": {"A": {"value_arcsec": 9.5, "u_arcsec": 0.5, "bias_arcsec": 0.25}}}]})");
-  const std::string title = "positioning against the reference, set-up 0, A", bias = "scatter of the readings adds an estimated 0.25 arcsec to the value, which is not taken out";
+  const std::string title = "positioning against the reference, mounting 0, A", bias = "scatter of the readings adds an estimated 0.25 arcsec to the value, which is not taken out";
   const Certified complete = Take("encoder_comparison", results);
   EXPECT_EQ(Find(complete, title)->norm, "ISO 230-2");
   EXPECT_EQ(Find(complete, title)->note, bias);

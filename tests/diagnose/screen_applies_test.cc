@@ -41,7 +41,7 @@ TEST(Screen, LeavesOutHarmonicsThatTheFreeTablesAbsorb) {
   const auto tests = ScreenAsStated(run, kNulls, 1);
   EXPECT_EQ(Find(tests, "harmonics: target angle"), nullptr);
   EXPECT_EQ(Find(tests, "harmonics: reference angle"), nullptr);
-  EXPECT_EQ(Find(tests, "offsets by set-up"), nullptr);
+  EXPECT_EQ(Find(tests, "offsets by mounting"), nullptr);
 }
 
 TEST(Screen, NeverHoldsATestWithoutStatisticOrPValue) {

@@ -177,7 +177,7 @@ TEST(Controls, TwoSetUpsAndOnePassAreRefusedForWantOfRedundancy) {
   RotaryOf(scenario).procedure.passes = {1};
   RotaryOf(scenario).procedure.phases = {"full_circle"};
   EXPECT_THAT(MessageOf([&] { Diagnosed(TakeReadings(scenario), scenario); }),
-              testing::HasSubstr("2 set-ups with 1 pass each leave 0 degrees of freedom"));
+              testing::HasSubstr("2 mountings with 1 pass each leave 0 degrees of freedom"));
 }
 
 /// Readings without noise, evaluated with the published equations.

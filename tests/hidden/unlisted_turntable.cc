@@ -29,7 +29,7 @@ UnlistedSignal OnePassAside(const Draw& draw) {
   const auto aside = [&](std::size_t i) {
     return draw.readings[i].pass == pass ? std::cos(order * draw.readings[i].target_rad + phase) : 0.0;
   };
-  return OnAxis(axis, {"pass", "time", "set-up"}, draw.FullCircleSeries(aside));
+  return OnAxis(axis, {"pass", "time", "mounting"}, draw.FullCircleSeries(aside));
 }
 
 }  // namespace

@@ -230,7 +230,7 @@ TEST_F(Importing, MakesOneReadingOfEveryRestOfADriveFromStopToStop) {
   EXPECT_EQ(imported.readings[5].position, 5);
   EXPECT_NEAR(imported.readings[5].reference_rad / units::deg, 150.0, 1e-9);
   EXPECT_GT(imported.readings[5].dwell_s, 0.5);
-  EXPECT_THAT(imported.story, HasSubstr("rows on the way between stops"));
+  EXPECT_THAT(imported.story, HasSubstr("rows on the way between measuring positions"));
 }
 
 TEST_F(Importing, KeepsAWaveOfTheOrderThatItSays) {

@@ -92,7 +92,7 @@ TEST_P(AnyMachineContract, ARealBenchGoesOnWithTheReadingThatIsMissing) {
     }
   }
   ASSERT_EQ(log.readings.size(), without_stops.size());
-  EXPECT_EQ(log.events.size(), 2u) << "each set-up was mounted once";
+  EXPECT_EQ(log.events.size(), 2u) << "each mounting was mounted once";
   for (std::size_t k = 0; k < without_stops.size(); ++k) {
     EXPECT_EQ(log.readings[k].reading, static_cast<int>(k));
     for (const ReadingColumn& column : InstrumentColumns(BenchOf(scenario_).format->columns))

@@ -42,7 +42,7 @@ TEST_P(MachineContract, GivesTheSameBitsThroughTheNetworkAndWritesDownWhatItAske
     EXPECT_TRUE(run.log.attempts.empty());
     for (const char* device : {"machine", "instruments"})
       EXPECT_GT(std::ranges::count(run.log.calls, device, &DeviceCall::device), 0) << device;
-    EXPECT_EQ(run.log.events.size(), 2u) << "two set-ups were mounted";
+    EXPECT_EQ(run.log.events.size(), 2u) << "two mountings were mounted";
   }
 }
 

@@ -257,7 +257,7 @@ TEST(MachineFaults, AnAxisThatLeavesItsStopWhileItIsReadCostsAnAttempt) {
     ASSERT_EQ(twin.log.attempts.size(), by_um > 1.0 ? 1u : 0u);
     if (by_um > 1.0) {
       EXPECT_EQ(twin.log.attempts[0].fault, "moved");
-      EXPECT_THAT(twin.log.attempts[0].text, HasSubstr("y: does not stand at its stop"));
+      EXPECT_THAT(twin.log.attempts[0].text, HasSubstr("y: does not stand at its measuring position"));
     } else {
       const auto& extra = twin.log.readings[0].extra;
       EXPECT_NEAR(std::stod(extra.at("y_encoder_after_mm")) - std::stod(extra.at("y_encoder_before_mm")), 0.9e-3, 1e-9);

@@ -97,7 +97,7 @@ TEST(CircleChoice, HasBothDirectionsOfASetUpAndFeedOnceRoundAndBeginsWithTheLarg
   const PageChoice choice = CircleChoice({{"radial", radial}});
   EXPECT_THAT(choice.answers, ElementsAre(ElementsAre("1 (bar)", "40 mm/min"), ElementsAre("0 (bar)", "40 mm/min")));
   const Figure& largest = choice.figures[0];
-  EXPECT_EQ(largest.title, "Radial deviation, set-up 1 (bar), 40 mm/min");
+  EXPECT_EQ(largest.title, "Radial deviation, mounting 1 (bar), 40 mm/min");
   EXPECT_EQ(largest.radius, 100000.0) << "in the unit of the deviations";
   ASSERT_EQ(largest.series.size(), 2u);
   EXPECT_EQ(largest.series[0].name, "counter-clockwise");

@@ -77,7 +77,7 @@ TEST(DiagnosisSections, ShowTheLoudestResidualFirstAndAllOthersToo) {
   const std::vector<PageSection> sections = DiagnosisSections(kDiagnosis);
   const PageChoice& choice = BlockIn<PageChoice>(sections, "Residuals before and after the extension");
   EXPECT_THAT(choice.answers, ElementsAre(ElementsAre("dwell", "b"), ElementsAre("dwell", "a"),
-                                          ElementsAre("position in set-up 3", "a")));
+                                          ElementsAre("position in mounting 3", "a")));
   EXPECT_THAT(choice.figures[0].series[0].y, ElementsAre(0.5, -0.5));
   EXPECT_EQ(choice.figures[0].series[0].role, SeriesRole::kBefore);
   EXPECT_EQ(choice.figures[0].x.unit, "s");

@@ -21,7 +21,7 @@ const json kPlan = json::parse(R"({
     {"run": "other", "readings": 50, "minutes": 6, "dof": 30, "not_separable": [], "shifts": {},
      "results": [{"name": "separation.target.ez_arcsec", "rms_u": 0.1, "worst_u": 0.2, "values": 36}],
      "harmonics": [{"name": "separation.target.ez_arcsec", "order": [1, 2], "u": [0.03, 0.04]}]}],
-  "next": "best", "advice": [{"name": "best", "words": "two more set-ups", "bit_per_minute": 0.5, "minutes": 30, "readings": 90,
+  "next": "best", "advice": [{"name": "best", "words": "two more mountings", "bit_per_minute": 0.5, "minutes": 30, "readings": 90,
                               "of_causes_bit": 10, "of_results_bit": 5, "sets": ["procedure.shifts=[0, 5]"]}],
   "ties": [{"present": {"effect": "a", "where": "x"}, "blamed": {"effect": "b", "where": ""}, "told_from": 0.002, "unit": "1"}],
   "never_told_apart": [[{"effect": "c", "where": ""}, {"effect": "d", "where": "y"}]], "detectable": [], "invisible": []})");
@@ -33,12 +33,12 @@ TEST(PlanPage, ComparesTheRunsOrderByOrder) {
   ASSERT_EQ(figures[0].series.size(), 2u);
   EXPECT_THAT(figures[0].series[0].y, ElementsAre(0.01, 0.02));
   EXPECT_THAT(figures[0].series[1].y, ElementsAre(0.03, 0.04));
-  EXPECT_THAT(figures[1].categories, ElementsAre("two more set-ups"));
+  EXPECT_THAT(figures[1].categories, ElementsAre("two more mountings"));
 }
 
 TEST(PlanPage, SaysWhichRunToMakeAndWhatMayBeMistaken) {
   const Page page = PlanPage({}, kPlan);
-  EXPECT_EQ(page.verdict, "Most information per minute: two more set-ups.");
+  EXPECT_EQ(page.verdict, "Most information per minute: two more mountings.");
   std::vector<std::vector<std::string>> rows;
   for (const PageTable& table : test::BlocksOf<PageTable>(page.sections)) rows.insert(rows.end(), table.rows.begin(), table.rows.end());
   EXPECT_THAT(rows, Contains(ElementsAre("a at x", "b", "0.002", "1")));

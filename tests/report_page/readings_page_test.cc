@@ -33,7 +33,7 @@ TEST(ReadingsSection, ATrackIsThePlacesOfASpotSetUpBySetUp) {
   EXPECT_EQ(tracks[0].title, "Track on psd a");
   EXPECT_EQ(tracks[0].y.unit, "V");
   ASSERT_EQ(tracks[0].series.size(), 2u);
-  EXPECT_EQ(tracks[0].series[1].name, "set-up 1");
+  EXPECT_EQ(tracks[0].series[1].name, "mounting 1");
   EXPECT_THAT(tracks[0].series[1].x, ElementsAre(1.0, 1.5));
   EXPECT_THAT(tracks[0].series[1].y, ElementsAre(-0.5, -0.75));
 }
@@ -47,7 +47,7 @@ TEST(ReadingsSection, ColumnsAreThoseThatChangeInTheirUnits) {
   ASSERT_NE(named("psd b y"), columns.columns.end());
   EXPECT_THAT(named("psd b y")->values, ElementsAre(0.0, 2.0, 4.0, 6.0));
   EXPECT_EQ(named("temperature"), columns.columns.end());  // nowhere available
-  EXPECT_EQ(columns.columns[static_cast<std::size_t>(columns.group)].name, "set-up");
+  EXPECT_EQ(columns.columns[static_cast<std::size_t>(columns.group)].name, "mounting");
 }
 
 TEST(ReadingsSection, OfABenchThatNobodyKnowsThereIsNothing) {

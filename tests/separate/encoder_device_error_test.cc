@@ -163,7 +163,7 @@ TEST(SeparateDevice, LeavesOutASetUpThatWasBrokenOff) {
   bench.missing = [](int i) { return i > 576 + 40; };
   const DeviceError e = SeparateDevice(bench.Readings());
   EXPECT_EQ(e.mounting_rad.size(), 1u);
-  EXPECT_THAT(e.notes, Contains(HasSubstr("set-up 1, direction +1: too small a part of the turn")));
+  EXPECT_THAT(e.notes, Contains(HasSubstr("mounting 1, direction +1: too small a part of the turn")));
   EXPECT_LT(Worst_arcsec(e.curves.device, kDevice), kRounding_arcsec);
 }
 

@@ -107,8 +107,8 @@ TEST(ErrorMotions, AsynchronousOnesAreWhatPassesShowBeyondTheModel) {
   const nlohmann::json& tilt = e.Of("target", "tilt_fixed_x");
   const double dof = e.separation.dof_of[static_cast<int>(measure::Dof::kEx)];
   EXPECT_NEAR(tilt.at("values").at("asynchronous").at("value_arcsec"), 2.0 * 0.5 * std::sqrt(e.separation.readings / dof), 0.02)
-      << "both passes of every set-up, for the unknowns that were fitted";
-  EXPECT_EQ(tilt.at("turns"), 8) << "two passes of four set-ups";
+      << "both passes of every mounting, for the unknowns that were fitted";
+  EXPECT_EQ(tilt.at("turns"), 8) << "two passes of four mountings";
   EXPECT_LT(e.Of("target", "tilt_fixed_y").at("values").at("asynchronous").at("value_arcsec"), 0.05);
   const nlohmann::json& total = tilt.at("values").at("total");
   EXPECT_GT(total.at("value_arcsec"), tilt.at("values").at("synchronous").at("value_arcsec"));

@@ -29,7 +29,7 @@ void ExpectOrders(const PositionError& position, const HobMachine& machine, doub
   ASSERT_EQ(position.status, PositionStatus::kOk);
   for (int k = 1; k <= position.series.Highest(); ++k) {
     EXPECT_LT(DistanceArcsec(position.series.At(k).value, Expected(machine, k, head_deg)), tolerance_arcsec)
-        << "order " << k << " set-up " << position.setup << " direction " << position.direction;
+        << "order " << k << " mounting " << position.setup << " direction " << position.direction;
   }
 }
 

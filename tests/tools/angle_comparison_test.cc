@@ -80,9 +80,9 @@ TEST_F(AngleComparison, IsSeparatedIntoDeviceAndReferenceByItsMountingsAndScored
 TEST_F(AngleComparison, OfAPartOfATurnIsEvaluatedButNotSeparated) {
   Succeed({"run", "angle.toml", "-o", "a", "--set", "encoder_procedure.turns=0.5"});
   EXPECT_EQ(nlohmann::json::parse(Read("a/results.json")).at("not_separated"),
-            "no set-up has a complete turn in one direction");
+            "no mounting has a complete turn in one direction");
   for (const char* command : {"separate", "score"})
-    ExpectRefused({command, "a"}, "no set-up has a complete turn in one direction");
+    ExpectRefused({command, "a"}, "no mounting has a complete turn in one direction");
 }
 
 TEST_F(AngleComparison,

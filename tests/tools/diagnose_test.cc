@@ -111,7 +111,7 @@ TEST_F(Diagnose, RefusesBadInputAndADesignWithoutRedundancy) {
   MakeRun("two", {"--set", "procedure.shifts=[0, 1]", "--set", "procedure.passes=[1]"});
   const Outcome bare = Call({"diagnose", "two", "--cache", "cache"});
   EXPECT_EQ(bare.exit_code, 2);
-  EXPECT_THAT(bare.err, testing::AllOf(HasSubstr("leave 0 degrees of freedom"), HasSubstr("a third set-up")));
+  EXPECT_THAT(bare.err, testing::AllOf(HasSubstr("leave 0 degrees of freedom"), HasSubstr("a third mounting")));
 }
 
 TEST_F(Diagnose, FollowsACompleteRunToItsEnd) {

@@ -109,7 +109,7 @@ TEST_F(Run, EntersItsMountingsInTheRecord) {
   const auto events = RunRecord::Open(At("run"))->Events();
   ASSERT_EQ(events.size(), 4u);  // calibration and three set-ups
   EXPECT_EQ(events[3].device, "fixture");
-  EXPECT_EQ(events[3].text, "mounted set-up 2: grating clamped at 0 deg, body seated at -150 deg");
+  EXPECT_EQ(events[3].text, "mounting 2: grating clamped at 0 deg, body seated at -150 deg");
 }
 
 TEST_F(Run, TakesOptionsInFrontOfTheScenario) {

@@ -148,7 +148,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void PassOn(const std::string& wish, const std::function<void()>& pass_on) {
     pass_on();
     shared_.feed.Add("asked", "{\"what\":\"" + wish + "\"}");
-    Send(202, "text/plain; charset=utf-8", "the program was told to " + wish + "; what came of it is on the page\n");
+    Send(202, "text/plain; charset=utf-8", "the program was asked to " + wish + "; what came of it is on the page\n");
   }
 
   void Refuse(const Refused& refused, bool and_close) {

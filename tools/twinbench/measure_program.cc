@@ -36,9 +36,9 @@ hw::ReadStops RunOnce(const hw::ProgramFile& file, const Scenario& scenario, con
 
 void Tell(const hw::ReadStops& back, std::size_t asked) {
   if (back.missing > 0)
-    fmt::print(stderr, "twinbench: the program read {} of {} stops\n", back.readings.size(), asked);
+    fmt::print(stderr, "twinbench: the program read {} of {} measuring positions\n", back.readings.size(), asked);
   if (back.extra > 0)
-    fmt::print(stderr, "twinbench: {} row{} of no stop that was asked for, or of one that has a row, left out\n",
+    fmt::print(stderr, "twinbench: {} row{} of no measuring position that was asked for, or of one that has a row, left out\n",
                back.extra, back.extra == 1 ? " is" : "s are");
 }
 

@@ -48,13 +48,13 @@ int SetupsOf(const PlanWish& options, const Scenario& scenario) {
   if (!design) {
     if (options.setups > 0)
       throw InputError("--setups", "this scenario of " + scenario.bench + " shifts nothing",
-                       "several set-ups, mountings or heads on a bench that has them: " +
+                       "several mountings or heads on a bench that has them: " +
                            BenchesWhere([](const Bench& b) { return b.shift_design != nullptr; }));
     return 0;
   }
   const int count = options.setups > 0 ? options.setups : static_cast<int>(design->shifts.size());
   if (options.setups > 0 && (count < 2 || count > design->positions))
-    throw InputError("--setups", fmt::format("{} set-ups", count),
+    throw InputError("--setups", fmt::format("{} mountings", count),
                      fmt::format("from 2 to the {} positions", design->positions));
   return std::clamp(count, 2, std::max(2, design->positions));
 }

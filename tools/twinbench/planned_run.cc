@@ -129,9 +129,9 @@ diagnose::DiagnosisRun SeenUnderChance(const Scenario& scenario, const std::vect
   auto surely = std::make_shared<diagnose::Isolability>(*seen.isolability);
   Scenario other = Quick(scenario);
   for (const double drift_K_h : kDrift_K_h) {
-    if (!patience.Allows(kOfRooms, "ties under another course of the room's temperature")) continue;
+    if (!patience.Allows(kOfRooms, "ties under another drift of the room's temperature")) continue;
     ++other.seed;
-    Doing(fmt::format("the same under another course of the room's temperature, {} of {}", other.seed - scenario.seed, kDrift_K_h.size()));
+    Doing(fmt::format("the same under another drift of the room's temperature, {} of {}", other.seed - scenario.seed, kDrift_K_h.size()));
     other.environment.drift_K_h = scenario.environment.drift_K_h + drift_K_h;
     const diagnose::DiagnosisRun of_other = SeenBy(other, ReadingsOfTwin(other));
     diagnose::KeepSurelyTold(*of_other.isolability, *surely);

@@ -49,7 +49,7 @@ constexpr const char* kExamples =
     "  twinbench help map          every key of a map for importing recordings, and the ready maps\n"
     "\n";
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done, 1 the bench, the disk or the network failed, 2 a file or an option is wrong, 3 an axis was told\n"
+    "Exit codes: 0 done, 1 the bench, the disk or the network failed, 2 a file or an option is wrong, 3 an axis was commanded\n"
     "to stop and it is not known whether it stands.";
 
 std::vector<std::string> NamesOf(const std::vector<const CLI::App*>& commands) {

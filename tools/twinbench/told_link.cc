@@ -33,7 +33,7 @@ LinkWatch::LinkWatch() : watch_(Watch) {}
 
 void TellFault(const DeviceFault& fault) {
   if (fault.kind() == FaultKind::kStopped) return;  // who said so knows it, and was told
-  fmt::print(stderr, "\n{} ({}). What moves is told to stop. {}\n", fault.what(), FaultName(fault.kind()), kEmergency);
+  fmt::print(stderr, "\n{} ({}). What moves is commanded to stop. {}\n", fault.what(), FaultName(fault.kind()), kEmergency);
 }
 
 }  // namespace twinbench::tools

@@ -29,7 +29,7 @@ std::vector<Claim> OfTwoTables(const RotarySettings& s) {
   const double set_ups = std::max(1.0, static_cast<double>(s.procedure.shifts.size()) - 1.0);
   const double readings = set_ups * static_cast<double>(s.procedure.passes.size());
   const double u_rad = YawNoise_rad(s) / std::sqrt(readings);
-  const std::string less = "fewer passes (procedure.passes) or set-ups (procedure.shifts): less is averaged";
+  const std::string less = "fewer passes (procedure.passes) or mountings (procedure.shifts): less is averaged";
   return {{"target", u_rad, less}, {"reference", u_rad, less}};
 }
 
@@ -38,7 +38,7 @@ std::vector<Claim> OfAComparison(const EncoderSettings& s) {
   if (p.kind != "stops") return {};
   const double readings = std::max(1.0, static_cast<double>(p.passes.size()) * p.turns);
   return {{"shaft", DeviceOfMeans(s).noise_rad / std::sqrt(readings),
-           "device.noise_deg as repeated readings of a stop scatter, with device.noise_known = true: the results' "
+           "device.noise_deg as repeated readings of a measuring position scatter, with device.noise_known = true: the results' "
            "u grows with it"}};
 }
 

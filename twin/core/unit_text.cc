@@ -7,8 +7,7 @@ namespace twinbench {
 namespace {
 
 std::string Written(const std::string& name, std::string_view exponents) {
-  static const std::map<std::string, std::string> kNames = {{"um", "µm"}, {"urad", "µrad"}, {"us", "µs"}, {"uV", "µV"},
-                                                            {"degC", "°C"}, {"kohm", "kΩ"}, {"percent", "%"}, {"Nm", "N m"}};
+  static const std::map<std::string, std::string> kNames = {{"um", "µm"}, {"urad", "µrad"}, {"us", "µs"}, {"uV", "µV"}, {"degC", "°C"}, {"kohm", "kΩ"}, {"percent", "%"}, {"Nm", "N m"}};
   const bool has_power = name.size() > 1 && (name.back() == '2' || name.back() == '4');
   const std::string base = has_power ? name.substr(0, name.size() - 1) : name;
   const auto found = kNames.find(base);

@@ -65,10 +65,10 @@ void TellAliases(const LinearRun& run, Diagnosis& diagnosis) {
     for (std::size_t k = 0; k < std::min(kMostAliases, aliases.size()); ++k)
       cause.indistinguishable_from.push_back({cause.effect, fmt::format("order {}", aliases[k]), 1.0});
     const std::string orders = fmt::format("order {} or {}", OrderOf(cause, run.bench), Listed(aliases));
-    cause.next_measurement = fmt::format("the same stops from another start angle, a third of a step on, which tells {}", orders);
+    cause.next_measurement = fmt::format("the same measuring positions from another start angle, a third of a step on, which separates {}", orders);
     if (diagnosis.verdict == Verdict::kNamed && aliases.front() < kAsLikely * OrderOf(cause, run.bench)) diagnosis.verdict = Verdict::kTie;
     diagnosis.gain.another_run = kNaN;
-    diagnosis.notes.push_back(fmt::format("{} is of {}: these stops do not tell, and what it improves is stated for them only", cause.effect, orders));
+    diagnosis.notes.push_back(fmt::format("{} is of {}: these measuring positions do not distinguish them, and what it improves is stated for them only", cause.effect, orders));
   }
 }
 

@@ -45,8 +45,8 @@ std::string BiasOf(const LinearRun& run, const FreeConstants& free, const Eigen:
 
 std::string NextOf(const std::string& effect, const std::string& rival) {
   return fmt::format(
-      "the same run on another course (more passes in both directions, other dwells, a further "
-      "set-up), chosen so that {} and {} go different ways",
+      "the same run on another path (more passes in both directions, other dwells, a further "
+      "mounting), chosen so that {} and {} go different ways",
       effect, rival);
 }
 

@@ -97,7 +97,7 @@ Nuisance NuisanceOf(const FreeConstants& free, const Eigen::VectorXd& sigma) {
 std::vector<FreePoint> FreeOf(const Compared& c, const TwinComparison& comparison) {
   std::vector<FreePoint> points;
   for (const std::string& point : comparison.free_points)
-    points.push_back({c.twin.Point(point), model::Indicators(c.run.schedule.setup), "a set-up"});
+    points.push_back({c.twin.Point(point), model::Indicators(c.run.schedule.setup), "a mounting"});
   for (const TwinComparison::FreeCourses& of_bench : comparison.free_courses)
     points.push_back({c.twin.Point(of_bench.point), of_bench.courses(c.used), "the bench"});
   if (!comparison.free_sd) return points;

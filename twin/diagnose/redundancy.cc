@@ -51,7 +51,7 @@ void RefuseWithoutRedundancy(const LinearRun& run, const Eigen::VectorXd& redund
       "readings",
       fmt::format("{} with {} each leave {:.0f} degrees of freedom in {} values: whatever is wrong goes "
                   "into the separated errors and nothing can be found",
-                  Count(design.setups, "set-up", "set-ups"), Count(design.passes, "pass", "passes"),
+                  Count(design.setups, "mounting", "mountings"), Count(design.passes, "pass", "passes"),
                   std::max(design.redundancy, 0.0), design.rows),
       FormatOf(run.bench).smallest_addition(design.setups));
 }

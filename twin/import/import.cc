@@ -202,7 +202,7 @@ class Maker {
     tally.widest = std::max(tally.widest, cut.widest);
     tally.usual_rows = std::max(tally.usual_rows, cut.usual_rows);
     tally.stops = tally.stops && (course.stops || course.stop_and_go);
-    if (cut.left_out > 0) tally.left_out.push_back({cut.left_out, "rows on the way between stops"});
+    if (cut.left_out > 0) tally.left_out.push_back({cut.left_out, "rows on the way between measuring positions"});
   }
 
   /// Every rest is a reading; the senses are those from rest to rest.
@@ -343,7 +343,7 @@ std::string StoryOf(const std::vector<Recording>& recordings, const Joined& join
   for (const auto* list : {&guessed, &joined.remarks}) {
     for (const std::string& remark : *list) text += "note: " + remark + "\n";
   }
-  return text + fmt::format("{} readings of {} rows, {} set-up{}, bench {}\n", imported.readings.size(), tally.rows, joined.sessions.size(),
+  return text + fmt::format("{} readings of {} rows, {} mounting{}, bench {}\n", imported.readings.size(), tally.rows, joined.sessions.size(),
                             joined.sessions.size() == 1 ? "" : "s", imported.bench);
 }
 

@@ -48,7 +48,7 @@ std::vector<Together> Group(const std::vector<Recording>& recordings, const Map&
   const bool one_after_the_other =
       map.course.files == "setups" || (map.course.files == "auto" && recordings.size() > 1 && alike);
   if (map.course.files == "auto" && one_after_the_other)
-    joined.remarks.push_back("the files have the same columns: each is taken as a set-up (course.files)");
+    joined.remarks.push_back("the files have the same columns: each is taken as a mounting (course.files)");
   std::vector<Together> groups;
   std::size_t too_short = 0;
   for (std::size_t f = 0; f < recordings.size(); ++f) {

@@ -80,7 +80,7 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
             "between fields");
   file.Text("decimal", &map.file.decimal, {"auto", "point", "comma"}, "the decimal mark");
   file.Text("header", &map.file.header, {}, "what the line with the names begins with");
-  file.Text("section", &map.file.section, {}, "what a line begins with that opens a part; each part is a set-up");
+  file.Text("section", &map.file.section, {}, "what a line begins with that opens a part; each part is a mounting");
   file.Add("names", kPure, {}, &map.file.names, "of the columns, in order, where the file has none");
   file.Text("array", &map.file.array, {}, "name of the array; left out: the longest");
   Table time(keys, "time");

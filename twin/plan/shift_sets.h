@@ -16,7 +16,7 @@ struct ShiftDesign {
   /// Keys of the scenario for other shifts: "procedure.shifts=[0, 7]".
   std::function<std::vector<std::string>(const std::vector<int>&)> sets = {};
   std::vector<NextRun> other_ways = {};  // of making the same set-ups
-  std::string words = "set-ups at the shifts";  // what stands before a list of them
+  std::string words = "mountings at the shifts";  // what stands before a list of them
 };
 
 /// Variances of the harmonics 1 to n / 2 of one table's error, in units of what the mean of all set-ups would leave of

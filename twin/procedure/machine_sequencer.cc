@@ -81,7 +81,7 @@ void MachineSequencer::Mount(int setup, const std::string& what) {
   bench_.fixture.Mount(setup, what);
   state_.mounted = setup;
   if (options_.log)
-    options_.log->AppendEvent(bench_.clock.Now(), "fixture", fmt::format("mounted set-up {}: {}", setup, what));
+    options_.log->AppendEvent(bench_.clock.Now(), "fixture", fmt::format("mounting {}: {}", setup, what));
 }
 
 void MachineSequencer::Pause(Duration duration) {

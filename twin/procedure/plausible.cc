@@ -38,7 +38,7 @@ void RequirePlausible(const Reading& reading, const Reading& before, const Optio
     const double jump_V = std::abs(reading.mean_V[c] - before.mean_V[c]);
     if (!(jump_V > options.jump_V)) continue;
     throw DeviceFault(FaultKind::kImplausible, kChannelNames[c],
-                      fmt::format("jumped by {:.4g} V from one stop to the next, {:.4g} V are allowed; did a table "
+                      fmt::format("jumped by {:.4g} V from one measuring position to the next, {:.4g} V are allowed; did a table "
                                   "or the grating slip?",
                                   jump_V, options.jump_V));
   }

@@ -67,7 +67,7 @@ void RequireStood(const Stood& stood) {
   const InFiles place = PlaceOf(stood), distance = DistanceOf(stood);
   const auto off = [&](double at) { return fmt::format("{:.3g} {}", (at - stood.sent) / distance.to_SI, distance.unit); };
   throw DeviceFault(FaultKind::kMoved, stood.axis,
-                    fmt::format("does not stand at its stop, {:.6f} {}: {} off before the reading, {} off behind it, and {:.3g} "
+                    fmt::format("does not stand at its measuring position, {:.6f} {}: {} off before the reading, {} off behind it, and {:.3g} "
                                 "{} are allowed",
                                 stood.sent / place.to_SI, place.unit, off(stood.before), off(stood.after),
                                 stood.tolerance / distance.to_SI, distance.unit));

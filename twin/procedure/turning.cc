@@ -71,7 +71,7 @@ void Turning::Look(const MachineAxis& axis, double encoder_rad, Time before, Tim
   if (std::abs(way_rad) < kStands * std::abs(told_rad))
     throw DeviceFault(FaultKind::kStalled, axis.name, fmt::format("should turn, and stands at {:.6f} deg", encoder_rad / units::deg));
   throw DeviceFault(FaultKind::kFollowing, axis.name,
-                    fmt::format("went {:.6g} deg in {:.3g} s and was told a speed by which it goes {:.6g} deg", way_rad / units::deg,
+                    fmt::format("went {:.6g} deg in {:.3g} s and was commanded a speed by which it goes {:.6g} deg", way_rad / units::deg,
                                 since_s, told_rad / units::deg));
 }
 

@@ -70,7 +70,7 @@ std::string Warnings(const Compensation& compensation) {
        "positions, uneven ones best, do");
   warn(compensation.Orders(LineFate::kTooFine), "refused: a table of so few entries cannot follow it");
   warn(compensation.Orders(LineFate::kNoGain), "refused: nothing would be gained");
-  warn(compensation.fit.doubled, "not told at these positions from at least one other order");
+  warn(compensation.fit.doubled, "not distinguished at these positions from at least one other order");
   warn(compensation.fit.unseen, "not seen at these positions, at least in one phase");
   return text;
 }

@@ -130,7 +130,7 @@ std::string PlanText(const std::vector<PlannedRun>& runs, const PlannedEffects& 
   std::string text = RunsTable(runs);
   const bool shifted = std::ranges::any_of(runs, [](const PlannedRun& run) { return run.shifts.has_value(); });
   if (shifted)
-    text += "variance: of one table's harmonic over that of the mean of all set-ups\n";
+    text += "variance: of one table's harmonic over that of the mean of all mountings\n";
   text += "\n" + CertaintyTable(runs) + "\n" + HarmonicsOfRun(runs.front().outlook);
   return text + NotSeparableText(runs.front().outlook) + "\n" + PlannedEffectsText(effects);
 }

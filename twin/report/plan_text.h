@@ -13,7 +13,7 @@ namespace twinbench::report {
 
 /// One run that could be made.
 struct PlannedRun {
-  std::string words;  // "as the scenario says", "4 set-ups, shifts 0, 1, 10, 28"
+  std::string words;  // "as the scenario says", "4 mountings, shifts 0, 1, 10, 28"
   std::optional<plan::ShiftSet> shifts;
   plan::Outlook outlook;
 };

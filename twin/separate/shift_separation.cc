@@ -29,7 +29,7 @@ std::vector<Eigen::Index> SetUpsRead(const Eigen::MatrixXd& weight, Eigen::Index
   for (Eigen::Index j = 0; j < weight.cols(); ++j) {
     if ((weight.col(j).array() > 0.0).count() > terms) read.push_back(j);
   }
-  Require(!read.empty(), "at least one set-up has more readings than free terms");
+  Require(!read.empty(), "at least one mounting has more readings than free terms");
   return read;
 }
 
@@ -45,7 +45,7 @@ ShiftSet MeanWeights(const std::vector<int>& shifts, const std::vector<int>& row
 }
 
 Eigen::MatrixXd CheckedWeights(const std::vector<int>& shifts, Eigen::MatrixXd weight) {
-  Require(weight.rows() > 0 && weight.cols() == std::ssize(shifts), "one column of weights a set-up");
+  Require(weight.rows() > 0 && weight.cols() == std::ssize(shifts), "one column of weights a mounting");
   Require(weight.allFinite() && weight.minCoeff() >= 0.0, "weights are finite, 0 where nothing was read");
   return weight;
 }
@@ -164,7 +164,7 @@ ShiftSeparation::ShiftSeparation(std::vector<int> shifts, Free free, Eigen::Matr
       inverse_(MeanWeights(shifts_, rows_, weight_, read_), free),
       determined_a_(static_cast<std::size_t>(n_), false),
       determined_b_(static_cast<std::size_t>(CurveValues() - n_), false) {
-  Require(rows_.empty() || rows_.size() == shifts_.size(), "one row a set-up");
+  Require(rows_.empty() || rows_.size() == shifts_.size(), "one row a mounting");
   for (const Eigen::Index j : read_) {
     even_ = even_ && weight_.col(j).minCoeff() == weight_.col(j).maxCoeff();
     for (Eigen::Index i = 0; i < n_; ++i) {
@@ -312,7 +312,7 @@ void ShiftSeparation::FindUndetermined() {
 }
 
 ShiftSolution ShiftSeparation::Solve(const Eigen::MatrixXd& values) const {
-  Require(values.rows() == n_ && values.cols() == weight_.cols(), "one value a stop and set-up");
+  Require(values.rows() == n_ && values.cols() == weight_.cols(), "one value a stop and mounting");
   const Eigen::MatrixXd weight = Chosen(weight_, read_);
   const Eigen::MatrixXd chosen = (weight.array() > 0.0).select(Chosen(values, read_), 0.0);
   ShiftSolution solution;

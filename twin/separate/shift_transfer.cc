@@ -55,8 +55,8 @@ HarmonicTransfer TransferAt(const ShiftSet& set, const Circle& circle, int order
 }
 
 void CheckShiftSet(const ShiftSet& set) {
-  Require(set.n > 0 && !set.shifts.empty(), "there is at least one set-up of at least one stop");
-  Require(set.weights.size() == set.shifts.size(), "one weight a set-up");
+  Require(set.n > 0 && !set.shifts.empty(), "there is at least one mounting of at least one stop");
+  Require(set.weights.size() == set.shifts.size(), "one weight a mounting");
   Require(set.rows.empty(), "one row has transfers");
   for (const double w : set.weights) Require(w > 0.0, "weights are positive");
 }

@@ -9,7 +9,7 @@ namespace twinbench::sim {
 void RequireSetup(int setup, int setups) {
   if (setup < 0 || setup >= setups)
     throw DeviceFault(FaultKind::kRefused, "fixture",
-                      fmt::format("there are {} set-ups, from 0 on; not {}", setups, setup));
+                      fmt::format("there are {} mountings, from 0 on; not {}", setups, setup));
 }
 
 }  // namespace twinbench::sim

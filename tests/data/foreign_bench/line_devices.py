@@ -85,12 +85,12 @@ class ScpiDevice(Device):
 
 
 def mounted(word):
-    """The number of the set-up that a hand is told to mount, or None if the command is another."""
+    """The number of the mounting that a hand is told to mount, or None if the command is another."""
     return int(word.split()[1].split(",")[0]) if word.startswith("FIXT:MOUN ") else None
 
 
 class Hand(ScpiDevice):
-    """Whoever mounts what a set-up needs."""
+    """Whoever mounts what a mounting needs."""
 
     name = "hand"
     identity = "FOREIGN LABORATORY,HAND,1,1"

@@ -13,7 +13,7 @@ SCENARIOS = pathlib.Path(__file__).resolve().parents[3] / "scenarios"
 
 
 def least_drift_urad_h(dwell_s: float) -> float:
-    """Of the laser's yaw, at three standard uncertainties, with the tables' own errors left free at every stop."""
+    """Of the laser's yaw, at three standard uncertainties, with the tables' own errors left free at every measuring position."""
     scenario = tb.Scenario(SCENARIOS / "rotary_4dof.toml", {"procedure.positions": 12, "procedure.dwell_s": [dwell_s]})
     readings = tb.run(scenario).readings
     full = np.array([phase == "full_circle" for phase in readings["phase"]])

@@ -38,9 +38,9 @@ class _Way:
 
 
 class MachineBench:
-    """A bench of the kinds turntable_autocollimator, hob_transmission, circular_motion, freeform_five_axis and, at stops, encoder_comparison.
+    """A bench of the kinds turntable_autocollimator, hob_transmission, circular_motion, freeform_five_axis and, at rest, encoder_comparison.
 
-    As it is, its clock is a count, its axes go exactly where they are told and its memory never runs full: a simulation needs `show` alone.
+    As it is, its clock is a count, its axes go exactly where they are sent and its memory never runs full: a simulation needs `show` alone.
     For real instruments override what you have. Coordinates are SI - metres, radians; times s from when the bench was made. What a
     method raises ends the run; readings made before are kept by it.
 

@@ -71,7 +71,7 @@ function begin({ command, bench, folder, can_pause, columns: named }) {
   if (serves) {
     counted.textContent = folder;
     bar.hidden = residualPart.hidden = true;
-    stop.isOf("Stop serving", "Stop serving?", "The program closes every connection and ends. What clients were told to do is theirs to take up again.");
+    stop.isOf("Stop serving", "Stop serving?", "The program closes every connection and ends. What clients had in hand is theirs to take up again.");
   }
   if (counts) {
     trials.begin();
@@ -114,7 +114,7 @@ function reading(r) {
   figures?.add(r);
   showLast(r.v);
   rows.push([r.n, r.t, r.setup, r.pass, r.phase, r.status, ...r.v]);
-  subtitle.textContent = `reading ${r.n}: ${r.phase.replaceAll("_", " ")}, set-up ${r.setup}, pass ${r.pass}, ${r.status.replace("_", " ")}`;
+  subtitle.textContent = `reading ${r.n}: ${r.phase.replaceAll("_", " ")}, mounting ${r.setup}, pass ${r.pass}, ${r.status.replace("_", " ")}`;
   changed = true;
 }
 

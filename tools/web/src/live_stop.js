@@ -8,7 +8,7 @@ export function stopPanel(send) {
   const ask = button("Stop the measurement", () => dialog.showModal(), { class: "stop", id: "stop" });
   const sure = button("Stop", async () => {
     dialog.close();
-    said.textContent = "Telling the program to stop";
+    said.textContent = "Asking the program to stop";
     try {
       const answer = await send();
       if (answer.status !== 202) throw new Error(await answer.text());
@@ -17,7 +17,7 @@ export function stopPanel(send) {
     }
   }, { class: "stop", id: "stop-sure" });
   const question = element("h2", { id: "stop-question" }, "Stop the measurement?");
-  const means = element("p", {}, "The program tells whatever moves to stop, as after Ctrl-C, and asks it whether it stands. Readings so far are kept.");
+  const means = element("p", {}, "The program commands whatever moves to stop, as after Ctrl-C, and asks it whether it stands. Readings so far are kept.");
   dialog.append(question, means, element("div", { class: "tools" }, sure, button("Cancel", () => dialog.close(), { id: "stop-not" })));
   return {
     element: element("section", { class: "halt", "aria-label": "Stop" }, ask, said, dialog),
@@ -27,7 +27,7 @@ export function stopPanel(send) {
       question.textContent = asks;
       means.textContent = says;
     },
-    asked: () => (said.textContent = `The program was told to stop at ${new Date().toLocaleTimeString()}; it has not said yet what came of it`),
+    asked: () => (said.textContent = `The program was asked to stop at ${new Date().toLocaleTimeString()}; it has not said yet what came of it`),
     over: () => {
       dialog.close();
       ask.disabled = true;

@@ -71,7 +71,7 @@ std::vector<DesiredColumn> Desired() {
 }
 
 std::string Addition(int /*setups*/) {
-  return "the other direction, as in circular_procedure.directions = [1, -1], and a set-up of another radius";
+  return "the other direction, as in circular_procedure.directions = [1, -1], and a mounting of another radius";
 }
 
 }  // namespace twinbench::benches::circular

@@ -168,7 +168,7 @@ std::string BiasText(const CircleAnalysis& a) {
   for (const PathBias& b : a.method_bias) {
     if (b.IsBiased())
       text += fmt::format(
-          "published path, set-up {}, pass {}: BIASED, {:.3g} um along and {:.3g} um across the radius from "
+          "published path, mounting {}, pass {}: BIASED, {:.3g} um along and {:.3g} um across the radius from "
           "weighted least squares (exact model), where a reading's noise is {:.2g} and {:.2g}; included in its uncertainty\n",
           b.setup, b.pass, b.radial_m / um, b.tangential_m / um, b.u_radial_m / um, b.u_tangential_m / um);
   }
@@ -206,7 +206,7 @@ std::string ErrorsText(const CircleAnalysis& a) {
 }
 
 std::string DeviationsText(const CircleAnalysis& a) {
-  std::string text = "ISO 230-4 [um]: set-up, feed [mm/min], G(b), F max, F min, D, H\n";
+  std::string text = "ISO 230-4 [um]: mounting, feed [mm/min], G(b), F max, F min, D, H\n";
   for (const Iso230_4& d : a.deviations)
     text += fmt::format("{:3d} {:8.1f} {:10.3f} {:10.3f} {:10.3f} {:10.3f} {:10.3f}\n", d.setup,
                         Feed_mm_min(d.feed_m_s), d.G_b.value_m / um, d.Fmax_b.value_m / um, d.Fmin_b.value_m / um,
@@ -225,7 +225,7 @@ std::string PolarOf(const std::vector<CirclePath>& all, const Iso230_4& of) {
       s.angle_rad.push_back(point.commanded_rad);
       s.value.push_back(point.Radial_m() / um);
     }
-    title = fmt::format("set-up {}, {}, R = {:.3f} mm, {}: radial deviation, + counter-clockwise, o clockwise\n",
+    title = fmt::format("mounting {}, {}, R = {:.3f} mm, {}: radial deviation, + counter-clockwise, o clockwise\n",
                         path.setup, path.is_bar ? "bar" : "grid", path.radius_m / units::mm,
                         of.feed_m_s > 0.0 ? fmt::format("{:.6g} mm/min", Feed_mm_min(of.feed_m_s)) : "at rest");
   }

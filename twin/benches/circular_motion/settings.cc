@@ -79,9 +79,9 @@ void AddServo(Table& t, FeedDrivesSettings& s) {
   AddPair(t, "velocity_gain", kPerSecond, Positive(10000), s.velocity_gain_1_s, "band of the speed controller");
   AddPair(t, "integral_time", kSecond, Positive(10), s.integral_time_s, "of the speed controller");
   AddPair(t, "feed_forward", kPure, UpTo(1), s.feed_forward,
-          "share of the commanded speed that the speed controller is told; lag = (1 - share) / Kv");
+          "share of the commanded speed that is fed forward to the speed controller; lag = (1 - share) / Kv");
   t.Text("encoder", &s.encoder, {"motor", "slide"}, "where the position controller reads");
-  t.Add("ramp", kSecond, {0.01, 100.0}, &s.ramp_s, "in which the path's speed comes and goes between stops");
+  t.Add("ramp", kSecond, {0.01, 100.0}, &s.ramp_s, "in which the path's speed comes and goes between measuring positions");
   t.Add("servo_period", kMicrosecond, {10.0, 10000.0}, &s.servo_period_s, "of the controllers");
   t.Add("step", kMicrosecond, {1.0, 10000.0}, &s.step_s, "longest, of the bodies within a servo period");
 }
@@ -139,7 +139,7 @@ void AddGrid(Keys& keys, GridSettings& s) {
 
 void AddMounting(Keys& keys, CircularMountingSettings& s) {
   Table t(keys, "mounting");
-  t.Add("offset", kUm, UpTo(10000), &s.offset_m, "half width of what every set-up draws: centre, along X and Y");
+  t.Add("offset", kUm, UpTo(10000), &s.offset_m, "half width of what every mounting draws: centre, along X and Y");
   t.Add("zero", kDeg, UpTo(180), &s.zero_rad, "half width: zero of the encoder");
   t.Add("length", kUm, UpTo(10000), &s.length_m, "half width: length of the bar");
   t.Add("grid_rotation", kArcsec, UpTo(36000), &s.grid_rotation_rad, "half width: rotation of the grid plate");
@@ -156,11 +156,11 @@ void AddProcedure(Keys& keys, CircularProcedureSettings& s) {
   t.Add("feeds", kMm_min, Between(1e-3, 100000), &s.feeds_m_s, "of the sweeps, each in all directions");
   t.Add("points", kPure, {3, 100000}, &s.points, "readings a sweep, evenly spaced");
   t.Add("stops", kPure, UpTo(100000), &s.stops, "per turn, one reading each, after the sweeps; 0: none");
-  t.Add("dwell", kSecond, UpTo(3600), &s.dwell_s, "at a stop until it is read");
-  t.Add("rapid", kMm_min, Between(1e-3, 1e6), &s.rapid_m_s, "from stop to stop");
+  t.Add("dwell", kSecond, UpTo(3600), &s.dwell_s, "at a measuring position until it is read");
+  t.Add("rapid", kMm_min, Between(1e-3, 1e6), &s.rapid_m_s, "from one measuring position to the next");
   t.Add("directions", kPure, {-1, 1}, &s.directions, "1: counter-clockwise from above, -1: clockwise");
   t.Add("start", kDeg, Within(360), &s.start_rad, "where every pass begins");
-  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a mounting takes");
 }
 
 /// What bodies do by themselves must not be stated a second time in closed form.

@@ -25,7 +25,7 @@ std::vector<ReadingColumn> Columns() {
 
 std::vector<DesiredColumn> Desired() {
   return {{"velocity_deg_s", [](const Reading& r) { return std::isfinite(r.velocity_rad_s); },
-           "latency is judged by speeds from the reference's own angles and times, and at stops not at all"},
+           "latency is judged by speeds from the reference's own angles and times, and at rest not at all"},
           {"temperature_degC", [](const Reading& r) { return std::isfinite(r.temperature_degC); },
            "a drift cannot be tied to the temperature"}};
 }

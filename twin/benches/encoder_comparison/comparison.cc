@@ -21,7 +21,7 @@ std::string Summary(const measure::AngleComparison& c, const AxisUnit& unit) {
   std::string text = fmt::format("{} readings", c.used.size() + c.left_out);
   text += c.left_out > 0 ? fmt::format(", {} without a value\n", c.left_out) : "\n";
   if (c.used.empty()) return text;
-  text += fmt::format("measured - reference, mean of each set-up taken out\nrms                   {:.6f} {}\n",
+  text += fmt::format("measured - reference, mean of each mounting taken out\nrms                   {:.6f} {}\n",
                       c.rms_rad / unit.to_SI, unit.name);
   text += fmt::format("range                 {:.6f} {}\n", c.range_rad / unit.to_SI, unit.name);
   return text + DirectionLine("+1", c.mean_forward_rad, unit) + DirectionLine("-1", c.mean_backward_rad, unit);

@@ -20,7 +20,7 @@ EffectParameter SignalZero() {
 /// How a stop was reached matters to what remembers the way.
 EffectParameter Approach() {
   return Parameter("approach", "1", 1.0, 0.0, 1.0,
-                   "1: a stop is reached in its direction over half the way from its neighbour; 0: straight");
+                   "1: a measuring position is reached in its direction over half the way from its neighbour; 0: straight");
 }
 
 // Defaults are sizes that are plausible before checking; the ranges stand beside the entries.
@@ -89,7 +89,7 @@ std::vector<EffectEntry> MotionEffects() {
       {"settling",
        "device that comes to rest after the reference: what is left of a move dies out while it stands",
        {},
-       {Signed("amplitude", "deg", 0.01, 30.0, "behind, in motion and at the first reading of a stop"),
+       {Signed("amplitude", "deg", 0.01, 30.0, "behind, in motion and at the first reading of a measuring position"),
         Parameter("time_constant", "s", 1.0, 1e-3, 1e4, "of the decay")}},
       // 1e-6 to 1e-3 for a device without closure
       {"scale",

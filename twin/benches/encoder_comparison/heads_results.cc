@@ -125,7 +125,7 @@ std::string LostOrdersText(const SeveralHeads& heads, const AxisUnit& unit) {
 
 std::string HeadsSummary(const SeveralHeads& heads, const AxisUnit& unit) {
   if (!heads.not_separated.empty()) return fmt::format("no curve: {}\n", heads.not_separated);
-  std::string text = fmt::format("{} heads at {} stops\n", heads.heads_rad.size(), heads.stops);
+  std::string text = fmt::format("{} heads at {} measuring positions\n", heads.heads_rad.size(), heads.stops);
   text += LargestText("ring", heads.ring, unit) + LargestText("reference", heads.reference, unit);
   text += fmt::format("a head repeats to      {:10.4f} {} (standard deviation)\n",
                       heads.residual_rms_rad / unit.to_SI, unit.name);

@@ -55,7 +55,7 @@ void AddLongerReadings(const EncoderProcedureSettings& p, std::vector<NextRun>& 
   const int most = static_cast<int>(p.stop_interval_s / p.read_s),
             count = std::min(plan::kTimesTheReadings * p.readings_per_stop, most);
   if (count <= p.readings_per_stop) return;
-  runs.push_back(plan::LongerReadings(fmt::format("the same stops, each the mean of {} readings", count),
+  runs.push_back(plan::LongerReadings(fmt::format("the same measuring positions, each the mean of {} readings", count),
                                       "encoder_procedure.readings_per_stop", count));
 }
 
@@ -80,9 +80,9 @@ std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
   const double speed = p.speeds_rad_s.empty() ? 30.0 : p.speeds_rad_s.front() / units::deg;
   const std::string finer = fmt::format("encoder_procedure.stops_per_turn={}", 2 * p.stops + 1);
   std::vector<NextRun> runs = {
-      {"at-rest", "stops at rest, forth and back", {kStops, kForthAndBack}, plan::kOtherKind},
+      {"at-rest", "measuring positions at rest, forth and back", {kStops, kForthAndBack}, plan::kOtherKind},
       {"finer",
-       "more than twice as many stops, no whole multiple, forth and back",
+       "more than twice as many measuring positions, no whole multiple, forth and back",
        {kStops, finer, kForthAndBack},
        plan::kSameKind},
       {"two-speeds",
@@ -94,7 +94,7 @@ std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
        {kSweep, Speeds(0.2 * speed, 0.5 * speed), kForthAndBack},
        plan::kOtherKind},
       {"many-turns",
-       "five turns of stops in either direction",
+       "five turns of measuring positions in either direction",
        {kStops, "encoder_procedure.turns=5", "encoder_procedure.passes=[1, -1]"},
        plan::kSameKind},
       {"mountings",
@@ -102,7 +102,7 @@ std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
        {kStops, "encoder_procedure.mounting_deg=[0, 97, 213]", "encoder_procedure.passes=[1, -1]"},
        plan::kOtherKind},
       {"longer-stops",
-       "the stops three times as long",
+       "three times as long at each measuring position",
        {kStops, kForthAndBack, fmt::format("encoder_procedure.stop_interval_s={:.6g}", 3.0 * p.stop_interval_s)},
        plan::kSameKind}};
   if (p.kind == "stops") AddLongerReadings(p, runs);

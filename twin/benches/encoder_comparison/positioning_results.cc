@@ -95,7 +95,7 @@ void Append(int setup, const measure::PositioningStops& stops, const DeviceSetti
                           {"left_out", stops.left_out},
                           {"missing", missing},
                           {"notes", stops.notes}});
-  results.text += fmt::format("set-up {}, {} targets over {:.4g} {}\n", setup, targets.size(),
+  results.text += fmt::format("mounting {}, {} targets over {:.4g} {}\n", setup, targets.size(),
                               travel_rad / coarse.to_SI, coarse.name);
   results.text += targets.size() <= kMostRows ? PositioningText(positioning, told) : AxisText(positioning, told);
   AppendVdi(setup, positioning.targets, told, results);

@@ -40,8 +40,8 @@ void AddEncoderProcedure(Keys& keys, EncoderProcedureSettings& s) {
   t.Add("turns", kPure, Positive(1000), &s.turns, "of a pass");
   t.Add("start", kDeg, Within(360000), &s.start_rad, "where the first pass begins");
   t.Add("passes", kPure, {-1, 1}, &s.passes, "directions: 1 or -1; a sweep does them at each speed");
-  t.Add("mounting", kDeg, Within(360), &s.mounting_rad, "device angle where the reference shows 0, one per set-up");
-  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
+  t.Add("mounting", kDeg, Within(360), &s.mounting_rad, "device angle where the reference shows 0, one per mounting");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a mounting takes");
   t.Add("heads", kDeg, Within(360), &s.heads_rad, "where heads read the device's ring, all at once");
   t.Add("reference_noise", kArcsec, UpTo(36000), &s.reference_noise_rad,
         "of what the reference shows at one instant, the same for all heads");
@@ -73,7 +73,7 @@ void AddSpindle(Keys& keys, SpindleSettings& s) {
 void CheckReadingsOfAStop(const ScenarioText& text, const EncoderProcedureSettings& p) {
   if (p.ReadingsAtOnce() == 1 || p.readings_per_stop * p.read_s <= p.stop_interval_s) return;
   throw InputError(text.Where("encoder_procedure.readings_per_stop", text.name() + ":1"),
-                   fmt::format("{} readings of {:.4g} s take longer than the {:.4g} s of a stop", p.readings_per_stop,
+                   fmt::format("{} readings of {:.4g} s take longer than the {:.4g} s of a measuring position", p.readings_per_stop,
                                p.read_s, p.stop_interval_s),
                    fmt::format("at most {:.0f}, or a longer encoder_procedure.stop_interval_s",
                                std::max(1.0, std::floor(p.stop_interval_s / p.read_s))));

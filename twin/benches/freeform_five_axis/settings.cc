@@ -39,7 +39,7 @@ void AddArtefact(Keys& keys, ArtefactSettings& s) {
   t.Add("cells", kPure, {0, 100}, &s.cells, "from the middle to the last one, in x and y");
   t.File("form_error", s.form_error,
          "OpenEXR of heights [um] over the array, +x to the right, +y up, beside its form");
-  t.Add("mounting", kUm, UpTo(10000), &s.mounting_m, "standard deviation of where a set-up really stands");
+  t.Add("mounting", kUm, UpTo(10000), &s.mounting_m, "standard deviation of where a mounting really stands");
   t.Add("mounting", kArcsec, UpTo(3600), &s.mounting_rad, "likewise of how it is turned");
 }
 
@@ -85,15 +85,15 @@ void AddMount(Table& t, MountSettings& s) {
 
 void AddProcedure(Keys& keys, FreeformProcedureSettings& s) {
   Table t(keys, "freeform_procedure");
-  t.Records("mounts", s.mounts, AddMount, "where the artefact stands, one per set-up");
-  t.Add("poses", kPure, {1, 100000}, &s.poses, "a set-up; each is read on the way forth and back");
+  t.Records("mounts", s.mounts, AddMount, "where the artefact stands, one per mounting");
+  t.Add("poses", kPure, {1, 100000}, &s.poses, "per mounting; each is read on the way forth and back");
   t.Add("angle", kDeg, UpTo(45), &s.angle_rad, "A and B go so far to either side");
   t.Add("height", kMm, UpTo(1000), &s.height_m, "the tip stands off the surface by up to this, to either side");
   t.Add("dither", kUm, UpTo(10000), &s.dither_m, "of X and Y at every pose, uniform to either side");
   t.Add("dither", kDeg, UpTo(10), &s.dither_rad, "likewise of A and B");
   t.Text("path", &s.path, {"joint", "single"}, "all axes together, or one after the other");
   t.Add("interval", kSecond, Positive(600), &s.interval_s, "from reading to reading; longer where the way is");
-  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a mounting takes");
 }
 
 }  // namespace

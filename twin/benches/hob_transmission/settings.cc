@@ -68,12 +68,12 @@ void AddInterferometer(Keys& keys, InterferometerSettings& s) {
         "standard uncertainty of that error: of the cosine and of the sine of any order");
   t.Add(
       "stops", kPure, {0, 100000}, &s.stops,
-      "per turn at which it is read at rest, in the first set-up behind its passes, each way; 0: with every sample");
+      "per turn at which it is read at rest, in the first mounting behind its passes, each way; 0: with every sample");
 }
 
 void AddHobProcedure(Keys& keys, HobProcedureSettings& s) {
   Table t(keys, "hob_procedure");
-  t.Add("heads", kDeg, Within(360), &s.heads_rad, "where the mark passes the table's reading head, one per set-up");
+  t.Add("heads", kDeg, Within(360), &s.heads_rad, "where the mark passes the table's reading head, one per mounting");
   t.Text("encoder_zero", &s.encoder_zero, {"table_origin", "reference_mark"},
          "where the table's encoder counts from");
   t.Add("hob_speeds", {"rev_min", 2.0 * units::kPi / 60.0}, Between(0.01, 100000), &s.hob_speeds_rad_s,
@@ -83,7 +83,7 @@ void AddHobProcedure(Keys& keys, HobProcedureSettings& s) {
   t.Add("samples_per_turn", kPure, {4, 1000000}, &s.samples_per_turn, "of the table; divides table_encoder.lines");
   t.Add("ramp", kSecond, Positive(3600), &s.ramp_s, "to reach the speed and to stop");
   t.Add("rest", kSecond, UpTo(86400), &s.rest_s, "behind every pass");
-  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a mounting takes");
   t.Add("fifo_samples", kPure, {1, kHuge}, &s.fifo_samples, "that the counter card holds");
   t.Add("poll", kSecond, Between(1e-3, 3600), &s.poll_s, "the computer empties the FIFO this often");
 }
@@ -125,7 +125,7 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
                      fmt::format("a divisor of the {} lines of the table's encoder", own.table_encoder.lines));
   const int stops = own.interferometer.stops;
   if (stops != 0 && stops < kFewestStops)
-    throw InputError(Place(text, "interferometer.stops"), fmt::format("{} stops per turn", stops),
+    throw InputError(Place(text, "interferometer.stops"), fmt::format("{} measuring positions per turn", stops),
                      fmt::format("0 or at least {}: so many tell the orders 1 and 2", kFewestStops));
   for (const double speed_rad_s : own.hob_procedure.hob_speeds_rad_s) {
     if (speed_rad_s <= 0.0)

@@ -24,7 +24,7 @@ plan::ShiftDesign ShiftsOf(const Scenario& s) {
                            }};
   if (p.clamping == "reclamp")
     design.other_ways = {{"reseated",
-                          "the same set-ups, the reference's body turned back on the target instead of the grating on it",
+                          "the same mountings, the reference's body turned back on the target instead of the grating on it",
                           {"procedure.clamping=reseat"},
                           plan::kSameKind}};
   return design;

@@ -70,10 +70,10 @@ std::vector<DesiredColumn> Desired() {
 /// depends on time and direction.
 std::string Addition(int setups) {
   const std::string passes =
-      "passes + - - + in every set-up (procedure.passes = [1, -1, -1, 1]), which also show drift and backlash";
+      "passes + - - + in every mounting (procedure.passes = [1, -1, -1, 1]), which also show drift and backlash";
   if (setups >= 3) return passes;
   return std::string("at least a ") + (setups == 1 ? "second" : "third") +
-         " set-up with another shift, as in procedure.shifts = " + (setups == 1 ? "[0, 1]" : "[0, 1, 7]") +
+         " mounting with another shift, as in procedure.shifts = " + (setups == 1 ? "[0, 1]" : "[0, 1, 7]") +
          "; better, " + passes;
 }
 

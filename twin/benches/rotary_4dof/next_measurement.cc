@@ -16,7 +16,7 @@ std::string NextMeasurement(const std::string& effect, const std::string& rival)
       {{"psd_distance", "psd_gain"}, "a tilt sweep as well as a yaw sweep: a distance scales both axes"},
       {{"psd_gain", "stray_light"}, "a tilt sweep as well as a yaw sweep: stray light scales both axes"},
       {{"incidence_offset", "wavelength_offset"}, "a tilt sweep and a lateral shift of the grating"},
-      {{"backlash", "settling"}, "stops with dwells from 0.5 to 20 s"},
+      {{"backlash", "settling"}, "measuring positions with dwells from 0.5 to 20 s"},
       {{"laser_drift", "mount_creep"}, "an hour of idle readings without re-mounting"},
       {{"laser_drift", "thermal_tilt"}, "a warm-up run with the temperature changed by 1 K"},
       {{"mount_creep", "thermal_tilt"}, "a warm-up run with the temperature changed by 1 K"},
@@ -29,7 +29,7 @@ std::string NextMeasurement(const std::string& effect, const std::string& rival)
        "the warm-up with one detector's post kept at its temperature: the grating tilts both spots, a post lowers "
        "its own"},
       {{"laser_drift", "post_growth"}, "a warm-up run with the temperature changed by 1 K"},
-      {{"mount_creep", "slip"}, "a repeat of the set-up without re-mounting"},
+      {{"mount_creep", "slip"}, "the same mounting once more, without re-mounting"},
       {{"backlash", "backlash"}, "a reversal of the target alone"}};
   return diagnose::WhatSplits(splits, effect, rival, "");
 }

@@ -45,18 +45,18 @@ std::vector<NextRun> OfTheCircle(const RotarySettings& own) {
   const int n = own.procedure.positions;
   const std::string circle = "procedure.phases=[\"calibration\", \"full_circle\"]";
   std::vector<NextRun> runs = {{"dwells",
-                                "two set-ups of the circle with dwells from 0.5 to 20 s",
+                                "two mountings of the circle with dwells from 0.5 to 20 s",
                                 {circle, Shifts(n, 2), "procedure.dwell_s=[0.5, 2, 8, 20]"},
                                 plan::kOtherKind},
-                               {"two-shifts", "two set-ups of the circle, forth and back", TwoSetups(own, {}),
+                               {"two-shifts", "two mountings of the circle, forth and back", TwoSetups(own, {}),
                                 plan::kSameKind},
                                {"other-shifts",
-                                "four set-ups at the most informative shifts",
+                                "four mountings at the most informative shifts",
                                 {circle, Shifts(n, std::min(4, n)), "procedure.passes=[1, -1, -1, 1]"},
                                 plan::kSameKind}};
   if (n % 2 == 0 && n > 6)
     runs.push_back({"half-the-stops",
-                    "every other stop, six set-ups, forth and back",
+                    "every other measuring position, six mountings, forth and back",
                     {circle, fmt::format("procedure.positions={}", n / 2), Shifts(n / 2, std::min(6, n / 2)),
                      "procedure.passes=[1, -1]"},
                     plan::kSameKind});
@@ -65,7 +65,7 @@ std::vector<NextRun> OfTheCircle(const RotarySettings& own) {
 
 std::vector<NextRun> OfTheSweeps(const RotarySettings& own) {
   const std::string points = "procedure.sweep_points=25";
-  return {{"sweeps", "finer sweeps in yaw and in tilt beside the autocollimator, then two set-ups", TwoSetups(own, {points}),
+  return {{"sweeps", "finer sweeps in yaw and in tilt beside the autocollimator, then two mountings", TwoSetups(own, {points}),
            plan::kSameKind},
           {"wide-sweeps", "the same with sweeps as wide as the PSDs allow",
            TwoSetups(own, {points, fmt::format("procedure.sweep_arcsec={:.6g}", WideSweep_arcsec(own))}), plan::kOtherKind},
@@ -78,9 +78,9 @@ std::vector<NextRun> OfTheSweeps(const RotarySettings& own) {
 std::vector<NextRun> InAnotherRoom(const Scenario& scenario, const RotarySettings& own) {
   constexpr double kWarmer_K = 2.0;
   const double warm_degC = scenario.environment.temperature_degC + kWarmer_K;
-  return {{"warming", "two set-ups while the temperature rises by 2 K per hour",
+  return {{"warming", "two mountings while the temperature rises by 2 K per hour",
            TwoSetups(own, {fmt::format("environment.drift_K_h={}", kWarmer_K)}), plan::kOtherKind},
-          {"warm", "finer sweeps and two set-ups at a temperature 2 K higher",
+          {"warm", "finer sweeps and two mountings at a temperature 2 K higher",
            TwoSetups(own, {"procedure.sweep_points=25", fmt::format("environment.temperature_degC={}", warm_degC)}),
            plan::kOtherKind}};
 }

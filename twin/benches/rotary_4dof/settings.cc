@@ -199,11 +199,11 @@ void AddPlan(Table& t, ProcedureSettings& s) {
   t.Text("phases", &s.phases, {"calibration", "stability", "verification", "full_circle"},
          "in the order of the run");
   t.Add("positions", kPure, {3, 100000}, &s.positions, "measuring positions of the full circle");
-  t.Add("shifts", kPure, UpTo(99999), &s.shifts, "index offset of the reference in every set-up, in measuring positions");
+  t.Add("shifts", kPure, UpTo(99999), &s.shifts, "index offset of the reference in every mounting, in measuring positions");
   t.Add("passes", kPure, {-1, 1}, &s.passes, "directions: 1 or -1");
   t.Text("clamping", &s.clamping, {"reseat", "reclamp"}, "how the grating returns to the PSDs: whole table re-mounted, turned (reseat); remounted on the rotor (reclamp)");
-  t.Add("dwell", kSecond, UpTo(86400), &s.dwell_s, "drawn at random from this list at every stop");
-  t.Add("run_up_steps", kPure, UpTo(1000), &s.run_up_steps, "every pass comes to its first stop from this far");
+  t.Add("dwell", kSecond, UpTo(86400), &s.dwell_s, "drawn at random from this list at every measuring position");
+  t.Add("run_up_steps", kPure, UpTo(1000), &s.run_up_steps, "every pass comes to its first measuring position from this far");
   t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a re-mounting takes");
 }
 

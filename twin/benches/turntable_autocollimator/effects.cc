@@ -55,7 +55,7 @@ std::vector<EffectEntry> TurntableTimeEffects() {
        {Signed("coefficient", "arcsec_per_K", 0.2, 1000.0, "of the zero, per kelvin")
             .Adds("autocollimator.@_per_kelvin_arcsec")}},
       {"mount_creep",
-       "mounting that creeps after each set-up",
+       "mounting that creeps once it is made",
        AutocollimatorAxes(),
        {Signed("amplitude", "arcsec", 0.5, 1000.0, "of amplitude * ln(1 + time since mounting / time_constant)"),
         Parameter("time_constant", "s", 60.0, 1.0, 1e5, "of the same")}},

@@ -7,8 +7,8 @@
 namespace twinbench::benches::turntable {
 namespace {
 
-constexpr const char* kBothWays = "passes + - - + in every set-up";
-constexpr const char* kDwells = "stops with dwells from 0.5 to 20 s";
+constexpr const char* kBothWays = "passes + - - + in every mounting";
+constexpr const char* kDwells = "measuring positions with dwells from 0.5 to 20 s";
 constexpr const char* kLifts = "twenty lifts of the multi-tooth table at one position";
 constexpr const char* kWarm = "a run at a temperature changed by 1 K, with the temperature recorded";
 constexpr const char* kIdle = "an hour of readings at rest, nothing moved nor mounted";

@@ -43,7 +43,7 @@ NextRun OffCentre(const TurntableProcedureSettings& p) {
 
 NextRun LongerReadings(const CollimatorSettings& c) {
   const int frames = plan::kTimesTheReadings * c.frames;
-  return plan::LongerReadings(fmt::format("the same stops, each reading the mean of {} frames", frames),
+  return plan::LongerReadings(fmt::format("the same measuring positions, each reading the mean of {} frames", frames),
                               "autocollimator.frames", frames);
 }
 
@@ -121,7 +121,7 @@ std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
             "turntable_procedure.tilt_azimuths_deg=[0]"},
            plan::kSameKind},
           {"half-the-stops",
-           "every other stop of the circle",
+           "every other measuring position of the circle",
            {kCirclePhase, fmt::format("turntable_procedure.positions={:.0f}", p.positions / kCoarse)},
            plan::kSameKind},
           {"warm",

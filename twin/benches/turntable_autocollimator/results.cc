@@ -187,7 +187,7 @@ nlohmann::json ResultsOf(const TurntableAnalysis& a, const Scenario& scenario) {
 
 std::string RollText(const Roll& roll) {
   if (roll.status == RollStatus::kTiltsAlike)
-    return "roll of the crosshair: not seen, the set-ups do not differ in tilt\n";
+    return "roll of the crosshair: not seen, the mountings do not differ in tilt\n";
   return fmt::format("roll of the crosshair   {:.3f} ± {:.3f} mrad\n", roll.gamma_rad / units::mrad,
                      roll.u_gamma_rad / units::mrad);
 }

@@ -67,14 +67,14 @@ void AddCollimator(Keys& keys, CollimatorSettings& s) {
 }
 
 void AddSetUps(Table& t, TurntableProcedureSettings& s) {
-  const std::string list = ", one per set-up or one for all";
+  const std::string list = ", one per mounting or one for all";
   t.Add("tilts", kArcsec, Within(3600), &s.tilts_rad, "of the multi-tooth table's axis" + list);
   t.Add("tilt_azimuths", kDeg, Within(360), &s.tilt_azimuths_rad, "on the turntable, where it leans to" + list);
   t.Add("shifts_teeth", kPure, UpTo(99999), &s.shifts, "of the multi-tooth table" + list);
   t.Add("eccentricities", kUm, Within(50000), &s.eccentricities_m, "of its axis, along the azimuth" + list);
   t.Add("polygon_offsets", kDeg, Within(360), &s.polygon_offsets_rad,
         "of the turntable where the polygon's face 0 is seen" + list);
-  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a mounting takes");
 }
 
 void AddTurntableProcedure(Keys& keys, TurntableProcedureSettings& s) {
@@ -83,9 +83,9 @@ void AddTurntableProcedure(Keys& keys, TurntableProcedureSettings& s) {
   t.Add("positions", kPure, {3, 100000}, &s.positions, "of the full circle; a whole number of teeth apart");
   AddSetUps(t, s);
   t.Add("passes", kPure, {-1, 1}, &s.passes, "directions of the full circle: 1 or -1");
-  t.Add("dwell", kSecond, UpTo(86400), &s.dwell_s, "drawn at random from this list at every stop");
+  t.Add("dwell", kSecond, UpTo(86400), &s.dwell_s, "drawn at random from this list at every measuring position");
   t.Add("highest_order", kPure, {1, 1000}, &s.highest_order, "of the error that is fitted to a polygon's faces");
-  t.Add("run_up_steps", kPure, UpTo(1000), &s.run_up_steps, "every pass comes to its first stop from this far");
+  t.Add("run_up_steps", kPure, UpTo(1000), &s.run_up_steps, "every pass comes to its first measuring position from this far");
   t.Add("sweep", kArcsec, Positive(36000), &s.sweep_rad, "calibration: ± this, with the turntable alone");
   t.Add("sweep_points", kPure, {3, 10000}, &s.sweep_points, "of the sweep");
   t.Add("verification_positions", kPure, {1, 100000}, &s.verification_positions, "whole teeth off the grid");
@@ -153,7 +153,7 @@ void CheckSetUps(const ScenarioText& text, const TurntableProcedureSettings& pro
   const auto check = [&](const std::string& key, std::size_t length) {
     if (length == 1 || length == set_ups) return;
     throw InputError(Place(text, "turntable_procedure." + key),
-                     fmt::format("turntable_procedure.{} has {} entries for {} set-ups", key, length, set_ups),
+                     fmt::format("turntable_procedure.{} has {} entries for {} mountings", key, length, set_ups),
                      fmt::format("1 or {}", set_ups));
   };
   check("tilts_arcsec", procedure.tilts_rad.size());

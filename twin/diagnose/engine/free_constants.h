@@ -14,7 +14,7 @@ namespace twinbench::diagnose {
 struct FreePoint {
   model::Point point;
   Eigen::MatrixXd courses;  // used readings x constants, dimensionless
-  std::string of;           // in words: "a set-up"
+  std::string of;           // in words: "a mounting"
   double sd = kNaN;         // SI: what each constant may well be; NaN: anything
 };
 

@@ -26,7 +26,7 @@ std::vector<Sorting> SortingsOf(const Schedule& s) {
     pass.push_back({s.setup[i], static_cast<long>(s.phase[i]), s.pass[i]});
     place.push_back(PlaceOfReading(s, i));
   }
-  std::vector<Sorting> all = {{"set-up", Numbered(setup)}, {"pass", Numbered(pass)}, {"place", Numbered(place)}};
+  std::vector<Sorting> all = {{"mounting", Numbered(setup)}, {"pass", Numbered(pass)}, {"place", Numbered(place)}};
   std::erase_if(all, [&](const Sorting& by) { return by.Groups() < 2 || by.Groups() >= s.Readings(); });
   return all;
 }

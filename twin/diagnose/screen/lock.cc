@@ -34,7 +34,7 @@ std::vector<Round> RoundsOf(const Schedule& s) {
 
 /// Cosine and sine of h * target in each set-up apart: for every order 2 columns a set-up.
 Scan ScanBySetup(const Schedule& s, const std::vector<Round>& rounds, int orders) {
-  Scan scan{"harmonics by set-up", 2 * static_cast<int>(rounds.size())};
+  Scan scan{"harmonics by mounting", 2 * static_cast<int>(rounds.size())};
   for (int h = 1; h <= orders; ++h) {
     const Eigen::MatrixXd wave = Wave(h * s.target_rad);
     Eigen::MatrixXd shape = Eigen::MatrixXd::Zero(s.Readings(), scan.width);
@@ -76,18 +76,18 @@ std::string LockOf(const Fit& fit, const std::vector<Round>& rounds, int order, 
   std::string names;
   for (const Lock& lock : locks) {
     const Fit locked = fit.Constrained(Eigen::kroneckerProduct(each_channel, PhaseModel(rounds, lock.advance)), 2);
-    if (locked.dof == fit.dof) return "something that so few set-ups cannot tell";
+    if (locked.dof == fit.dof) return "something that so few mountings cannot show";
     if (locked.dof == 0 || locked.chi2[0] - locked.dof < kNearlyAll * (fit.chi2[0] - fit.dof)) continue;
     names += (names.empty() ? "" : " or ") + std::string(lock.name);
   }
-  return names.empty() ? "interaction of set-up and angle" : names;
+  return names.empty() ? "interaction of mounting and angle" : names;
 }
 
 void AddPhaseLines(const LinearRun& run, const Fit& fit, const std::vector<Round>& rounds, ScreenTest& test) {
   for (int c = 0; c < run.Channels(); ++c) {
     for (int r = 0; r < std::ssize(rounds); ++r) {
       const double a = fit.amplitude[c * fit.width + 2 * r], b = fit.amplitude[c * fit.width + 2 * r + 1];
-      test.tables.push_back(fmt::format("{}, set-up {} (offset {:.1f} deg): {}, phase {:.0f} deg", run.channels[c],
+      test.tables.push_back(fmt::format("{}, mounting {} (offset {:.1f} deg): {}, phase {:.0f} deg", run.channels[c],
                                         rounds[r].setup, rounds[r].offset_rad / units::deg,
                                         Amount(run, c, std::hypot(a, b)), std::atan2(b, a) / units::deg));
     }

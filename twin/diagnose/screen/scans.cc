@@ -30,7 +30,7 @@ Scan Creep(const Eigen::VectorXd& in_setup_s) {
 Scan WarmUp(const Eigen::VectorXd& part, const Eigen::VectorXd& in_setup) {
   Scan scan{"time: exponential"};
   for (const auto& [time, since] :
-       {std::pair(part, "start of the run"), std::pair(in_setup, "start of the set-up")}) {
+       {std::pair(part, "start of the run"), std::pair(in_setup, "start of the mounting")}) {
     for (double decay : {0.01, 0.03, 0.1, 0.3}) scan.Add((-time.array() / decay).exp(), since, decay);
   }
   return scan;

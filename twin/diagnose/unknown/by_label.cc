@@ -47,7 +47,7 @@ void AddPasses(Collector& collect) {
   }
   AddWaves(collect, "pass", passes, tuning::kPassOrders);
   if (visits.cols() <= passes.cols() || !IsTold(visits, tuning::kMostOffsets)) return;
-  collect.Add("pass", visits, "offset of each pass of each set-up, function of the pass (time)");
+  collect.Add("pass", visits, "offset of each pass of each mounting, function of the pass (time)");
   collect.GoByTime();
 }
 
@@ -75,7 +75,7 @@ void AddByLabel(Collector& collect) {
   AddPasses(collect);
   AddDwells(collect);
   // An offset of each set-up is free anyway.
-  AddWaves(collect, "set-up", WhereMoved(collect.design(), collect.design().course.setup), tuning::kSetupOrders);
+  AddWaves(collect, "mounting", WhereMoved(collect.design(), collect.design().course.setup), tuning::kSetupOrders);
 }
 
 }  // namespace twinbench::diagnose::unknown

@@ -54,7 +54,7 @@ void AddWander(Collector& collect) {
   const Eigen::MatrixXd setups = model::Times(model::Indicators(d.course.setup), d.moved);
   if (stretches.cols() > 1 || setups.cols() < 2) return;
   collect.Add("wander", model::Times(setups, model::ElapsedShare(d.course)),
-              "drift that differs from set-up to set-up, function of time");
+              "drift that differs from mounting to mounting, function of time");
   collect.GoByTime();
 }
 
@@ -201,7 +201,7 @@ void AddRestarts(Collector& collect) {
         return Eigen::MatrixXd(model::Unit(g < count ? Eigen::VectorXd((-share).exp()) : share.log1p()));
       },
       [times_s, count](int g) {
-        return fmt::format("{} that begins again with every set-up, about {:.0f} s, function of time",
+        return fmt::format("{} that begins again with every mounting, about {:.0f} s, function of time",
                            g < count ? "decay" : "creep", times_s[static_cast<std::size_t>(g % count)]);
       });
   collect.GoByTime();

@@ -86,14 +86,14 @@ std::vector<RankedErrors> Ranked(const json& results) {
 }  // namespace
 
 PageChoice CircleChoice(const json& results) {
-  PageChoice choice{"Circles", "", {"set-up", "feed"}, {}, {}};
+  PageChoice choice{"Circles", "", {"mounting", "feed"}, {}, {}};
   for (const json& pass : ListAt(results, "radial")) {
     const std::string setup = fmt::format("{:g} ({})", NumberAt(pass, "setup"), TextAt(pass, "instrument"));
     const std::vector<std::string> answer = {setup, FeedOf(pass)};
     auto at = std::ranges::find(choice.answers, answer) - choice.answers.begin();
     if (at == std::ssize(choice.answers)) {
       const double radius_mm = NumberAt(pass, "radius_mm");
-      Figure figure{FigureForm::kAngle, fmt::format("Radial deviation, set-up {}, {}", setup, answer[1]), fmt::format("R = {:.6g} mm", radius_mm),
+      Figure figure{FigureForm::kAngle, fmt::format("Radial deviation, mounting {}, {}", setup, answer[1]), fmt::format("R = {:.6g} mm", radius_mm),
                     {"commanded angle", "deg"}, {"radial deviation", "um"}, {}};
       figure.radius = 1000.0 * radius_mm;
       choice.answers.push_back(answer);

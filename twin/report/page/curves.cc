@@ -24,13 +24,13 @@ bool IsUncertainty(const std::string& key) {
   return key.starts_with("u_");
 }
 
-/// What tells one of several objects of a list from the others: "set-up 1, head 12°".
+/// What tells one of several objects of a list from the others: "mounting 1, head 12°".
 std::string SeriesOf(const json& object) {
   std::string words;
   for (const std::string key : {"setup", "direction", "head_deg"}) {
     if (!std::isfinite(NumberAt(object, key))) continue;
     const auto [name, unit] = NameAndUnit(key);
-    words += (words.empty() ? "" : ", ") + (key == "setup" ? "set-up" : name) + " " + MeasuredText(NumberAt(object, key), std::nan(""), unit);
+    words += (words.empty() ? "" : ", ") + (key == "setup" ? "mounting" : name) + " " + MeasuredText(NumberAt(object, key), std::nan(""), unit);
   }
   return words;
 }

@@ -47,7 +47,7 @@ PageColumns ColumnsOf(const std::vector<Reading>& readings, const BenchFormat& f
     if (column.IsShown() && all.y == 1) all.y = static_cast<int>(all.columns.size());
     all.columns.push_back(std::move(made));
   }
-  all.columns.push_back({"set-up", "", setup});
+  all.columns.push_back({"mounting", "", setup});
   all.group = static_cast<int>(all.columns.size()) - 1;
   return all;
 }
@@ -78,7 +78,7 @@ Figure TrackOf(const std::string& name, const ReadingColumn& x, const ReadingCol
     series.y.push_back(*at_y);
   }
   for (auto& [setup, series] : setups) {
-    series.name = fmt::format("set-up {}", setup);
+    series.name = fmt::format("mounting {}", setup);
     figure.series.push_back(std::move(series));
   }
   return figure;

@@ -89,7 +89,7 @@ void AddMaps(const json& plots, std::vector<Chosen>& chosen) {
     for (std::size_t s = 0; s < setup->size(); ++s) {
       const auto before = NumbersOf(map.at("before").at(s)), after = NumbersOf(map.at("after").at(s));
       if (!before || !after || before->size() != position->size()) continue;
-      const std::string where = fmt::format("position in set-up {:g}", (*setup)[s]);
+      const std::string where = fmt::format("position in mounting {:g}", (*setup)[s]);
       Figure figure{FigureForm::kLine, "Residual of " + NameAndUnit(channel).name + " against " + where, "", {"position", ""},
                     {channel, UnitOf(plots, channel)},
                     BeforeAndAfter(*position, *before, *after, {})};

@@ -66,7 +66,7 @@ std::string NameOf(const CircleFit& fit, Index unknown) {
   if (unknown < std::ssize(fit.fitted)) return CircleUnknowns()[fit.fitted[static_cast<std::size_t>(unknown)]].key;
   const Index behind = unknown - std::ssize(fit.fitted);
   const char* const names[] = {"offset_x", "offset_y", "rotation", "length"};
-  return fmt::format("{} of set-up {}", names[behind % kOfSetup],
+  return fmt::format("{} of mounting {}", names[behind % kOfSetup],
                      fit.setups[static_cast<std::size_t>(behind / kOfSetup)]);
 }
 

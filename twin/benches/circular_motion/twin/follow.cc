@@ -35,7 +35,7 @@ class CircleFollow : public PointwiseFollow<CircleExtra> {
               *bodies_) {}
 
   std::vector<std::string> Unfixed() const override {
-    return {"centre, zero of the encoder, length of the bar and rotation of the grid: free in every set-up"};
+    return {"centre, zero of the encoder, length of the bar and rotation of the grid: free in every mounting"};
   }
 
  protected:

@@ -60,10 +60,10 @@ std::string List(const std::vector<int>& orders) {
 
 void AddNotes(const UsableGroups& groups, const ComparisonFit& fitted, DeviceError& result) {
   for (const PassGroup& group : groups.poor)
-    result.notes.push_back(fmt::format("set-up {}, direction {:+d}: too small a part of the turn, not used",
+    result.notes.push_back(fmt::format("mounting {}, direction {:+d}: too small a part of the turn, not used",
                                        group.setup, group.direction));
   if (!fitted.noise.between_laps)
-    result.notes.push_back("no direction of a set-up has two turns: uncertainties suppose white noise");
+    result.notes.push_back("no direction of a mounting has two turns: uncertainties suppose white noise");
   if (std::ranges::any_of(result.passes, [](const PassResult& p) { return std::isnan(p.slope_rad_per_turn); }))
     result.notes.push_back(
         "a pass of less than one and a half turns does not tell drift or a wrong scale from the curve");
@@ -95,7 +95,7 @@ std::string Obstacle(const std::vector<PassGroup>& groups, int highest_order) {
   const double turns = TurnsOfDevice(groups);
   if (std::abs(turns - 1.0) > kOffCount)
     return fmt::format("measured goes through {:.3g} turns for one turn of the reference", turns);
-  return highest_order == 0 ? "no set-up has a complete turn in one direction" : "";
+  return highest_order == 0 ? "no mounting has a complete turn in one direction" : "";
 }
 
 }  // namespace

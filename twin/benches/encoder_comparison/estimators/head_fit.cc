@@ -81,7 +81,7 @@ SeveralHeads BeginHeads(const HeadReadings& sorted, const HeadOptions& options) 
   if (sorted.stops.empty()) {
     result.not_separated = "no two heads were read at one time";
   } else if (highest == 0) {
-    result.not_separated = fmt::format("the heads were read in a part of the turn only: {:.4g} deg are without a stop",
+    result.not_separated = fmt::format("the heads were read in a part of the turn only: {:.4g} deg are without a measuring position",
                                        sorted.WidestGap_rad() / units::deg);
   }
   result.ring.orders.resize(static_cast<std::size_t>(highest));
@@ -131,7 +131,7 @@ void EnterReference(const HeadReadings& sorted, const HeadSolution& solution, co
   if (solution.rounding.size() > 0)
     reference.rounding = solution.place_rad2 * solution.visits / static_cast<double>(result.heads_rad.size()) * reference.cofactor;
   if (reference.dof < 1.0) {
-    result.notes.push_back("too few stops for a curve of the reference");
+    result.notes.push_back("too few measuring positions for a curve of the reference");
     return;
   }
   result.reference = SeriesOf(reference, all);

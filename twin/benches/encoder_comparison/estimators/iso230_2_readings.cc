@@ -84,7 +84,7 @@ std::vector<std::string> NotesOn(const std::map<int, Stop>& stops, double spacin
   std::vector<std::string> notes;
   for (const auto& [position, stop] : stops) {
     if (stop.Width() <= 0.5 * spacing_rad) continue;
-    notes.push_back(fmt::format("readings of position {} lie up to {:.4g} deg apart: not stops at one target",
+    notes.push_back(fmt::format("readings of position {} lie up to {:.4g} deg apart: not measuring positions of one target",
                                 position, stop.Width() / units::deg));
   }
   return notes;

@@ -44,7 +44,7 @@ class EncoderFollow : public PointwiseFollow<AngleExtra> {
       : PointwiseFollow(WithoutGraduation(Foreseeable(stated, record)), record, AnglePoints()) {}
 
   std::vector<std::string> Unfixed() const override {
-    return {"angles of the device on the shaft: free in every set-up"};
+    return {"angles of the device on the shaft: free in every mounting"};
   }
 
  protected:

@@ -82,7 +82,7 @@ std::string WhyOf(const std::map<std::string, double>& what, bool strictly) {
   };
   if (all([](const std::string& name) { return name.starts_with("b.rz"); }))
     return "turning about the beam moves nothing that the probe sees";
-  if (!strictly) return "on this path these courses differ by less than the noise can tell";
+  if (!strictly) return "on this path these functions of the axes differ by less than the noise shows";
   if (all(IsConstant)) return "constants of bodies in a row add up, and mountings take up what is left";
   const bool mounted =
       std::ranges::any_of(what, [](const auto& entry) { return entry.first.starts_with("mount"); });

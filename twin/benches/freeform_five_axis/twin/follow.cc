@@ -75,7 +75,7 @@ class FreeformFollow : public PointwiseFollow<FreeformExtra> {
   }
 
   std::vector<std::string> Unfixed() const override {
-    return {"errors of the machine beyond those stated, and how the artefact stands in each set-up: free"};
+    return {"errors of the machine beyond those stated, and how the artefact stands in each mounting: free"};
   }
 
  protected:

@@ -35,7 +35,7 @@ std::vector<Reading> Usable(const std::vector<Reading>& readings) {
   for (const Reading& r : used) {
     if (!std::isfinite(r.head_rad))
       throw InputError("readings", fmt::format("reading {} has no head angle", r.reading),
-                       "head_deg in every set-up");
+                       "head_deg in every mounting");
   }
   return used;
 }
@@ -249,7 +249,7 @@ std::string BiasInWords(int free_orders, const Eigen::VectorXd& unknowns) {
     words += fmt::format("{}transmission order {} up to {:.2g} arcsec", words.empty() ? "" : ", ", k,
                          size_rad / units::arcsec);
   }
-  return words.empty() ? "nothing but the constant of a set-up" : words;
+  return words.empty() ? "nothing but the constant of a mounting" : words;
 }
 
 double RowSpacing_rad(const SignalContext& c) {

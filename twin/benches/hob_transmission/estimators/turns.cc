@@ -23,15 +23,15 @@ double ValueOf(const HobSample& s, Signal signal, double ratio) {
 }
 
 std::string Where(const HobSample& s) {
-  return fmt::format("set-up {}, pass {}", s.setup, s.pass);
+  return fmt::format("mounting {}, pass {}", s.setup, s.pass);
 }
 
 void CheckSample(const HobSample& s, const Pass& pass) {
   if (std::abs(s.direction) != 1)
     throw InputError(Where(s), fmt::format("direction is {}", s.direction), "+1 or -1");
-  if (!std::isfinite(s.head_rad)) throw InputError(Where(s), "the head angle is missing", "one per set-up");
+  if (!std::isfinite(s.head_rad)) throw InputError(Where(s), "the head angle is missing", "one per mounting");
   if (!pass.th_rad.empty() && s.head_rad != pass.head_rad)
-    throw InputError(Where(s), "the head angle changes", "one head angle a set-up");
+    throw InputError(Where(s), "the head angle changes", "one head angle per mounting");
 }
 
 void CheckValue(const HobSample& s, double value_rad, const Pass& pass) {
@@ -54,8 +54,8 @@ void Append(const HobSample& s, double value_rad, EncoderZero zero, Pass& pass) 
 void CheckHeads(const std::vector<Pass>& passes) {
   for (std::size_t i = 1; i < passes.size(); ++i) {
     if (passes[i].setup == passes[i - 1].setup && passes[i].head_rad != passes[i - 1].head_rad)
-      throw InputError(fmt::format("set-up {}", passes[i].setup), "the head angle changes between passes",
-                       "one head angle a set-up");
+      throw InputError(fmt::format("mounting {}", passes[i].setup), "the head angle changes between passes",
+                       "one head angle per mounting");
   }
 }
 

@@ -88,7 +88,7 @@ class CourseMaker {
 
   void NoteUnfixed() {
     course_.unfixed.push_back("where the table turned round between passes: from times and [hob_procedure]");
-    if (!zero_rad_.empty()) course_.unfixed.push_back("zero of the hob's encoder: by the mean of a set-up");
+    if (!zero_rad_.empty()) course_.unfixed.push_back("zero of the hob's encoder: by the mean of a mounting");
   }
 
   const std::vector<Reading>& record_;

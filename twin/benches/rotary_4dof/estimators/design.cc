@@ -58,7 +58,7 @@ int FindSetUp(Design& design, const Motion& motion, int shift, const LayoutOptio
     if (design.setups[s].label != motion.setup) continue;
     if (design.setups[s].shift == shift) return static_cast<int>(s);
     throw InputError("reading " + std::to_string(motion.reading),
-                     "target + reference angle differs inside set-up " + std::to_string(motion.setup),
+                     "target + reference angle differs inside mounting " + std::to_string(motion.setup),
                      "a reference that turns back by the target's step");
   }
   const Clamping clamping = ClampingOf(motion.setup, options);
@@ -170,7 +170,7 @@ Layout FindLayout(const std::vector<Motion>& motions, const BenchGeometry& geome
     const int setup = FindSetUp(design, m, (target + reference) % design.n, options);
     layout.samples.push_back({i, setup, target, reference});
   }
-  if (layout.samples.empty()) throw InputError("readings", "no usable full-circle reading", "at least one set-up");
+  if (layout.samples.empty()) throw InputError("readings", "no usable full-circle reading", "at least one mounting");
   return layout;
 }
 

@@ -12,13 +12,13 @@ constexpr double kTouch = 1e-6;  // part of a unit vector in the null space that
 
 constexpr const char* kNotRead = "no detector of the bench reads this direction";
 constexpr const char* kOneAzimuth =
-    "the set-ups show the reference's rotor in one azimuth only (or opposite ones), and only motion along y is "
+    "the mountings show the reference's rotor in one azimuth only (or opposite ones), and only motion along y is "
     "read";
-constexpr const char* kConstant = "a constant of a table looks like the mounting constants of the set-ups";
+constexpr const char* kConstant = "a constant of a table looks like the constants of the mountings";
 constexpr const char* kSeat =
     "tilt or eccentricity of the reference's body on the target's rotor turns with the target in the same way";
 constexpr const char* kShifts =
-    "the set-ups do not tell it from the same order of other components: some combination of them changes no "
+    "the mountings do not separate it from the same order of other components: some combination of them changes no "
     "reading";
 
 /// One table's component, or pair of components, with the series it is made of.

@@ -47,7 +47,7 @@ std::pair<int, int> FindTests(const Design& design) {
       if (difference == design.n - 1) return {static_cast<int>(b), static_cast<int>(a)};
     }
   }
-  throw InputError("readings", "no two set-ups differ by one step", "the two tests of the published method");
+  throw InputError("readings", "no two mountings differ by one step", "the two tests of the published method");
 }
 
 /// Values of one sector from those at its two ends, all around.
@@ -136,7 +136,7 @@ Places FindPlaces(const Design& design, int test_1) {
 /// Constants are lost in both tables, and so is whatever nobody reads. The method itself believes no more is lost.
 std::vector<NotSeparable> PublishedLosses() {
   const char* not_read = "no detector of the bench reads this direction";
-  const char* constant = "a constant of a table looks like the mounting constants of the set-ups";
+  const char* constant = "a constant of a table looks like the constants of the mountings";
   std::vector<NotSeparable> lost;
   for (const Table table : {Table::kTarget, Table::kReference}) {
     const std::string name = TableName(table);
@@ -191,7 +191,7 @@ Separation SeparatePublished(const std::vector<Motion>& motions, const BenchGeom
   }
   result.target.cov = CurveCovariance::Dense(std::move(cov_target));
   result.reference.cov = CurveCovariance::Dense(std::move(cov_reference));
-  if (layout.design.setups.size() > 2) result.notes.push_back("published method: only two of the set-ups are used");
+  if (layout.design.setups.size() > 2) result.notes.push_back("published method: only two of the mountings are used");
   return result;
 }
 

@@ -47,7 +47,7 @@ void Sequencer::NoteMounting(int setup, double clamp_rad, double reseat_rad) {
   if (!options_.log) return;
   options_.log->AppendEvent(
       bench().clock.Now(), "fixture",
-      fmt::format("mounted set-up {}{}: grating clamped at {:.6g} deg, body seated at {:.6g} deg", setup,
+      fmt::format("mounting {}{}: grating clamped at {:.6g} deg, body seated at {:.6g} deg", setup,
                   options_.hand_ends_mounting ? kMountedByHand : "", clamp_rad / units::deg, reseat_rad / units::deg));
 }
 

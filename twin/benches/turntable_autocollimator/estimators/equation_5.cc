@@ -22,7 +22,7 @@ int FindLabel(const StopGrid& grid, int label) {
   for (std::size_t s = 0; s < grid.setups.size(); ++s) {
     if (grid.setups[s].label == label) return static_cast<int>(s);
   }
-  throw InputError("set-up " + std::to_string(label), "no usable stop", "two set-ups of different tilt");
+  throw InputError("mounting " + std::to_string(label), "no usable measuring position", "two mountings of different tilt");
 }
 
 std::vector<Cell> MeanCircle(const std::vector<TurntableStop>& stops, const StopGrid& grid, int setup) {
@@ -46,7 +46,7 @@ std::size_t FindStart(const std::vector<Cell>& a, const std::vector<Cell>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (a[i].readings > 0 && b[i].readings > 0) return i;
   }
-  throw InputError("readings", "no position that both set-ups read", "two full circles");
+  throw InputError("readings", "no position that both mountings read", "two full circles");
 }
 
 /// Variance of one zero-based mean reading in units of one reading's.
@@ -82,7 +82,7 @@ std::vector<PointwiseError> SolveEquation5(const std::vector<TurntableStop>& sto
   const SetUp &setup_a = grid.setups[static_cast<std::size_t>(a)],
               &setup_b = grid.setups[static_cast<std::size_t>(b)];
   if (setup_a.row != setup_b.row || setup_a.shift != setup_b.shift) {
-    throw InputError("set-up " + std::to_string(second), "another shift than set-up " + std::to_string(first),
+    throw InputError("mounting " + std::to_string(second), "another shift than mounting " + std::to_string(first),
                      "the same teeth at the same positions, only the tilt changed");
   }
   const std::vector<Cell> circle_a = MeanCircle(stops, grid, a), circle_b = MeanCircle(stops, grid, b);

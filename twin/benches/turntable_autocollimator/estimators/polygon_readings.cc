@@ -37,8 +37,8 @@ FaceReading FaceReadingOf(const Reading& r, const Scenario& scenario) {
   const TurntableSettings& own = TurntableOf(scenario);
   const std::string where = fmt::format("reading {}", r.reading);
   if (r.setup < 0 || r.setup >= own.turntable_procedure.SetUps())
-    throw InputError(where, fmt::format("set-up {} has no offset of the polygon", r.setup),
-                     fmt::format("set-ups 0 to {}", own.turntable_procedure.SetUps() - 1));
+    throw InputError(where, fmt::format("mounting {} has no offset of the polygon", r.setup),
+                     fmt::format("mountings 0 to {}", own.turntable_procedure.SetUps() - 1));
   const int face = FaceOf(r, own);
   const double nominal_rad = own.FaceAngle_rad(r.setup, face);
   const double aside_rad = std::remainder(r.target_rad - nominal_rad, units::turn);

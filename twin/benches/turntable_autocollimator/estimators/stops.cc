@@ -63,7 +63,7 @@ int FindSetUp(StopGrid& grid, std::size_t index, const SetUp& found) {
     if (known.label != found.label) continue;
     if (known.row == found.row && known.shift == found.shift) return static_cast<int>(s);
     throw InputError(NameOf(index),
-                     "turntable + multi-tooth angle differs inside set-up " + std::to_string(found.label),
+                     "turntable + multi-tooth angle differs inside mounting " + std::to_string(found.label),
                      "a multi-tooth table that turns back by the turntable's step");
   }
   grid.setups.push_back(found);
@@ -102,7 +102,7 @@ StopGrid FindGrid(const std::vector<TurntableStop>& stops, int positions) {
     if (grid.stops.empty()) grid.offset_rad = GridOffset(stops[i].turntable_rad, grid.Step_rad());
     AddStop(grid, stops[i], i);
   }
-  if (grid.stops.empty()) throw InputError("readings", "no usable stop", "at least one set-up");
+  if (grid.stops.empty()) throw InputError("readings", "no usable measuring position", "at least one mounting");
   return grid;
 }
 

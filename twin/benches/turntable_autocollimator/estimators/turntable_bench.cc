@@ -87,7 +87,7 @@ AngleSeries SeriesOf(const std::vector<PointwiseError>& pointwise) {
 
 void AddModel(const AngleSeries& series, TurntableAnalysis& analysis) {
   if (std::ssize(series.position_rad) < kFewestPositions) {
-    analysis.not_separated = "no two set-ups of equal shift and different tilt: equation 5 has nothing to work on";
+    analysis.not_separated = "no two mountings of equal shift and different tilt: equation 5 has nothing to work on";
     return;
   }
   analysis.model = FitHarmonics(series, ChooseHighestOrder(series));

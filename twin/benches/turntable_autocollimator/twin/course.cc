@@ -105,8 +105,8 @@ class CourseMaker {
 
   void NoteUnfixed() {
     course_.unfixed.push_back(
-        "moments of the mountings: as long before a set-up's first reading as [turntable_procedure] needs");
-    course_.unfixed.push_back("tilts, azimuths and eccentricities of the set-ups: as [turntable_procedure] says");
+        "moments of the mountings: as long before a mounting's first reading as [turntable_procedure] needs");
+    course_.unfixed.push_back("tilts, azimuths and eccentricities of the mountings: as [turntable_procedure] says");
     if (without_temperature_) course_.unfixed.push_back("temperature where none was logged: as [environment] says");
   }
 
