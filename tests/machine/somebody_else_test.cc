@@ -6,6 +6,7 @@
 #include "tests/machine/benches.h"
 #include "tests/machine/driven_twin.h"
 #include "tests/support/troubled_machine.h"
+#include "twin/benches/hob_transmission/settings.h"
 #include "twin/core/bench_format.h"
 #include "twin/procedure/doubted_instruments.h"
 
@@ -193,6 +194,49 @@ TEST(SomebodyElse, WhoTakesTheMirrorAwayLeavesNoEmptyReading) {
     EXPECT_EQ(twin.FaultOn(bench), "gap") << twin.said;
     EXPECT_EQ(twin.log.readings.size(), 4u);
   }
+}
+
+/// A counter that hands over several samples at once. From the n-th look on it stands, and jumps with every look by less than shows from
+/// one sample to the next.
+class StandingCounter : public InstrumentSet {
+ public:
+  StandingCounter(InstrumentSet& inner, int looks) : inner_(inner), looks_(looks) {}
+  Reading Read() override { return inner_.Read(); }
+  void Arm(int samples, int lines) override {
+    held_.clear();
+    inner_.Arm(samples, lines);
+  }
+  LatchedSamples Latched() override {
+    const std::vector<Reading> more = inner_.Latched().samples;
+    held_.insert(held_.end(), more.begin(), more.end());
+    LatchedSamples latched;
+    if (held_.size() < kTogether) return latched;
+    latched.samples.swap(held_);
+    if (looks_-- > 0) return latched;
+    for (Reading& sample : latched.samples) sample.reference_rad = latched.samples[0].reference_rad + 20.0 * units::deg;
+    return latched;
+  }
+
+ private:
+  static constexpr std::size_t kTogether = 4;  // of the twelve of a pass
+  InstrumentSet& inner_;
+  int looks_;
+  std::vector<Reading> held_;
+};
+
+TEST(SomebodyElse, WhoStopsACounterLeavesNoSampleOfTheLookInWhichItStood) {
+  DrivenTwin twin(ShortHob());
+  const BenchFormat& format = FormatOf(twin.scenario.bench);
+  const auto from_table = [order = HobOf(twin.scenario).transmission.HobOrder()](const Reading& r) { return order * r.measured_rad; };
+  const procedure::ClaimedColumn hob{*std::ranges::find(format.columns, "hob_encoder_deg", &ReadingColumn::name), 0.0, 0.0, from_table, true};
+  twin.options.require_goes_along = [=](const Reading& r, const Reading& before) { procedure::RequireGoesAlong({hob}, r, before); };
+  StandingCounter instruments(twin.bench.instruments, 4);
+  MachineBench bench = {twin.bench.clock, twin.bench.machine, instruments, twin.bench.fixture, nullptr, nullptr};
+  EXPECT_EQ(twin.FaultOn(bench), "moved") << twin.said;
+  ASSERT_FALSE(twin.log.readings.empty());
+  const auto left_rad = [&](const Reading& r) { return r.reference_rad - from_table(r); };
+  for (const Reading& r : twin.log.readings)
+    EXPECT_NEAR(std::remainder(left_rad(r) - left_rad(twin.log.readings[0]), units::turn), 0.0, 1.0 * units::deg) << r.reading;
 }
 
 INSTANTIATE_TEST_SUITE_P(Benches, SomebodyElse, testing::Values(ShortCircles, ShortFreeform, ShortTurntable, ShortStops));

@@ -246,10 +246,18 @@ void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
   if (options_.log) options_.log->RequireRoom();
   Arm(end - first, lines);
   Duration in_vain{0};
+  // From before a fault to behind it whole turns may be lost, so that a wrong sample passes alone: those of one look come together.
+  const auto require_go_along = [&](const std::vector<Reading>& samples, int from) {
+    for (std::size_t k = 1; k < samples.size() && from + static_cast<int>(k) < end; ++k) {
+      const auto planned = static_cast<std::size_t>(from) + k;
+      options_.require_goes_along(Joined(plan()[planned], samples[k]), Joined(plan()[planned - 1], samples[k - 1]));
+    }
+  };
   for (int next = first; next < end;) {
     WaitFor(bench_, poll, options_);
     LookAtTurning();
     const LatchedSamples latched = Latched();
+    if (options_.require_goes_along) require_go_along(latched.samples, next);
     for (const Reading& sample : latched.samples) {
       if (next == end)
         throw DeviceFault(FaultKind::kProtocol, "instruments", "more samples came than they were armed for");
