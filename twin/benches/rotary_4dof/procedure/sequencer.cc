@@ -219,13 +219,16 @@ void Sequencer::ReturnToLastStop() {
 
 /// A controller whose zero or unit is another than before the fault is told by the spots alone. What is read again is in no record.
 void Sequencer::RequireAsBefore(RotaryBench& bench) {
-  constexpr double kTimesScatter = 10.0, kShareOfRange = 1e-3;  // of single samples: means of blocks may wander by some of it
+  constexpr double kTimesNoise = 10.0, kTimesHum = 3.0;  // of which a short block has a part of a wave
+  constexpr double kShareOfRange = 5e-4;                 // what coming to a stop again may change
   if (!state_.last || state_.last->status != ReadingStatus::kOk || state_.mounted_for == state_.kept) return;
   const AdcSettings& adc = RotaryOf(scenario_).adc;
   const Acquisition block = bench.adc.Acquire(adc.samples, false);
   for (std::size_t c = 0; c < kChannels; ++c) {
     const double was_V = state_.last->mean_V[c], is_V = block.channel[c].mean_V;
-    if (std::abs(is_V - was_V) <= kTimesScatter * state_.last->std_V[c] + kShareOfRange * adc.range_V) continue;
+    const double noise_V = state_.last->std_V[c] * std::sqrt(2.0 / state_.last->n_samples);
+    const double hum_V = RotaryOf(scenario_).amplifier.hum_V;
+    if (std::abs(is_V - was_V) <= kTimesNoise * noise_V + kTimesHum * hum_V + kShareOfRange * adc.range_V) continue;
     throw DeviceFault(FaultKind::kImplausible, kChannelNames[c],
                       fmt::format("showed {:.4g} V at reading {} and shows {:.4g} V at its stop behind the fault: is a zero, a unit or the "
                                   "mounting another than before?",
