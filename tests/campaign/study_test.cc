@@ -27,7 +27,7 @@ TEST(Study, RefusesWhatCannotBeAndSaysWhere) {
       {12, vary + "distribution = \"normal\"\nmean = 1\n"},
       {17, vary + "distribution = \"normal\"\nmean = 1\nsd = 1\nupper = 3\n"},
       {13, "[[vary]]\nkey = \"seed\"\nvalues = [1, 2]\n"},
-      {13, once + once},
+      {16, once + once},
       {12, "set = [\"titel=mine\"]\n"},
   };
   for (const auto& [line, lines] : cases) {

@@ -82,6 +82,8 @@ TEST_F(BadInput, OfAFileThatIsNotThereIsRefused) {
 TEST_F(BadInput, OfANearlyRightFileNamesTheRightOneBesideItOrAmongTheShippedScenarios) {
   ExpectRefused({"run", "smal.toml", "-o", "out"}, "smal.toml: ");
   ExpectRefused({"check", "here/small.toml"}, "here/small.toml: ");
+  std::filesystem::create_directories(At("scenarios/studies"));
+  for (const char* shipped : {"encoder_heads", "studies/coverage_hob", "rotary_4dof"}) Write("scenarios/" + std::string(shipped) + ".toml", kSmall);
   for (const char* bare : {"encoder_heads", "encoder_haeds.toml", "coverage_hob", "rotary_4dof.toml"}) {
     const std::string said = Refusal({"check", bare});
     EXPECT_THAT(said, testing::ContainsRegex("the nearest is .*scenarios/(studies/)?[a-z0-9_]*\\.toml")) << bare;

@@ -79,7 +79,7 @@ TEST_F(ProgramBench, StopsWithoutRowsAndRowsThatNobodyAskedForAreSaidAndTheseLef
     const Outcome measured = Measure(mode);
     EXPECT_EQ(measured.exit_code, 0) << measured.err;
     EXPECT_THAT(measured.err,
-                HasSubstr(mode == "missing" ? "the program read 130 of 144 stops" : "1 row is of no stop"));
+                HasSubstr(mode == "missing" ? "the program read 130 of 144 measuring positions" : "1 row is of no measuring position"));
   }
   EXPECT_EQ(Json({"diagnose", "extra", "--cache", "cache", "--json", "-"}).at("readings"), 144);
 }
