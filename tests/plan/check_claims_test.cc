@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <ctime>
 #include <filesystem>
@@ -19,10 +18,8 @@
 namespace twinbench::tools {
 namespace {
 
-/// Scenario and result that are further off, and why.
-const std::set<std::string> kKnown = {
-    "circular_bodies errors.bar.ball3_um",  // its bodies move as no kinematic machine does
-};
+/// Scenario and result that are further off.
+const std::set<std::string> kKnown = {"circular_bodies errors.bar.ball3_um"};  // its bodies move as no kinematic machine does
 
 std::vector<std::string> ShippedScenarios() {
   std::vector<std::string> names;
