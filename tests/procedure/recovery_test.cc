@@ -130,6 +130,24 @@ TEST(Recovery, ARealBenchWhoseSpotsAreElsewhereBehindAFaultKeepsNoReadingMore) {
   }
 }
 
+TEST(Recovery, ATableThatSomebodyElseMovedAtRestIsToldBeforeItsNextMove) {
+  const Scenario scenario = test::RestlessBench();
+  sim::Twin twin(scenario);
+  RotaryBench real = twin.Bench();
+  real.simulation = nullptr;
+  MemoryLog log;
+  bool was_moved = false;
+  Course course;
+  course.before = [&](const std::string&, const std::string&, CallAnswer&) {
+    if (log.readings.size() != 20 || was_moved) return;
+    was_moved = true;
+    twin.Bench().reference.StartMove(twin.Bench().reference.EncoderAngle_rad() + 0.01 * units::deg);
+  };
+  EXPECT_EQ(EndOn(real, scenario, log, course), "none");
+  ASSERT_EQ(log.attempts.size(), 1u);
+  EXPECT_EQ(log.attempts[0].fault, "moved");
+}
+
 TEST(Recovery, ARecordOfAnotherSeedIsNotContinued) {
   Scenario scenario = test::RestlessBench();
   MemoryLog log;

@@ -20,8 +20,8 @@ constexpr double kStandsStill_rad = 1e-9;           // less than any encoder sho
 /// One table on its way.
 class Watched {
  public:
-  Watched(RotaryTable& table, const char* name, const TableLimits& limits, double to_rad)
-      : table_(table), name_(name), limits_(limits), to_rad_(to_rad) {}
+  Watched(RotaryTable& table, const char* name, const TableLimits& limits, double to_rad, double sent_rad)
+      : table_(table), name_(name), limits_(limits), to_rad_(to_rad), sent_rad_(sent_rad) {}
 
   /// Whatever speaks against this move, before it begins.
   void Check() {
@@ -31,6 +31,10 @@ class Watched {
     }
     const TableState state = table_.State();
     CheckHealth(state);
+    if (std::abs(state.commanded_rad - sent_rad_) > kThere_rad)
+      Fail(FaultKind::kMoved, fmt::format("was sent to {:.6f} deg by us and its controller has {:.6f} deg as its target: somebody else moved "
+                                          "or stopped it, or changed its zero or units",
+                                          Deg(sent_rad_), Deg(state.commanded_rad)));
     last_rad_ = state.encoder_rad;
     way_rad_ = to_rad_ - state.encoder_rad;
     nearest_rad_ = std::abs(way_rad_);
@@ -93,7 +97,7 @@ class Watched {
   RotaryTable& table_;
   const char* name_;
   const TableLimits& limits_;
-  double to_rad_, way_rad_ = 0.0;
+  double to_rad_, sent_rad_, way_rad_ = 0.0;
   double last_rad_ = kNaN, nearest_rad_ = kNaN;
   double still_s_ = 0.0, looked_s_ = 0.0;
 };
@@ -110,10 +114,10 @@ void HearOperator(const Options& options) {
     throw DeviceFault(FaultKind::kStopped, "operator", "the run was stopped");
 }
 
-void MoveBoth(RotaryBench& bench, double target_rad, double reference_rad, const Options& options) {
+void MoveBoth(RotaryBench& bench, double target_rad, double reference_rad, const Options& options, const std::array<double, 2>& sent_rad) {
   HearOperator(options);
-  Watched target(bench.target, "target", options.target, target_rad);
-  Watched reference(bench.reference, "reference", options.reference, reference_rad);
+  Watched target(bench.target, "target", options.target, target_rad, sent_rad[0]);
+  Watched reference(bench.reference, "reference", options.reference, reference_rad, sent_rad[1]);
   for (Watched* table : {&target, &reference}) table->Check();
   for (Watched* table : {&target, &reference}) table->Start();
   for (Watched* table : {&target, &reference}) {

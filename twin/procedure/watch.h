@@ -13,7 +13,9 @@ namespace twinbench::procedure {
 ///         still (kStalled), goes the wrong way (kFollowing), reports a fault (kRefused) or takes too long
 ///         (kNotInPosition); after it if the encoder is not where it was sent (kNotInPosition); kStopped if
 ///         the operator wants it.
-void MoveBoth(RotaryBench& bench, double target_rad, double reference_rad, const Options& options);
+/// @param sent_rad  Where we sent both before; NaN: unknown. A controller with another target is kMoved.
+void MoveBoth(RotaryBench& bench, double target_rad, double reference_rad, const Options& options,
+              const std::array<double, 2>& sent_rad = {kNaN, kNaN});
 
 /// Lets bench time pass in slices, so that an operator who says stop is heard.
 void WaitFor(RotaryBench& bench, Duration duration, const Options& options);

@@ -64,7 +64,8 @@ Sequencer::Sent Sequencer::SentTo(double target_rad) const {
 
 void Sequencer::Send(RotaryBench& bench, double target_rad) {
   const Sent sent = SentTo(target_rad);
-  MoveBoth(bench, sent.target_rad, sent.reference_rad, options_);
+  MoveBoth(bench, sent.target_rad, sent.reference_rad, options_, sent_rad_);
+  sent_rad_ = {sent.target_rad, sent.reference_rad};
 }
 
 void Sequencer::Tilt(double yaw_rad, double tilt_rad) {
@@ -202,6 +203,7 @@ void Sequencer::HomeIfLost(RotaryTable& table, const char* name) {
 /// The encoders say where the tables really are. The last stop is approached from the side it was approached from.
 void Sequencer::ReturnToLastStop() {
   RotaryBench& bench = journal_.inner();
+  sent_rad_ = {kNaN, kNaN};
   HomeIfLost(bench.target, "target");
   HomeIfLost(bench.reference, "reference");
   const double at_rad = target_rad_, behind_rad = at_rad - last_.direction * settings().run_up_steps * step_rad();

@@ -84,6 +84,7 @@ class Sequencer {
   int planned_;
   int next_reading_ = 0;
   double shift_rad_ = 0.0, target_rad_ = 0.0, yaw_rad_ = 0.0, tilt_rad_ = 0.0;
+  std::array<double, 2> sent_rad_ = {kNaN, kNaN};  // target and reference, by us; NaN: not since the tables may have been moved
   bool has_tilted_ = false;  // the goniometer; a bench whose procedure never does may have none
   Reading last_;
 };
