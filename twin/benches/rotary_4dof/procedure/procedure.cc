@@ -47,6 +47,7 @@ void CarryOut(RotaryBench& bench, const Scenario& scenario, ReadingSink& sink, c
       const Standstill stands = StopBoth(bench, options);
       journal.Forget();
       state.disturbed = true;
+      state.moved = fault.kind() == FaultKind::kMoved || fault.kind() == FaultKind::kNotInPosition;
       NoteFailure(options.log, state.kept, bench.clock.Now(), fault);
       const bool knows_the_way = journal.kept();
       if (!knows_the_way || !stands.is_sure || !IsWorthAnotherAttempt(fault.kind()) || !attempts.AnotherAt(state.kept))

@@ -223,7 +223,11 @@ void Sequencer::ReturnToLastStop() {
 void Sequencer::RequireAsBefore(RotaryBench& bench) {
   constexpr double kTimesNoise = 10.0, kTimesHum = 3.0;  // of which a short block has a part of a wave
   constexpr double kShareOfRange = 5e-4;                 // what coming to a stop again may change
-  if (!state_.last || state_.last->status != ReadingStatus::kOk || state_.mounted_for == state_.kept) return;
+  const bool was_mounted_since = state_.mounted_for == state_.kept;
+  if (was_mounted_since && state_.moved)
+    throw DeviceFault(FaultKind::kImplausible, "tables",
+                      "were elsewhere before the first reading of a mounting: nothing tells whether their zeros and units are still the same");
+  if (!state_.last || state_.last->status != ReadingStatus::kOk || was_mounted_since) return;
   const AdcSettings& adc = RotaryOf(scenario_).adc;
   const Acquisition block = bench.adc.Acquire(adc.samples, false);
   for (std::size_t c = 0; c < kChannels; ++c) {

@@ -17,6 +17,7 @@ struct RunState {
   int kept = 0;                    // readings
   std::optional<int> mounted_for;  // reading before which a hand has mounted the grating on a real bench
   bool disturbed = false;          // the bench is not where the last kept reading left it
+  bool moved = false;                // by somebody else, it seems
   std::optional<Reading> last = {};  // that was kept since the program was started
 };
 
