@@ -78,6 +78,22 @@ test("a circle has both directions, says how much its deviations are magnified, 
   await page.close();
 });
 
+test("on a phone no label of a plot is cut off, and on paper no plot and no table", async () => {
+  const page = await open("circles/report.html");
+  for (const [width, media, parts, within] of [[390, "screen", ".plot svg text", ".plot"], [700, "print", ".plot svg, table", ".card"]]) {
+    await page.setViewportSize({ width, height: 900 });
+    await page.emulateMedia({ media });
+    await page.waitForFunction(() => [...document.querySelectorAll(".plot svg")].every((svg) => svg.clientWidth <= svg.closest(".plot").clientWidth)); // drawn again
+    await drawnAgain(page);
+    const cut = await page.evaluate(([parts, within]) => [...document.querySelectorAll(parts)].filter((part) => {
+      const [box, room] = [part, part.closest(within)].map((element) => element.getBoundingClientRect());
+      return box.width > 0 && (box.left < room.left - 1 || box.right > room.right + 1);
+    }).map((part) => part.textContent.slice(0, 40)), [parts, within]);
+    assert.deepEqual(cut, [], media);
+  }
+  await page.close();
+});
+
 test("a page of four shifts is below 3 MB", () => {
   twinbench("report", "rotary");
   assert.ok(statSync(join(folder, "rotary/report.html")).size < 3e6);

@@ -50,9 +50,9 @@ TEST(NotSeparableTable, SaysWhatAndWhy) {
 TEST(ObjectTables, HaveARowAnObjectWithItsMeasuredValues) {
   const std::vector<PageTable> tables = ObjectTables(kEvaluated);
   ASSERT_EQ(tables.size(), 1u);
-  EXPECT_EQ(tables[0].title, "setups");
-  EXPECT_THAT(tables[0].columns, ElementsAre("offset x [µm]", "setup"));
-  EXPECT_THAT(tables[0].rows[0], ElementsAre("4.772 ± 0.018", "0"));
+  EXPECT_EQ(tables[0].title, "Set-ups");
+  EXPECT_THAT(tables[0].columns, ElementsAre("setup", "offset x [µm]"));
+  EXPECT_THAT(tables[0].rows[0], ElementsAre("0", "4.772 ± 0.018"));
 }
 
 TEST(ObjectTables, ShowValuesInGroupsWithTheUnitsOfTheirKeys) {
@@ -70,6 +70,7 @@ TEST(NumberText, HasTwoDigitsOfItsUncertainty) {
   EXPECT_EQ(NumberText(1234.5678, 0.0123), "1234.568");
   EXPECT_EQ(NumberText(1234.5678, 250.0), "1230");
   EXPECT_EQ(NumberText(0.5, 0.0), "0.5");
+  EXPECT_EQ(MeasuredText(-1.26e11, 6e10, "per_m4"), "(−1.26 ± 0.60)e11 m⁻⁴");
 }
 
 TEST(NameAndUnit, TakesTheLongestUnitAtTheEnd) {

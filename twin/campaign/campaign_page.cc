@@ -73,7 +73,7 @@ Figure ValueHistogram(const std::string& name, const Sample& sample) {
 }
 
 Figure PullHistogram(const std::string& name, const Sample& sample) {
-  Figure figure{FigureForm::kHistogram, "Error over u of " + report::PathInWords(report::NameAndUnit(name).name), "dotted: as a normal variable would be", {"error / u", ""}, {"numbers", ""}, {HistogramOf(sample.pull, "numbers")}};
+  Figure figure{FigureForm::kHistogram, "Error over u of " + report::PathInWords(report::NameAndUnit(name).name), "dashed: as a normal variable would be", {"error / u", ""}, {"numbers", ""}, {HistogramOf(sample.pull, "numbers")}};
   figure.series.push_back(NormalIn(figure.series[0], sample.pull.size()));
   return figure;
 }

@@ -32,6 +32,7 @@ export function makeChart(plot, points, option) {
     chart ??= echarts.init(plot, null, { renderer: points <= kFewForSvg ? "svg" : "canvas" });
     chart.resize();
     chart.setOption(option(), { notMerge: true });
+    plot.querySelector("svg")?.setAttribute("viewBox", `0 0 ${chart.getWidth()} ${chart.getHeight()}`); // on paper it is made as wide as the card
     plot.dataset.drawn = "yes";
   };
   later(draw);

@@ -6,7 +6,7 @@ import { inquiry } from "./live_inquiry.js";
 import { pausePanel } from "./live_pause.js";
 import { stopPanel } from "./live_stop.js";
 import { measured, number, withUnit } from "./format.js";
-import { isDark, setTheme } from "./theme.js";
+import { themeButton } from "./theme.js";
 
 const token = new URLSearchParams(location.search).get("token") ?? "";
 const address = (path) => `${path}?token=${encodeURIComponent(token)}`;
@@ -213,12 +213,7 @@ setInterval(() => {
   if (!ended && performance.now() - heard > kSilence_ms) events.onerror();
 }, kBetweenDrawings_ms);
 
-const theme = button(isDark() ? "Light" : "Dark", () => {
-  setTheme(isDark() ? "light" : "dark");
-  theme.textContent = isDark() ? "Light" : "Dark";
-}, { class: "theme", "aria-label": "Light or dark" });
-
 document.getElementById("page").append(
-  element("header", {}, element("div", { class: "brand" }, element("span", {}, "twinbench, live"), theme), title, subtitle, verdict),
+  element("header", {}, element("div", { class: "brand" }, element("span", {}, "twinbench, live"), themeButton()), title, subtitle, verdict),
   element("main", { id: "content", tabindex: -1 }, element("div", { class: "halts" }, stop.element, pause.element), steps.element, element("section", { class: "part" }, bar, counted, axes, save), trials.element, cards, residualPart),
 );

@@ -1,24 +1,15 @@
 // Reads the page's data and puts its sections one below the other.
 import { choiceCard } from "./choice.js";
 import { columnsCard } from "./columns.js";
-import { button, element, slug } from "./dom.js";
+import { element, slug } from "./dom.js";
 import { figureCard } from "./figure.js";
 import { imageCard } from "./image.js";
 import { tableCard } from "./table.js";
 import { textCard } from "./text.js";
-import { isDark, setTheme } from "./theme.js";
+import { themeButton } from "./theme.js";
 
 const page = JSON.parse(document.getElementById("data").textContent);
 const cards = { choice: choiceCard, columns: columnsCard, image: imageCard, figure: figureCard, table: tableCard, text: textCard };
-
-function themeButton() {
-  const word = () => (isDark() ? "Light" : "Dark");
-  const made = button(word(), () => {
-    setTheme(isDark() ? "light" : "dark");
-    made.textContent = word();
-  }, { class: "theme", "aria-label": "Light or dark" });
-  return made;
-}
 
 function header() {
   return element(

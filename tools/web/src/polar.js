@@ -30,7 +30,8 @@ function closed(series) {
   return Math.abs(way + gap - 360) < gap / 2 ? [...points, points[0]] : points;
 }
 
-const kRadius = 0.82; // of the half side
+/** [px], with room for the angles around it. */
+const radius = ({ width, height }) => Math.max(40, Math.min(width, height) / 2 - 40);
 
 function radii(figure, shown, zoomed) {
   const size = largest(figure, shown) / zoomed;
@@ -49,14 +50,14 @@ export function magnification(figure, shown, zoomed) {
 /** Where on the plot a point is drawn [px]. */
 export function polarPlace(figure, shown, box, x, y) {
   const { inner, outer } = radii(figure, shown, box.zoomed);
-  const r = ((kRadius * Math.min(box.width, box.height)) / 2) * ((y - inner) / (outer - inner));
+  const r = (radius(box) * (y - inner)) / (outer - inner);
   const a = (x * Math.PI) / 180;
   return { x: box.width / 2 + r * Math.cos(a), y: box.height / 2 - r * Math.sin(a) };
 }
 
-export function polarOption(figure, shown, looks, zoomed = 1) {
+export function polarOption(figure, shown, looks, box) {
   const colours = palette();
-  const { tick, outer, inner } = radii(figure, shown, zoomed);
+  const { tick, outer, inner } = radii(figure, shown, box.zoomed);
   const series = [
     {
       type: "line", coordinateSystem: "polar", silent: true, symbol: "none", tooltip: { show: false }, z: 0,
@@ -74,7 +75,7 @@ export function polarOption(figure, shown, looks, zoomed = 1) {
   });
   return {
     ...base(),
-    polar: { radius: `${100 * kRadius}%` },
+    polar: { radius: radius(box) },
     angleAxis: {
       type: "value", min: 0, max: 360, interval: 30, startAngle: 0, clockwise: false,
       axisLabel: { color: colours.soft, fontSize: 11, formatter: (a) => (a === 360 ? "" : `${a}\u00b0`) },

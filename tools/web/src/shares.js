@@ -4,7 +4,7 @@ import { number, withUnit } from "./format.js";
 import { tipElement } from "./tip.js";
 import { palette } from "./theme.js";
 
-export const sharesHeight = (figure) => 76 + 24 * figure.categories.length;
+export const sharesHeight = (figure) => 76 + 26 * figure.categories.length;
 
 const percent = (share) => `${(100 * share).toPrecision(3)} %`;
 const isShare = (figure) => figure.form === "shares";
@@ -13,7 +13,7 @@ const valueText = (figure, value) => (isShare(figure) ? percent(value) : withUni
 /** Stripes beside colours, for those who see fewer of them. */
 const stripes = [null, { rotation: 0.6, dashArrayX: [1, 0], dashArrayY: [3, 4] }, { rotation: -0.6, dashArrayX: [1, 0], dashArrayY: [2, 6] }, { dashArrayX: [2, 3], dashArrayY: [2, 3] }];
 
-export function sharesOption(figure, shown, looks) {
+export function sharesOption(figure, shown, looks, box) {
   const colours = palette();
   return {
     ...base(),
@@ -21,7 +21,7 @@ export function sharesOption(figure, shown, looks) {
     xAxis: axis(figure.y, { scale: false, ...(isShare(figure) ? { max: 1, axisLabel: { color: colours.soft, hideOverlap: true, formatter: (x) => `${Math.round(100 * x)} %` } } : {}) }),
     yAxis: axis({ name: "", unit: "" }, {
       type: "category", data: figure.categories, inverse: true, splitLine: { show: false },
-      axisLabel: { color: colours.ink, fontSize: 12, width: 260, overflow: "truncate", interval: 0 },
+      axisLabel: { color: colours.ink, fontSize: 11, lineHeight: 12, width: Math.min(260, 0.46 * box.width), overflow: "break", interval: 0 },
     }),
     tooltip: {
       ...base().tooltip, trigger: "axis", axisPointer: { type: "shadow" },

@@ -1,4 +1,5 @@
 // Colours stand in style.css alone, in light and dark; charts ask for them as they are now.
+import { button } from "./dom.js";
 
 const probe = document.createElement("span");
 probe.hidden = true;
@@ -27,7 +28,7 @@ dark.addEventListener("change", changed);
 
 export const isDark = () => (document.documentElement.dataset.theme ?? (dark.matches ? "dark" : "light")) === "dark";
 
-export function setTheme(name) {
+function setTheme(name) {
   if (name) document.documentElement.dataset.theme = name;
   else delete document.documentElement.dataset.theme;
   changed();
@@ -40,3 +41,12 @@ addEventListener("beforeprint", () => {
   setTheme("light");
 });
 addEventListener("afterprint", () => setTheme(before));
+
+export function themeButton() {
+  const word = () => (isDark() ? "Light" : "Dark");
+  const made = button(word(), () => {
+    setTheme(isDark() ? "light" : "dark");
+    made.textContent = word();
+  }, { class: "theme", "aria-label": "Light or dark" });
+  return made;
+}

@@ -4,11 +4,11 @@ import { planeOption } from "./plane.js";
 import { magnification, polarOption, polarPlace } from "./polar.js";
 import { sharesHeight, sharesOption } from "./shares.js";
 
-const plane = { name: "Linear", option: (figure, shown, looks, box) => planeOption(figure, shown, looks, box), zooms: true };
-const polar = { name: "Polar", option: (figure, shown, looks, box) => polarOption(figure, shown, looks, box.zoomed), note: magnification, place: polarPlace, square: true };
+const plane = { name: "Linear", option: planeOption, zooms: true };
+const polar = { name: "Polar", option: polarOption, note: magnification, place: polarPlace, square: true };
 const bars = { name: "Linear", option: (figure, shown, looks) => barsOption(figure, shown, looks, false), zooms: true };
 const logarithmic = { name: "Logarithmic", option: (figure, shown, looks) => barsOption(figure, shown, looks, true), zooms: true };
-const shares = { name: "Shares", option: (figure, shown, looks) => sharesOption(figure, shown, looks), height: sharesHeight, wide: true };
+const shares = { name: "Shares", option: sharesOption, height: sharesHeight, wide: true };
 
 const ranks = { ...shares, name: "Ranks" };
 

@@ -58,7 +58,7 @@ PageTable GainTable(const json& diagnosis) {
            {"heldout_rms_before", "rms before"}, {"heldout_rms_after", "rms after"}, {"noise_floor", "noise alone leaves"}}) {
     for (const std::string unit : {"um", "arcsec"}) {
       const double value = NumberAt(gain, key + "_" + unit);
-      if (std::isfinite(value)) table.rows.push_back({spoken, NumberText(value), InPrint(unit)});
+      if (std::isfinite(value)) table.rows.push_back({spoken, fmt::format("{:.3g}", value), InPrint(unit)});
     }
   }
   if (const double removed = NumberAt(gain, "fraction_removed"); std::isfinite(removed)) {
@@ -80,7 +80,7 @@ PageTable ScreenTable(const json& diagnosis) {
 PageSection CauseSection(const json& diagnosis) {
   PageSection section{"Diagnosis", "", {}};
   const double p = NumberAt(diagnosis, "alarm_p");
-  if (std::isfinite(p)) section.lead = fmt::format("Probability of so large a residual if the scenario were right: {:.2g}.", p);
+  if (std::isfinite(p)) section.lead = fmt::format("Probability of so large a residual if the scenario were right: {}.", p < 1e-9 ? "below 1e-9" : fmt::format("{:.2g}", p));
   const std::vector<CauseGroup> groups = GroupsOf(diagnosis);
   if (Figure causes = RankFigure(diagnosis, groups); !causes.series.empty()) section.blocks.emplace_back(std::move(causes));
   AddFilled(CauseTable(groups), section);

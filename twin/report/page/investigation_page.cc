@@ -120,13 +120,11 @@ PageTable RefusedTable(const json& investigation) {
   return table;
 }
 
-/// What is most probable, with its size, and what that took.
-std::vector<PageTile> TilesOf(const json& investigation, const json& steps, VerdictTone tone) {
-  std::vector<PageTile> tiles;
-  if (const json causes = ListAt(investigation, "causes"); !causes.empty())
-    tiles.push_back({"Most probable", TextAt(causes[0], "name") + ", " + Percent(NumberAt(causes[0], "probability")), SizesOf(causes[0]), tone});
-  tiles.push_back({"Runs", fmt::format("{}", steps.size()), fmt::format("in {:.0f} min", NumberAt(investigation, "minutes"))});
-  return tiles;
+/// What is most probable, with its size.
+std::vector<PageTile> TilesOf(const json& investigation, VerdictTone tone) {
+  const json causes = ListAt(investigation, "causes");
+  if (causes.empty()) return {};
+  return {{"Most probable", TextAt(causes[0], "name") + ", " + Percent(NumberAt(causes[0], "probability")), SizesOf(causes[0]), tone}};
 }
 
 }  // namespace
@@ -136,7 +134,7 @@ Page InvestigationPage(const PageSource& source, const json& investigation, cons
   Page page{source.name, fmt::format("investigation of {} runs, {:.0f} min", steps.size(), NumberAt(investigation, "minutes")), "", VerdictTone::kDoubt, {}};
   page.verdict = Ending(investigation);
   if (TextAt(investigation, "ended") == "told") page.tone = VerdictTone::kGood;
-  page.tiles = TilesOf(investigation, steps, page.tone);
+  page.tiles = TilesOf(investigation, page.tone);
   PageSection section{"Investigation", "", {}};
   section.blocks.emplace_back(BeliefFigure(steps));
   section.blocks.emplace_back(InformationFigure(steps));

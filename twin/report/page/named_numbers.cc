@@ -25,7 +25,7 @@ constexpr auto kUnits = std::to_array<std::string_view>({"um_m_K", "um_m", "um_K
 constexpr auto kNames = std::to_array<std::pair<std::string_view, std::string_view>>(
     {{"target", "table under test"}, {"reference", "reference table"}, {"multitooth", "multi-tooth table"}, {"device", "device under test"},
      {"ez", "index error EZ"}, {"ex", "tilt error EX"}, {"ey", "tilt error EY"}, {"dx", "radial error DX"}, {"dy", "radial error DY"},
-     {"dz", "axial error DZ"}});
+     {"dz", "axial error DZ"}, {"setups", "set-ups"}, {"iso230", "ISO 230, part"}});
 constexpr std::array kPlaces = {"separation.", "results.", "values."};
 
 /// "terms[]" are the terms.
@@ -124,9 +124,12 @@ std::string NumberText(double value, double u) {
 }
 
 std::string MeasuredText(double value, double u, const std::string& unit) {
-  std::string text = NumberText(value, u);
+  const int power = std::abs(value) >= 1e6 ? static_cast<int>(std::floor(std::log10(std::abs(value)))) : 0;
+  const double one = std::pow(10.0, power);
+  std::string text = NumberText(value / one, u / one);
   if (text.starts_with('-')) text.replace(0, 1, "−");
-  if (u > 0.0) text += " ± " + NumberText(u, u);
+  if (u > 0.0) text += " ± " + NumberText(u / one, u / one);
+  if (power > 0) text = fmt::format("({})e{}", text, power);
   return text + (unit == "1" ? "" : AfterNumber(ShownUnit(unit)));
 }
 

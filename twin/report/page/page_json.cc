@@ -1,5 +1,6 @@
 #include "twin/report/page/page_json.h"
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -14,40 +15,14 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kTitleMark = "<!--TITLE-->";
 constexpr std::string_view kDataMark = "<!--DATA-->";
 
-const char* Word(FigureForm form) {
-  switch (form) {
-    case FigureForm::kAngle: return "angle";
-    case FigureForm::kLine: return "line";
-    case FigureForm::kPoints: return "points";
-    case FigureForm::kTrack: return "track";
-    case FigureForm::kBars: return "bars";
-    case FigureForm::kShares: return "shares";
-    case FigureForm::kRanks: return "ranks";
-    case FigureForm::kHistogram: return "histogram";
-  }
-  return "";
-}
+// In the order of their enumerations.
+constexpr std::array kForms = {"angle", "line", "points", "track", "bars", "shares", "ranks", "histogram"};
+constexpr std::array kRoles = {"estimate", "truth", "expected", "before", "after"};
+constexpr std::array kTones = {"plain", "good", "doubt", "bad"};
 
-const char* Word(SeriesRole role) {
-  switch (role) {
-    case SeriesRole::kEstimate: return "estimate";
-    case SeriesRole::kTruth: return "truth";
-    case SeriesRole::kExpected: return "expected";
-    case SeriesRole::kBefore: return "before";
-    case SeriesRole::kAfter: return "after";
-  }
-  return "";
-}
-
-const char* Word(VerdictTone tone) {
-  switch (tone) {
-    case VerdictTone::kPlain: return "plain";
-    case VerdictTone::kGood: return "good";
-    case VerdictTone::kDoubt: return "doubt";
-    case VerdictTone::kBad: return "bad";
-  }
-  return "";
-}
+const char* Word(FigureForm form) { return kForms.at(static_cast<std::size_t>(form)); }
+const char* Word(SeriesRole role) { return kRoles.at(static_cast<std::size_t>(role)); }
+const char* Word(VerdictTone tone) { return kTones.at(static_cast<std::size_t>(tone)); }
 
 Json AxisJson(const FigureAxis& axis) {
   Json made = {{"name", axis.name}, {"unit", ShownUnit(axis.unit)}};

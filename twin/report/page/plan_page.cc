@@ -23,7 +23,7 @@ PageTable RunsTable(const json& plan) {
   PageTable table{"Runs", {"run", "readings", "minutes", "degrees of freedom", "mean variance factor", "worst", "lower bound"}, {}};
   for (const json& run : ListAt(plan, "runs")) {
     const json shifts = run.value("shifts", json::object());
-    table.rows.push_back({TextAt(run, "run"), Short(NumberAt(run, "readings")), Short(NumberAt(run, "minutes")), Short(NumberAt(run, "dof")),
+    table.rows.push_back({TextAt(run, "run"), Short(NumberAt(run, "readings")), Short(NumberAt(run, "minutes")), NumberText(NumberAt(run, "dof")),
                           Short(NumberAt(shifts, "mean_variance_factor")), Short(NumberAt(shifts, "worst_variance_factor")),
                           Short(NumberAt(shifts, "least_possible_mean_factor"))});
   }

@@ -44,7 +44,7 @@ PageColumns ColumnsOf(const std::vector<Reading>& readings, const BenchFormat& f
     if (!column.print || !column.number) continue;
     PageColumns::Column made = ColumnOf(column, readings);
     if (!Varies(made.values)) continue;
-    if (column.IsShown() && all.y == 1) all.y = static_cast<int>(all.columns.size());
+    if (column.IsShown() && all.y == 1 && !all.columns.empty()) all.y = static_cast<int>(all.columns.size());
     all.columns.push_back(std::move(made));
   }
   all.columns.push_back({"mounting", "", setup});

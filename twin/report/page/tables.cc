@@ -1,10 +1,12 @@
 #include "twin/report/page/tables.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -84,7 +86,7 @@ void EnterNumbers(const json& results, const json& score, const std::string& pat
   if (IsMeasured(node)) return AddRow(results, score, MeasuredValue(path, node), table);
   AddNumbers(results, score, path, node, table);
   for (const auto& [key, value] : node.items()) {
-    if (!(path.empty() && key == "diagnosis")) EnterNumbers(results, score, Joined(path, key), value, table);
+    if (!(path.empty() && key == "diagnosis") && key != "u_parts") EnterNumbers(results, score, Joined(path, key), value, table);
   }
 }
 
@@ -160,20 +162,27 @@ std::string ColumnTitle(const std::string& key) {
   return unit.empty() ? name : name + " [" + unit + "]";
 }
 
+/// What a row is of stands before what was found.
+std::ptrdiff_t PlaceOf(const std::string& key) {
+  constexpr auto kFirst = std::to_array<std::string_view>({"setup", "pass", "order", "instrument", "direction", "feed_mm_min", "radius_mm", "head_deg"});
+  return std::ranges::find(kFirst, key) - kFirst.begin();
+}
+
 std::optional<PageTable> TableOfObjects(const std::string& title, const json& list) {
   std::vector<std::map<std::string, std::string>> all;
-  std::map<std::string, std::size_t> columns;
+  std::set<std::string> keys;
   for (const json& object : list) {
     all.push_back(CellsOf(object));
-    for (const auto& [key, text] : all.back()) columns.emplace(key, 0);
+    for (const auto& [key, text] : all.back()) keys.insert(key);
   }
-  if (columns.size() < 2) return {};
+  if (keys.size() < 2) return {};
+  std::vector<std::string> columns(keys.begin(), keys.end());
+  std::ranges::stable_sort(columns, {}, PlaceOf);
   PageTable table{title, {}, {}};
-  for (const auto& [key, unused] : columns) table.columns.push_back(ColumnTitle(key));
+  for (const std::string& key : columns) table.columns.push_back(ColumnTitle(key));
   for (auto& cells : all) {
-    std::vector<std::string> row;
-    for (const auto& [key, unused] : columns) row.push_back(cells[key]);
-    table.rows.push_back(row);
+    std::vector<std::string>& row = table.rows.emplace_back();
+    for (const std::string& key : columns) row.push_back(cells[key]);
   }
   return table;
 }
@@ -239,7 +248,7 @@ std::vector<PageTable> ObjectTables(const json& results) {
     for (const auto& [key, value] : object.items()) {
       if (key == "not_separable" || key == "uncertainty_budget" || key == "diagnosis" || !IsListOfObjects(value) || HasFigure(value))
         continue;
-      if (auto table = TableOfObjects(PathInWords(Joined(path, key)), value)) tables.push_back(std::move(*table));
+      if (auto table = TableOfObjects(CurveTitle(Joined(path, key), ""), value)) tables.push_back(std::move(*table));
     }
   });
   return tables;
