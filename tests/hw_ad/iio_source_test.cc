@@ -76,6 +76,7 @@ TEST(IioSource, NoticesThatTheClockOfTheCardJumps) {
   opened->Acquire(100, true);
   card.served.Ask("SIM:FAUL clock,step;*OPC?");
   EXPECT_EQ(FaultIn([&] { opened->Acquire(100, true); }), "clock");
+  EXPECT_EQ(FaultIn([&] { opened->Acquire(100, true); }), "clock") << "it was one block, and the clock jumps back";
   EXPECT_EQ(opened->Acquire(100, true).status, ReadingStatus::kOk);
 }
 

@@ -25,7 +25,7 @@ constexpr auto kUnits = std::to_array<std::string_view>({"um_m_K", "um_m", "um_K
 constexpr auto kNames = std::to_array<std::pair<std::string_view, std::string_view>>(
     {{"target", "table under test"}, {"reference", "reference table"}, {"multitooth", "multi-tooth table"}, {"device", "device under test"},
      {"ez", "index error EZ"}, {"ex", "tilt error EX"}, {"ey", "tilt error EY"}, {"dx", "radial error DX"}, {"dy", "radial error DY"},
-     {"dz", "axial error DZ"}, {"setups", "set-ups"}, {"iso230", "ISO 230, part"}});
+     {"dz", "axial error DZ"}, {"setups", "mountings"}, {"iso230", "ISO 230, part"}});
 constexpr std::array kPlaces = {"separation.", "results.", "values."};
 
 /// "terms[]" are the terms.
@@ -102,7 +102,7 @@ std::string CurveTitle(const std::string& path, const std::string& name) {
 }
 
 std::string ShownUnit(const std::string& unit) {
-  return unit == "deg" ? "°" : InPrint(unit);
+  return unit == "deg" ? "°" : InPrint(UnitInPrint(unit));  // "per_m2", and "um/m"
 }
 
 std::string AfterNumber(const std::string& shown_unit) {
@@ -130,7 +130,7 @@ std::string MeasuredText(double value, double u, const std::string& unit) {
   if (text.starts_with('-')) text.replace(0, 1, "−");
   if (u > 0.0) text += " ± " + NumberText(u / one, u / one);
   if (power > 0) text = fmt::format("({})e{}", text, power);
-  return text + (unit == "1" ? "" : AfterNumber(ShownUnit(unit)));
+  return text + AfterNumber(ShownUnit(unit));
 }
 
 }  // namespace twinbench::report

@@ -236,7 +236,7 @@ void Sequencer::RequireAsBefore(RotaryBench& bench) {
     const double hum_V = RotaryOf(scenario_).amplifier.hum_V;
     if (std::abs(is_V - was_V) <= kTimesNoise * noise_V + kTimesHum * hum_V + kShareOfRange * adc.range_V) continue;
     throw DeviceFault(FaultKind::kImplausible, kChannelNames[c],
-                      fmt::format("showed {:.4g} V at reading {} and shows {:.4g} V at its stop behind the fault: is a zero, a unit or the "
+                      fmt::format("showed {:.4g} V at reading {} and shows {:.4g} V at its place behind the fault: is a zero, a unit or the "
                                   "mounting another than before?",
                                   was_V, state_.last->reading, is_V));
   }
