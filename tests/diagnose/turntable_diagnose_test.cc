@@ -83,8 +83,7 @@ TEST(TurntableDiagnosis, NamesEveryFaultOfTheInstrumentAndWhatTheTurntableDoes) 
            {{.roll_rad = 3e-3}, "autocollimator_roll", "", "angle", 3e-3},
            {{.gain_error = -0.005}, "autocollimator_scale", "", "gain_error", -0.005},
            {{.at_edge_rad = 8.0 * arcsec}, "autocollimator_nonlinearity", "", "at_edge", 8.0 * arcsec},
-           // The smallest that is found at x is 0.15 arcsec; next to it another period may fit as well.
-           {{.ripple_rad = {0.4 * arcsec, 0.0}}, "autocollimator_periodic", "x", "amplitude", 0.4 * arcsec},
+           {{.ripple_rad = {0.2 * arcsec, 0.0}}, "autocollimator_periodic", "x", "amplitude", 0.2 * arcsec},
            {{.ripple_rad = {0.0, 0.2 * arcsec}}, "autocollimator_periodic", "y", "amplitude", 0.2 * arcsec},
            {{.backlash_rad = 0.5 * arcsec}, "backlash", "", "width", 0.5 * arcsec},
            {{.settling_rad = 2.0 * arcsec, .settling_s = 2.5}, "settling", "", "time_constant", 2.5},

@@ -50,7 +50,7 @@ TEST(NotSeparableTable, SaysWhatAndWhy) {
 TEST(ObjectTables, HaveARowAnObjectWithItsMeasuredValues) {
   const std::vector<PageTable> tables = ObjectTables(kEvaluated);
   ASSERT_EQ(tables.size(), 1u);
-  EXPECT_EQ(tables[0].title, "Set-ups");
+  EXPECT_EQ(tables[0].title, "Mountings");
   EXPECT_THAT(tables[0].columns, ElementsAre("setup", "offset x [µm]"));
   EXPECT_THAT(tables[0].rows[0], ElementsAre("0", "4.772 ± 0.018"));
 }

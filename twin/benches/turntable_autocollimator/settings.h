@@ -40,7 +40,7 @@ struct MirrorSettings {  // [mirror]
 };
 
 struct CollimatorSettings {  // [autocollimator], beside its noise, range and gain error
-  double distance_m = 350.0 * units::mm;  // objective from the turntable's axis
+  double distance_m = 0.35;  // objective from the turntable's axis
   double focal_length_m = 0.3;
   double aperture_m = 30.0 * units::mm;  // diameter
   double roll_rad = 0.0;                 // of the crosshair: x' = x + y' sin roll
