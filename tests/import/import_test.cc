@@ -96,6 +96,20 @@ TEST_F(Importing, TakesTheTwoColumnsOfAFileWithoutNamesInTheirOrderAndSaysSo) {
   EXPECT_KEPT(imported.story);
 }
 
+/// "position" is also the number of a measuring position: whole, and without a unit.
+TEST_F(Importing, TakesAColumnCalledPositionForWhereTheDeviceSaysThatItStands) {
+  std::string text = "Command [deg],Position [deg]\n", numbered = "Command,Actual,Position\n";
+  for (int i = 0; i < 72; ++i) {
+    text += fmt::format("{},{}\n", 5 * i, 5 * i + 0.25);
+    numbered += fmt::format("{},{},{}\n", 5 * i, 5 * i + 0.25, i);
+  }
+  for (const Imported& imported : {Take(text), Take(text, "", {"measured_deg=Position"}), Take(numbered)}) {
+    ASSERT_EQ(imported.readings.size(), 72u);
+    EXPECT_NEAR(imported.readings[30].measured_rad - imported.readings[30].reference_rad, 0.25 * units::deg, 1e-9);
+    EXPECT_EQ(imported.readings[30].position, 30);
+  }
+}
+
 TEST_F(Importing, UnwrapsAndSaysIt) {
   const Imported imported = Take(test::ScopeExport(test::DriveAxis({.turns = 3.0}, NoError)), "twincat");
   EXPECT_THAT(imported.story, HasSubstr("it was unwrapped"));

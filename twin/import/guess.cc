@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <set>
 
 #include "twin/core/errors.h"
@@ -100,6 +101,14 @@ void Put(const std::string& target, const Choice& from, const std::string& why, 
   if (!why.empty() || own.empty()) remarks.push_back(line);
 }
 
+/// Numbers in a list: whole, without a unit, fewer than rows. "Position [deg]" is where a device says that it stands.
+bool IsLabel(const Column& column) {
+  const double rows = static_cast<double>(column.value.size());
+  return column.unit.empty() && std::ranges::all_of(column.value, [rows](double x) {
+    return std::isnan(x) || (x == std::round(x) && std::abs(x) < rows);
+  });
+}
+
 /// Columns that are called as the bench calls them, in any unit.
 void TakeNamesakes(const std::vector<Choice>& columns, const BenchFormat& bench, Map& map) {
   std::vector<std::string> none;
@@ -108,6 +117,7 @@ void TakeNamesakes(const std::vector<Choice>& columns, const BenchFormat& bench,
         target.name == "setup" || target.name == "pass" || target.name == "direction" || target.name == "position";
     if (IsGiven(map, target.name) || (!target.number && !common)) continue;
     const auto found = std::ranges::find_if(columns, [&](const Choice& c) {
+      if (common && !IsLabel(*c.column)) return false;
       return c.name == target.name || SmallLetters(c.name) == BaseOf(target.name) ||
              BaseOf(c.name) == BaseOf(target.name);
     });
