@@ -13,7 +13,7 @@ from .units import unit_of
 class Answer(dict):
     """What a command writes with ``--json`` (docs/json.md): a dict in which lists of numbers are arrays, null in them NaN.
 
-    ``summary`` is what the command prints. ``dict(answer)`` shows everything.
+    ``summary`` is what the command prints, of a run, uncertainty and campaign; others have none. ``dict(answer)`` shows everything.
     """
 
     def __init__(self, json: dict[str, Any], summary: str = ""):
