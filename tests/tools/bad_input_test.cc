@@ -58,6 +58,17 @@ TEST_F(BadInput, ThatNoFitDescribesHasNoResult) {
   for (const char* command : {"separate", "score"}) EXPECT_THAT(Refusal({command, "run"}), HasSubstr("ccd leaves "));
 }
 
+TEST_F(BadInput, AScenarioOfAnotherBenchThanMadeTheReadingsIsRefused) {
+  Write("encoder.toml", "bench = \"encoder_comparison\"\n");
+  ASSERT_EQ(Call({"run", "small.toml", "-o", "run"}).exit_code, 0);
+  for (const char* command : {"diagnose", "separate"})
+    EXPECT_THAT(Refusal({command, "run", "--scenario", "encoder.toml"}), HasSubstr("encoder.toml: a scenario of bench encoder_comparison; expected one of rotary_4dof"));
+}
+
+TEST_F(BadInput, InANumberWithoutAnUpperBoundIsSaidInOneLine) {
+  EXPECT_THAT(Refusal({"plan", "small.toml", "--minutes", "2h"}), HasSubstr("\"2h\" is not allowed; expected a number above 0"));
+}
+
 /// What ended a run in words of its functions, or never, is said when the scenario is loaded.
 TEST_F(BadInput, OfASizeThatNobodyBuildsIsRefused) {
   const std::pair<const char*, const char*> cases[] = {

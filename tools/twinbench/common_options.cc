@@ -3,12 +3,22 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <ctime>
 
 namespace twinbench::tools {
 namespace {
 
 const auto program_began = std::chrono::steady_clock::now();
+
+CLI::Validator NumberWhere(bool (*is_allowed)(double), const std::string& expected) {
+  const auto check = [is_allowed, expected](const std::string& text) {
+    double value = 0.0;
+    const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+    return is_number && is_allowed(value) ? std::string() : fmt::format("\"{}\" is not allowed; expected {}", text, expected);
+  };
+  return CLI::Validator(check, "");
+}
 
 }  // namespace
 
@@ -46,6 +56,14 @@ void AddEstimator(CLI::App& command, std::string& estimator, const std::string& 
 
 void AddThreads(CLI::App& command, int& threads) {
   command.add_option("--threads", threads, "that share the work; the result is the same; left out: one for each core")->check(CLI::Range(1, 4096))->default_str("");
+}
+
+CLI::Validator AboveZero() {
+  return NumberWhere([](double value) { return value > 0.0; }, "a number above 0");
+}
+
+CLI::Validator FromZero() {
+  return NumberWhere([](double value) { return value >= 0.0; }, "0 or a number above it");
 }
 
 }  // namespace twinbench::tools

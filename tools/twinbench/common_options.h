@@ -28,4 +28,8 @@ void AddSet(CLI::App& command, std::vector<std::string>& overrides);
 void AddEstimator(CLI::App& command, std::string& estimator, const std::string& also = "");
 void AddThreads(CLI::App& command, int& threads);
 
+/// Numbers without an upper bound: CLI11 says its largest double.
+CLI::Validator AboveZero();
+CLI::Validator FromZero();
+
 }  // namespace twinbench::tools

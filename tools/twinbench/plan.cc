@@ -221,13 +221,13 @@ void AddPlan(CLI::App& app) {
       ->check(CLI::Range(2, 100000));
   auto* const minutes =
       command->add_option("--minutes", options->minutes, "budget for further runs, by the procedure's clock")
-          ->check(CLI::PositiveNumber);
+          ->check(AboveZero());
   command->add_option("--readings", options->readings, "budget for further runs, in readings")
-      ->check(CLI::PositiveNumber)
+      ->check(AboveZero())
       ->excludes(minutes);
   options->cpu_s = 7.0;
   command->add_option("--cpu", options->cpu_s, "CPU time [s] from which on less is looked at, and what is left out is said; 0: no end")
-      ->check(CLI::NonNegativeNumber)
+      ->check(FromZero())
       ->capture_default_str();
   command->add_option("--goal", options->goal, "the result that counts: target.ez; left out: all");
   AddOutput(*command, options->next, "the scenario of the run to be made next, or all of a programme as next-1-of-3-NAME.toml,");

@@ -1,5 +1,7 @@
 #include "tools/twinbench/run_folder.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -63,16 +65,32 @@ nlohmann::json ReadJson(const std::string& path) {
   return report::ParseModestJson(InputText(path, "a file of a twinbench run"), path);
 }
 
+namespace {
+
+/// @throws InputError if another bench made the record.
+std::vector<Reading> ReadingsOf(const std::string& folder, const std::string& scenario_path, const Scenario& scenario) {
+  const auto record = RunRecord::Open(folder);
+  const std::string bench = record->provenance().bench;
+  if (!bench.empty() && bench != scenario.bench) {
+    throw InputError(scenario_path.empty() ? folder : scenario_path, "a scenario of bench " + scenario.bench,
+                     fmt::format("one of {}, which made the readings in {}", bench, folder));
+  }
+  return record->Readings();
+}
+
+}  // namespace
+
 RecordedRun LoadRecordedRun(const std::string& source, const std::string& scenario_path,
                             const std::vector<std::string>& overrides) {
   const bool folder = fs::is_directory(source);
   if (!folder && !fs::exists(source)) throw NothingToRead(source, "a run folder or a readings file");
   if (!folder && scenario_path.empty()) {
-    throw InputError(source, "a readings file does not say which bench made it", "--scenario SCENARIO.toml");
+    throw InputError(source, "a readings file does not say which bench made it",
+                     "--scenario SCENARIO.toml, or a file with columns of its own by way of twinbench import");
   }
   RecordedRun run;
   run.scenario = LoadScenario(scenario_path.empty() ? RunFolder{source}.scenario() : scenario_path, overrides);
-  run.readings = folder ? RunRecord::Open(source)->Readings() : ReadReadingsCsv(source, run.scenario.bench);
+  run.readings = folder ? ReadingsOf(source, scenario_path, run.scenario) : ReadReadingsCsv(source, run.scenario.bench);
   return run;
 }
 

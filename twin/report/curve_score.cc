@@ -48,13 +48,16 @@ std::string UnitSuffix(const CurveScore& curve) {
 }  // namespace
 
 std::string ScoreTable(const std::vector<CurveScore>& curves) {
+  const auto cell = [](double value, int width, int decimals) {
+    return std::isfinite(value) ? fmt::format("{:{}.{}f}", value, width, decimals) : fmt::format("{:>{}}", "-", width);
+  };
   std::size_t width = 16;
   for (const CurveScore& curve : curves) width = std::max(width, curve.name.size());
   std::string text = fmt::format("{:{}}  value         truth rms  error rms  worst error  stated u  (error/u)^2\n", "curve", width);
   for (const CurveScore& curve : curves) {
     const Sizes s = SizesOf(curve);
-    text += fmt::format("{:{}}  {:12}  {:9.4f}  {:9.4f}  {:11.4f}  {:8.4f}  {:11.3f}\n", curve.name, width, curve.value,
-                        s.rms_truth, s.rms_error, s.worst_error, s.rms_u, s.mean_chi2);
+    text += fmt::format("{:{}}  {:12}  {}  {}  {}  {}  {}\n", curve.name, width, curve.value, cell(s.rms_truth, 9, 4),
+                        cell(s.rms_error, 9, 4), cell(s.worst_error, 11, 4), cell(s.rms_u, 8, 4), cell(s.mean_chi2, 11, 3));
   }
   return text;
 }

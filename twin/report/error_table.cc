@@ -147,13 +147,15 @@ ScoredRun ScoreAgainst(const std::vector<ScoredValue>& truth, const std::string&
   if (lists.empty()) throw InputError(file, "it has no result that could be compared", "a row for each result");
   std::vector<CurveScore> curves;
   ScoredRun scored;
+  std::size_t compared = 0;
   for (auto& [list, both] : lists) {
+    compared += both.first.truth.size();
     TakeOutMean(both.first);
     curves.push_back(both.first);
     curves.push_back(both.second);
   }
   scored.json = ToJson(curves);
-  scored.text = ScoreTable(curves);
+  scored.text = fmt::format("{} of {} results in {} are compared with the truth\n", compared, own.size(), file) + ScoreTable(curves);
   scored.positions = PositionTable(curves);
   scored.values = ValuesOf(curves);
   return scored;
