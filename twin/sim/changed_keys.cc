@@ -40,21 +40,38 @@ void Change(KeyChange::How how, double by, double& number) {
   if (how == KeyChange::How::kDivide) number /= 1.0 + by;
 }
 
-}  // namespace
+/// A change by one block of the scenario.
+struct Asked {
+  const EffectSettings& effect;
+  const EffectEntry& entry;
+  const EffectParameter& parameter;
+  const KeyChange& change;
+};
 
-void ChangeKeys(Scenario& actual) {
-  if (actual.effects.empty()) return;
-  const std::vector<ScenarioKey> keys = KeysOf(actual);
-  for (const EffectSettings& effect : actual.effects) {
-    const EffectEntry* const entry = FindEffect(effect.name, actual.bench);
+std::vector<Asked> AskedBy(const Scenario& scenario) {
+  std::vector<Asked> asked;
+  for (const EffectSettings& effect : scenario.effects) {
+    const EffectEntry* const entry = FindEffect(effect.name, scenario.bench);
     if (!entry) continue;  // a signal, which is in no catalogue
     for (const EffectParameter& parameter : entry->parameters) {
       for (const KeyChange& change : parameter.changes) {
-        if (!change.only_at.empty() && !std::ranges::count(change.only_at, effect.where)) continue;
-        for (double& number : NumbersAt(keys, change.key, effect, *entry))
-          Change(change.how, change.share * Parameter(effect, parameter.name.c_str()), number);
+        if (change.only_at.empty() || std::ranges::count(change.only_at, effect.where) > 0)
+          asked.push_back({effect, *entry, parameter, change});
       }
     }
+  }
+  return asked;
+}
+
+}  // namespace
+
+void ChangeKeys(Scenario& actual) {
+  const std::vector<Asked> asked = AskedBy(actual);
+  if (asked.empty()) return;  // a diagnosis follows the twin thousands of times: no list of all keys for nothing
+  const std::vector<ScenarioKey> keys = KeysOf(actual);
+  for (const auto& [effect, entry, parameter, change] : asked) {
+    for (double& number : NumbersAt(keys, change.key, effect, entry))
+      Change(change.how, change.share * Parameter(effect, parameter.name.c_str()), number);
   }
 }
 
