@@ -74,13 +74,19 @@ TEST(Recovery, ARunThatIsTakenUpByAnotherProgramIsTheUndisturbedOne) {
   }
 }
 
+/// The twin's devices, of which nobody knows that they are simulated.
+RotaryBench RealBench(sim::Twin& twin) {
+  RotaryBench bench = twin.Bench();
+  bench.simulation = nullptr;
+  return bench;
+}
+
 /// Moves of the table under test from when a real bench's run is taken up to its next block.
 /// @param elsewhere  What somebody did with the tables meanwhile.
 int MovesUntilTheNextBlock(const std::function<void(RotaryBench&)>& elsewhere) {
   const Scenario scenario = test::RestlessBench();
   sim::Twin twin(scenario);
-  RotaryBench real = twin.Bench();
-  real.simulation = nullptr;
+  RotaryBench real = RealBench(twin);
   MemoryLog log;
   Course stopped, taken_up;
   stopped.options.stop_requested = [&] { return log.readings.size() >= 5; };
@@ -112,8 +118,7 @@ TEST(Recovery, ARealBenchWhoseSpotsAreElsewhereBehindAFaultKeepsNoReadingMore) {
   for (const double shift_V : {0.0, 0.5}) {
     const Scenario scenario = test::RestlessBench();
     sim::Twin twin(scenario);
-    RotaryBench real = twin.Bench();
-    real.simulation = nullptr;
+    RotaryBench real = RealBench(twin);
     MemoryLog log;
     bool has_failed = false;
     Course course;
@@ -133,8 +138,7 @@ TEST(Recovery, ARealBenchWhoseSpotsAreElsewhereBehindAFaultKeepsNoReadingMore) {
 TEST(Recovery, ATableThatSomebodyElseMovedAtRestIsToldBeforeItsNextMove) {
   const Scenario scenario = test::RestlessBench();
   sim::Twin twin(scenario);
-  RotaryBench real = twin.Bench();
-  real.simulation = nullptr;
+  RotaryBench real = RealBench(twin);
   MemoryLog log;
   bool was_moved = false;
   Course course;
