@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/core/input_error.h"
+#include "tests/import/importing.h"
 #include "tests/import/raw_files.h"
 #include "tests/support/kept_text.h"
 #include "twin/core/units.h"
@@ -16,44 +17,6 @@ using testing::HasSubstr, testing::Not;
 
 double NoError(double, int) {
   return 0.0;
-}
-
-/// Files of one test, imported.
-class Importing : public ::testing::Test {
- protected:
-  std::string File(const std::string& name, const std::string& text) {
-    folder_.Write(name, text);
-    return folder_.File(name);
-  }
-  Imported Take(const std::string& text, const std::string& map = "",
-                const std::vector<std::string>& columns = {}) {
-    return TakeFiles({File("raw.txt", text)}, map, columns);
-  }
-  Imported TakeFiles(const std::vector<std::string>& files, const std::string& map = "",
-                     const std::vector<std::string>& columns = {}) {
-    return Import(files, MapWith(map, columns));
-  }
-  /// @param map  The name of a ready map, or a map's text.
-  static Map MapWith(const std::string& map, const std::vector<std::string>& columns = {}) {
-    Map loaded = map.find('\n') == std::string::npos ? LoadMap(map) : ParseMap(map, "map.toml");
-    for (const std::string& column : columns) SetColumn(column, loaded);
-    return loaded;
-  }
-
- private:
-  TemporaryFolder folder_;
-};
-
-/// The largest measured - reference, whole turns and the mean aside.
-double Worst_deg(const std::vector<Reading>& readings) {
-  double sum = 0.0, worst = 0.0;
-  std::vector<double> error;
-  for (const Reading& r : readings) {
-    error.push_back(std::remainder(r.measured_rad - r.reference_rad, units::turn) / units::deg);
-    sum += error.back() / static_cast<double>(readings.size());
-  }
-  for (const double e : error) worst = std::max(worst, std::abs(e - sum));
-  return worst;
 }
 
 std::string TwoColumns(const char* separator, bool comma) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "twin/core/units.h"
+#include "twin/import/common.h"
 #include "twin/import/course.h"
 
 namespace twinbench::imports {
@@ -65,7 +66,19 @@ Following AtArrivals(const std::vector<double>& reference, const std::vector<dou
   return x.size() < kFewest ? Following{} : LeastSquares(x, y);
 }
 
+/// From row to row, whole turns aside: of two columns that have nothing to do with each other half of the steps are
+/// longer than a quarter of a turn, and unwrapping them would find a course in chance.
+bool GoesSmoothly(const std::vector<double>& angle) {
+  std::vector<double> sizes;
+  for (const double step : StepsOf(angle)) sizes.push_back(std::abs(std::remainder(step, units::turn)));
+  return MedianOf(std::move(sizes)) < units::turn / 12.0;
+}
+
+/// The one that goes more closely together; of two that do the one nearer to one to one.
 Following Better(const Following& a, const Following& b) {
+  constexpr double kAlike = 0.001;
+  if (std::abs(std::abs(a.correlation) - std::abs(b.correlation)) < kAlike)
+    return std::abs(b.gain - 1.0) < std::abs(a.gain - 1.0) ? b : a;
   return std::abs(b.correlation) > std::abs(a.correlation) ? b : a;
 }
 
@@ -74,13 +87,14 @@ Following Better(const Following& a, const Following& b) {
 Following FollowingOf(const std::vector<double>& reference, const std::vector<double>& shown) {
   Following best = Better(LeastSquares(reference, shown), AtArrivals(reference, shown));
   std::vector<double> unwrapped = shown;
-  if (Unwrap(units::turn, unwrapped) > 0) {
+  if (GoesSmoothly(shown) && Unwrap(units::turn, unwrapped) > 0) {
     best = Better(best, LeastSquares(reference, unwrapped));
     best = Better(best, AtArrivals(reference, unwrapped));
   }
   // The difference of the two may be followed where neither can be: large steps, both going round.
   std::vector<double> difference;
   for (std::size_t i = 0; i < shown.size(); ++i) difference.push_back(shown[i] - reference[i]);
+  if (!GoesSmoothly(difference)) return best;
   Unwrap(units::turn, difference);
   for (std::size_t i = 0; i < shown.size(); ++i) difference[i] += reference[i];
   const Following other = LeastSquares(reference, difference);

@@ -3,55 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <set>
 
 #include "twin/core/errors.h"
+#include "twin/import/column_words.h"
 #include "twin/import/common.h"
+#include "twin/import/counts.h"
 #include "twin/import/join.h"
 
 namespace twinbench::imports {
 namespace {
 
-/// What a reference, and what a device under test is called, the clearest first.
-const std::vector<std::vector<std::string>> kWords = {
-    {"reference", "ref", "true", "laser", "interferometer", "truth", "target", "commanded", "command", "cmd",
-     "setpoint", "posset", "setpos", "set", "nominal", "desired", "soll", "motor", "poscmd"},
-    {"measured", "device", "dut", "encoder", "sensor", "actual", "actpos", "posact", "resolver", "feedback", "fb",
-     "act", "position", "ist", "reading", "angle", "load", "enc"}};
-
-/// The words of a name: "MAIN.fActPos" has "main", "f", "act", "pos", and "actpos" as a whole part.
-std::set<std::string> WordsOf(const std::string& name) {
-  std::set<std::string> words;
-  std::string word, part;
-  const auto end_word = [&] {
-    if (!word.empty()) words.insert(SmallLetters(word));
-    word.clear();
-  };
-  const auto end_part = [&] {
-    end_word();
-    if (part.size() > 2) words.insert(SmallLetters(part));
-    part.clear();
-  };
-  for (const char c : name) {
-    if (!std::isalpha(static_cast<unsigned char>(c))) {
-      end_part();
-      continue;
-    }
-    if (std::isupper(static_cast<unsigned char>(c)) && !word.empty() &&
-        std::islower(static_cast<unsigned char>(word.back())))
-      end_word();
-    word += c;
-    part += c;
-  }
-  end_part();
-  return words;
-}
-
 struct Choice {
   std::string name;  // as an expression has it
   const Column* column = nullptr;
+  const Track* track = nullptr;
+  const Recording* recording = nullptr;
 };
 
 /// Columns of numbers, each under a name that is its own.
@@ -63,7 +31,7 @@ std::vector<Choice> NumberColumns(const std::vector<Recording>& recordings) {
         const bool again =
             std::ranges::find(all, column.name, [](const Choice& c) { return c.column->name; }) != all.end();
         if (column.IsNumber() && !(again && (recording.parts_are_setups || recordings.size() > 1)))
-          all.push_back({column.name, &column});
+          all.push_back({column.name, &column, &track, &recording});
       }
     }
   }
@@ -89,16 +57,45 @@ std::string UnitFor(const Column& column, const std::string& target) {
   return fits ? std::string(has->name) : "";
 }
 
+bool StaysWithin(const Column& column, double limit) {
+  return std::ranges::all_of(column.value, [limit](double x) { return !(std::abs(x) > limit); });
+}
+
+/// Of a column that says none: as the other one that it is compared with, or as such files have it.
+std::string UsualUnit(const Choice& from, const std::string& target, const Map& map) {
+  constexpr double kTwoTurns_rad = 12.6;
+  const auto wanted = UnitAtEnd(target);
+  for (const MappedColumn& other : map.columns) {
+    const auto unit = UnitAtEnd(other.column);
+    if (unit && wanted && unit->dimension == wanted->dimension && !other.unit.empty()) return other.unit;
+  }
+  if (wanted && wanted->dimension == Dimension::kAngle && StaysWithin(*from.column, kTwoTurns_rad))
+    return from.recording->usual_angle;
+  return wanted ? std::string(wanted->name) : "";
+}
+
+[[noreturn]] void RefuseUnit(const Choice& from, const std::string& target) {
+  std::string known;
+  for (const Dimension dimension : {Dimension::kAngle, Dimension::kLength}) {
+    for (const NamedUnit& unit : UnitsOf(dimension)) known += (known.empty() ? "" : ", ") + std::string(unit.name);
+  }
+  throw InputError(from.recording->file, fmt::format("\"{}\" is in \"{}\", which is no unit of an angle or a length", from.name, from.column->unit),
+                   fmt::format("{}; or a formula, as in --column '{}=[{}] * 360 / 4096' of 4096 counts per turn", known, target, from.name));
+}
+
 void Put(const std::string& target, const Choice& from, const std::string& why, Map& map,
          std::vector<std::string>& remarks) {
   const std::string own = UnitFor(*from.column, target);
   const auto wanted = UnitAtEnd(target);
-  const std::string unit = !own.empty() ? own : wanted ? std::string(wanted->name) : "";
+  if (own.empty() && wanted && TakeCounts(target, *from.column, *from.track, map, remarks)) return;
+  if (own.empty() && wanted && !IsNoUnit(from.column->unit)) RefuseUnit(from, target);
+  const std::string unit = own.empty() ? UsualUnit(from, target, map) : own;
   map.columns.push_back({target, from.name, unit, ""});
   std::string line = fmt::format("{} is taken from \"{}\"", target, from.name);
   if (!why.empty()) line += ", " + why;
-  if (own.empty() && wanted) line += fmt::format("; its unit is not said and taken as {}", unit);
-  if (!why.empty() || own.empty()) remarks.push_back(line);
+  if (own.empty() && wanted)
+    line += fmt::format("; its unit is not said and taken as {}", unit);
+  if (!why.empty() || (own.empty() && wanted)) remarks.push_back(line);
 }
 
 /// Numbers in a list: whole, without a unit, fewer than rows. "Position [deg]" is where a device says that it stands.
@@ -109,37 +106,52 @@ bool IsLabel(const Column& column) {
   });
 }
 
+bool IsLabelOf(const std::string& target, const Choice& choice) {
+  if (!IsLabel(*choice.column)) return false;
+  if (target != "direction") return SmallLetters(choice.name) == target;
+  return IsCalledDirection(choice.name) && StaysWithin(*choice.column, 1.0);
+}
+
+/// "position" is where the device stands in a file in which nothing else is: then it is no number of a place.
+bool DeviceIsElsewhere(const std::vector<Choice>& columns, const std::vector<std::string>& compared, const Map& map) {
+  if (compared.size() < 2 || IsGiven(map, compared[1])) return true;
+  std::size_t others = 0;
+  for (const Choice& choice : columns) {
+    if (SmallLetters(choice.name) == "position" || !Changes(choice)) continue;
+    if (Clearness(choice.name, Speaks::kDevice) > 0 || UnitFor(*choice.column, compared[1]) != "") return true;
+    ++others;
+  }
+  return others == compared.size();
+}
+
 /// Columns that are called as the bench calls them, in any unit.
-void TakeNamesakes(const std::vector<Choice>& columns, const BenchFormat& bench, Map& map) {
-  std::vector<std::string> none;
+void TakeNamesakes(const std::vector<Choice>& columns, const BenchFormat& bench, const std::vector<std::string>& compared,
+                   Map& map, std::vector<std::string>& remarks) {
   for (const ReadingColumn& target : bench.columns) {
     const bool common =
         target.name == "setup" || target.name == "pass" || target.name == "direction" || target.name == "position";
     if (IsGiven(map, target.name) || (!target.number && !common)) continue;
+    if (target.name == "position" && !DeviceIsElsewhere(columns, compared, map)) continue;
     const auto found = std::ranges::find_if(columns, [&](const Choice& c) {
-      if (common && !IsLabel(*c.column)) return false;
+      if (common) return IsLabelOf(target.name, c);
       return c.name == target.name || SmallLetters(c.name) == BaseOf(target.name) ||
              BaseOf(c.name) == BaseOf(target.name);
     });
-    if (found != columns.end()) Put(target.name, *found, "", map, none);
+    if (found == columns.end()) continue;
+    if (std::ranges::find(compared, target.name) == compared.end() && UnitFor(*found->column, target.name).empty() &&
+        !IsNoUnit(found->column->unit)) {
+      remarks.push_back(fmt::format("\"{}\" is left out: \"{}\" is no unit that {} can have", found->name, found->column->unit, target.name));
+      continue;
+    }
+    Put(target.name, *found, "", map, remarks);
   }
 }
 
-/// How clearly a name speaks of one of the words: the earlier in the list the better; 0: not at all.
-int Clearness(const std::string& name, const std::vector<std::string>& words) {
-  const std::set<std::string> own = WordsOf(name);
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (own.contains(words[i])) return static_cast<int>(words.size() - i);
-  }
-  return 0;
-}
-
-const Choice* Clearest(const std::vector<Choice>& columns, const std::vector<std::string>& words,
-                       const std::set<std::string>& taken) {
+const Choice* Clearest(const std::vector<Choice>& columns, Speaks of, const std::set<std::string>& taken) {
   const Choice* best = nullptr;
   int clearness = 0;
   for (const Choice& column : columns) {
-    const int own = taken.contains(column.name) ? 0 : Clearness(column.name, words);
+    const int own = taken.contains(column.name) ? 0 : Clearness(column.name, of);
     if (own > clearness) {
       clearness = own;
       best = &column;
@@ -154,18 +166,55 @@ std::set<std::string> Taken(const Map& map) {
   return taken;
 }
 
-}  // namespace
+/// "approach" or "side" is the direction where the bench's own name for it is in no file.
+void TakeDirection(const std::vector<Choice>& columns, Map& map, std::vector<std::string>& remarks) {
+  if (IsGiven(map, "direction")) return;
+  const auto found = std::ranges::find_if(columns, [](const Choice& c) { return IsLabelOf("direction", c); });
+  if (found != columns.end()) Put("direction", *found, "by its name", map, remarks);
+}
 
-void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
-            const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks) {
-  std::vector<Choice> columns = NumberColumns(recordings);
-  TakeNamesakes(columns, bench, map);
-  std::erase_if(columns, [](const Choice& choice) { return !Changes(choice); });
+/// A reference may stand still where one place is approached from both sides: then its name has to say what it is.
+void TakeReferenceByName(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
+                         std::vector<std::string>& remarks) {
+  if (IsGiven(map, compared[0])) return;
+  std::vector<Choice> moving;
+  std::ranges::copy_if(columns, std::back_inserter(moving), [](const Choice& c) {
+    return Changes(c) && !IsOtherQuantity(*c.column) && !IsCalledError(c.name);
+  });
+  const Choice* found = Clearest(moving, Speaks::kReference, Taken(map));
+  if (!found && moving.size() < compared.size()) found = Clearest(columns, Speaks::kReference, Taken(map));
+  if (found) Put(compared[0], *found, "by its name", map, remarks);
+}
+
+/// "angle, error": what the device shows is the sum.
+bool TakeAngleAndError(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
+                       std::vector<std::string>& remarks) {
+  if (compared.size() != 2 || columns.size() != 2 || IsGiven(map, compared[1])) return false;
+  const bool first = IsCalledError(columns[0].name);
+  if (first == IsCalledError(columns[1].name)) return false;
+  const Choice &error = columns[first ? 0 : 1], &angle = columns[first ? 1 : 0];
+  if (!IsGiven(map, compared[0])) Put(compared[0], angle, "the column beside the errors", map, remarks);
+  const std::string& unit = map.columns.back().column == compared[0] ? map.columns.back().unit : "";
+  const auto own = UnitNamed(error.column->unit), sum = UnitNamed(unit);
+  if (!sum || (own && own->dimension != sum->dimension) || map.columns.back().expression != angle.name) return false;
+  const double factor = own ? own->to_SI / sum->to_SI : 1.0;
+  map.columns.push_back({compared[1], fmt::format("[{}] + [{}] * {:.17g}", angle.name, error.name, factor), unit, ""});
+  remarks.push_back(fmt::format("\"{}\" is taken as the device less the reference [{}]: {} is the sum", error.name,
+                                own ? own->name : sum->name, compared[1]));
+  return true;
+}
+
+void TakeByName(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
+                std::vector<std::string>& remarks) {
   for (std::size_t k = 0; k < compared.size(); ++k) {
     if (IsGiven(map, compared[k])) continue;
-    if (const Choice* found = Clearest(columns, kWords[k], Taken(map)))
+    if (const Choice* found = Clearest(columns, k == 0 ? Speaks::kReference : Speaks::kDevice, Taken(map)))
       Put(compared[k], *found, "by its name", map, remarks);
   }
+}
+
+void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Recording>& recordings,
+                    const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks) {
   for (std::size_t k = 0; k < compared.size(); ++k) {
     if (IsGiven(map, compared[k])) continue;
     const std::set<std::string> taken = Taken(map);
@@ -184,6 +233,22 @@ void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
         fmt::format("{} = \"a column\" under [columns] of a map, or --column '{}=a column'", compared[k],
                     compared[k]));
   }
+}
+
+}  // namespace
+
+void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
+            const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks) {
+  std::vector<Choice> columns = NumberColumns(recordings);
+  TakeNamesakes(columns, bench, compared, map, remarks);
+  if (compared.empty()) return;
+  TakeDirection(columns, map, remarks);
+  TakeReferenceByName(columns, compared, map, remarks);
+  std::erase_if(columns, [](const Choice& choice) { return !Changes(choice) || IsOtherQuantity(*choice.column); });
+  if (TakeAngleAndError(columns, compared, map, remarks)) return;
+  if (columns.size() > compared.size()) std::erase_if(columns, [](const Choice& c) { return IsCalledError(c.name); });
+  TakeByName(columns, compared, map, remarks);
+  TakeWhatIsLeft(columns, recordings, compared, map, remarks);
 }
 
 const BenchFormat& BenchFor(const std::vector<Recording>& recordings, const Map& map) {

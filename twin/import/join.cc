@@ -83,14 +83,16 @@ std::optional<std::size_t> FileIn(std::string& name) {
 
 std::vector<Source> Candidates(const Together& together, std::string name) {
   const auto file = FileIn(name);
-  std::vector<Source> found;
+  const NameAndUnit split = SplitHeader(name);
+  std::vector<Source> found, with_unit;
   for (const Side& side : together) {
     if (file && side.file != *file) continue;
     for (const Column& column : side.track->columns) {
       if (column.name == name) found.push_back({side.track, &column, 0.0});
+      if (column.name == split.name && column.unit == split.unit) with_unit.push_back({side.track, &column, 0.0});
     }
   }
-  return found;
+  return found.empty() ? with_unit : found;  // "angle [deg]", as the head of the file has it
 }
 
 /// The period at which a column starts again, in whatever unit it is; 0: it does not.

@@ -43,6 +43,7 @@ struct Recording {
   std::string file;
   std::string layout;             // what was recognised, in words
   bool parts_are_setups = false;  // its tracks follow each other; else they ran side by side
+  std::string usual_angle = "deg";  // what its kind of file counts angles in where it does not say so
   std::vector<Track> tracks;
   std::vector<LeftOut> left_out;
   std::vector<std::string> remarks;  // what was taken for granted, a line each

@@ -257,10 +257,16 @@ class TableReader {
   }
 
   std::string NameOf(std::size_t c) const {
-    if (c < layout_.names.size()) return layout_.names[c];
+    if (c < layout_.names.size()) return SplitHeader(layout_.names[c]).name;
     if (heading_.found && c < heading_.columns.size() && !heading_.columns[c].name.empty())
       return heading_.columns[c].name;
     return fmt::format("column {}", c + 1);
+  }
+
+  /// As the map's name has it, else as the file's.
+  std::string UnitOf(std::size_t c) const {
+    const std::string said = c < layout_.names.size() ? SplitHeader(layout_.names[c]).unit : "";
+    return said.empty() && c < heading_.columns.size() ? heading_.columns[c].unit : said;
   }
 
   void End() {
@@ -270,8 +276,7 @@ class TableReader {
     if (!heading_.found && layout_.names.empty()) unnamed_ = true;
     for (std::size_t c = 0; c < gatherers_.size(); ++c) {
       Gatherer& g = gatherers_[c];
-      Column column{NameOf(c), c < heading_.columns.size() ? heading_.columns[c].unit : "", g.TakeValues(),
-                    g.TakeWords()};
+      Column column{NameOf(c), UnitOf(c), g.TakeValues(), g.TakeWords()};
       if (g.kind() == Kind::kInstant) column.unit = g.HasDate() ? "instant" : "time of day";
       track_.columns.push_back(std::move(column));
     }

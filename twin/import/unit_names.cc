@@ -27,6 +27,8 @@ constexpr std::array kUnits = std::to_array<NamedUnit>({
     {"gon", Dimension::kAngle, units::turn / 400.0},
     {"turn", Dimension::kAngle, units::turn},
     {"m", Dimension::kLength, 1.0},
+    {"dm", Dimension::kLength, 0.1},
+    {"cm", Dimension::kLength, 0.01},
     {"mm", Dimension::kLength, units::mm},
     {"um", Dimension::kLength, units::um},
     {"nm", Dimension::kLength, units::nm},
@@ -56,7 +58,15 @@ constexpr std::array kSpellings = std::to_array<Spelling>({
     {"µs", "us"},           {"μs", "us"},        {"usec", "us"},         {"micros", "us"},
     {"microseconds", "us"}, {"nsec", "ns"},      {"minutes", "min"},     {"hours", "h"},
     {"volt", "V"},          {"volts", "V"},      {"°c", "degC"},         {"c", "degC"},
-    {"celsius", "degC"},    {"mdegree", "mdeg"},
+    {"celsius", "degC"},    {"mdegree", "mdeg"}, {"centimeter", "cm"},   {"centimetre", "cm"},
+    {"decimeter", "dm"},    {"decimetre", "dm"}, {"micrometer", "um"},   {"micrometre", "um"},
+    {"nanometer", "nm"},    {"nanometre", "nm"}, {"inches", "inch"},     {"meters", "m"},
+    {"metres", "m"},        {"millimeters", "mm"}, {"millimetres", "mm"}, {"umdrehungen", "turn"},
+    {"umdrehung", "turn"},  {"tr", "turn"},      {"tours", "turn"},      {"degrés", "deg"},
+    {"degré", "deg"},       {"grados", "deg"},   {"gradi", "deg"},       {"bogensekunden", "arcsec"},
+    {"arcs", "arcsec"},     {"arcminutes", "arcmin"}, {"bogenminuten", "arcmin"}, {"gons", "gon"},
+    {"度", "deg"},          {"град", "deg"},     {"мм", "mm"},           {"мкм", "um"},
+    {"mikrometer", "um"},   {"millisekunden", "ms"}, {"sekunden", "s"},  {"сек", "s"},
 });
 
 std::optional<NamedUnit> PlainUnit(std::string_view name) {
@@ -72,6 +82,39 @@ std::optional<NameAndUnit> InBrackets(std::string_view field, char open, char cl
   if (at == std::string_view::npos) return std::nullopt;
   return NameAndUnit{std::string(Trimmed(field.substr(0, at))),
                      std::string(Trimmed(field.substr(at + 1, field.size() - at - 2)))};
+}
+
+/// Words that are units in brackets only: "x min" is a smallest value, "measured as" no arc second.
+bool IsWord(std::string_view text) {
+  constexpr std::array kWords = std::to_array<std::string_view>({"in", "as", "min", "tr", "rev", "turn", "turns", "tours", "second"});
+  return text.size() < 2 || std::ranges::find(kWords, SmallLetters(text)) != kWords.end();
+}
+
+/// "Position mm", "Angle, deg", "Winkel in Grad".
+std::optional<NameAndUnit> BehindABlank(std::string_view field) {
+  const std::size_t at = field.find_last_of(" ,");
+  if (at == std::string_view::npos || at == 0) return std::nullopt;
+  const std::string_view unit = field.substr(at + 1);
+  if (IsWord(unit) || !UnitNamed(unit)) return std::nullopt;
+  std::string_view name = Trimmed(field.substr(0, at));
+  for (const std::string_view between : {",", " in"}) {
+    if (name.ends_with(between) && name.size() > between.size()) name = Trimmed(name.substr(0, name.size() - between.size()));
+  }
+  return NameAndUnit{std::string(name), std::string(unit)};
+}
+
+/// "angle_degrees", "positionRad": such a name is kept whole.
+std::optional<NameAndUnit> InTheName(std::string_view field) {
+  if (const auto plain = UnitAtEnd(field)) return NameAndUnit{std::string(field), std::string(plain->name)};
+  std::size_t at = field.rfind('_');
+  if (at == std::string_view::npos) {
+    at = field.find_last_not_of("abcdefghijklmnopqrstuvwxyz");
+    if (at != std::string_view::npos && std::isupper(static_cast<unsigned char>(field[at])) && at > 0) --at;
+  }
+  if (at == std::string_view::npos || at == 0 || IsWord(field.substr(at + 1))) return std::nullopt;
+  const auto unit = UnitNamed(field.substr(at + 1));
+  if (!unit) return std::nullopt;
+  return NameAndUnit{std::string(field), std::string(unit->name)};
 }
 
 }  // namespace
@@ -103,14 +146,16 @@ std::vector<NamedUnit> UnitsOf(Dimension dimension) {
 
 NameAndUnit SplitHeader(std::string_view field) {
   field = Trimmed(field);
-  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}, std::pair{'{', '}'}, std::pair{'<', '>'}}) {
     const auto split = InBrackets(field, open, close);
     if (split && !split->name.empty() && (open == '[' || UnitNamed(split->unit))) return *split;
   }
   const std::size_t slash = field.rfind('/');
   if (slash != std::string_view::npos && slash > 0 && UnitNamed(field.substr(slash + 1)))
     return {std::string(Trimmed(field.substr(0, slash))), std::string(Trimmed(field.substr(slash + 1)))};
-  if (const auto unit = UnitAtEnd(field)) return {std::string(field), std::string(unit->name)};
+  for (const auto& split : {BehindABlank(field), InTheName(field)}) {
+    if (split) return *split;
+  }
   return {std::string(field), ""};
 }
 

@@ -25,7 +25,8 @@ std::optional<NamedUnit> UnitAtEnd(std::string_view name);
 /// Every plain name of a unit of that dimension, for keys: "deg", "rad", "arcsec", ...
 std::vector<NamedUnit> UnitsOf(Dimension dimension);
 
-/// A header's field taken apart: "Angle [deg]", "angle (deg)", "angle / deg", "angle_deg", "angle".
+/// A header's field taken apart: "Angle [deg]", "angle (deg)", "angle / deg", "angle, deg", "angle_deg", "angleDeg",
+/// "angle".
 struct NameAndUnit {
   std::string name, unit;
 };

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/core/input_error.h"
+#include "twin/core/units.h"
+#include "twin/import/import.h"
+
+namespace twinbench::imports {
+
+/// Files of one test, imported.
+class Importing : public ::testing::Test {
+ protected:
+  std::string File(const std::string& name, const std::string& text) {
+    folder_.Write(name, text);
+    return folder_.File(name);
+  }
+  Imported Take(const std::string& text, const std::string& map = "",
+                const std::vector<std::string>& columns = {}) {
+    return TakeFiles({File("raw.txt", text)}, map, columns);
+  }
+  Imported TakeFiles(const std::vector<std::string>& files, const std::string& map = "",
+                     const std::vector<std::string>& columns = {}) {
+    return Import(files, MapWith(map, columns));
+  }
+  /// @param map  The name of a ready map, or a map's text.
+  static Map MapWith(const std::string& map, const std::vector<std::string>& columns = {}) {
+    Map loaded = map.find('\n') == std::string::npos ? LoadMap(map) : ParseMap(map, "map.toml");
+    for (const std::string& column : columns) SetColumn(column, loaded);
+    return loaded;
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+/// The largest measured - reference, whole turns and the mean aside.
+inline double Worst_deg(const std::vector<Reading>& readings) {
+  double sum = 0.0, worst = 0.0;
+  std::vector<double> error;
+  for (const Reading& r : readings) {
+    error.push_back(std::remainder(r.measured_rad - r.reference_rad, units::turn) / units::deg);
+    sum += error.back() / static_cast<double>(readings.size());
+  }
+  for (const double e : error) worst = std::max(worst, std::abs(e - sum));
+  return worst;
+}
+
+}  // namespace twinbench::imports

@@ -1,0 +1,109 @@
+#include <gmock/gmock.h>
+
+#include <fmt/format.h>
+
+#include <random>
+
+#include "tests/import/importing.h"
+#include "tests/support/kept_text.h"
+
+/// What columns are called, and the units they are in.
+namespace twinbench::imports {
+namespace {
+
+using testing::HasSubstr, testing::Not;
+
+/// 72 rows of 5 of the unit a row, the device 1 % too far.
+std::string Scaled(const std::string& names, double step = 5.0, const char* separator = ",") {
+  std::string text = names + "\n";
+  for (int i = 0; i < 72; ++i) text += fmt::format("{:.6f}{}{:.6f}\n", step * i, separator, 1.01 * step * i);
+  return text;
+}
+
+double Last_deg(const Imported& imported) {
+  return imported.readings.back().reference_rad / units::deg;
+}
+
+TEST_F(Importing, TakesLengthsInTheUnitsThatPeopleWrite) {
+  const std::vector<std::pair<const char*, double>> in_mm = {{"cm", 10.0},    {"dm", 100.0},      {"m", 1000.0}, {"mm", 1.0},
+                                                             {"um", 1e-3},    {"µm", 1e-3},       {"nm", 1e-6},  {"inch", 25.4},
+                                                             {"in", 25.4},    {"centimetre", 10.0}};
+  for (const auto& [unit, mm] : in_mm) {
+    const Imported imported = Take(Scaled(fmt::format("distance_set [{0}],distance_measured [{0}]", unit), 0.5));
+    EXPECT_NEAR(Last_deg(imported), 35.5 * mm, 1e-9 * mm) << unit << ": a degree a millimetre";
+    EXPECT_THAT(imported.story, Not(HasSubstr("is not said"))) << unit;
+  }
+}
+
+TEST_F(Importing, FindsUnitsWhereverANameHasThem) {
+  const std::vector<std::pair<const char*, double>> in_deg = {
+      {"Cmd(deg),Pos(deg)", 1.0},           {"CMD [°],POS [°]", 1.0},       {"Soll in Grad,Ist in Grad", 1.0},
+      {"target_gon,actual_gon", 0.9},       {"CmdDeg,PosDeg", 1.0},         {"command / arcmin,position / arcmin", 1.0 / 60.0},
+      {"ref_degrees,enc_degrees", 1.0},     {"reference mm,measured mm", 1.0}, {"target [turns],actual [turns]", 360.0}};
+  for (const auto& [names, deg] : in_deg) EXPECT_NEAR(Last_deg(Take(Scaled(names))), 355.0 * deg, 1e-6) << names;
+}
+
+TEST_F(Importing, TakesColumnsInOtherLanguagesInAnyOrder) {
+  for (const char* names : {"Sollwert [deg];Istwert [deg]", "référence [deg];mesuré [deg]", "目标角度 [deg];实际角度 [deg]",
+                            "consigna [deg];medido [deg]", "goal_position [deg];present_position [deg]"})
+    EXPECT_NEAR(Last_deg(Take(Scaled(names, 5.0, ";"))), 355.0, 1e-6) << names;
+  std::string swapped = "Istposition (°);Sollposition (°)\n";
+  for (int i = 0; i < 72; ++i) swapped += fmt::format("{};{}\n", 5 * i + 1, 5 * i);
+  EXPECT_NEAR(Last_deg(Take(swapped)), 355.0, 1e-9);
+}
+
+TEST_F(Importing, RefusesAUnitThatItDoesNotKnow) {
+  EXPECT_KEPT(MessageOf([&] { Take(Scaled("reference [furlong],measured [furlong]")); }));
+}
+
+TEST_F(Importing, FindsANameOfTheMapWithoutItsUnitAndOneOfTheFileWithIt) {
+  const std::string map = "[file]\nnames = [\"time [ms]\", \"target [mm]\", \"actual [mm]\"]\n[columns]\nreference_mm = \"target\"\n"
+                          "measured_mm = \"actual [mm]\"\n";
+  std::string text;
+  for (int i = 0; i < 72; ++i) text += fmt::format("{}\t{}\t{}\n", 10 * i, 5 * i, 5 * i);
+  const Imported imported = Take(text, map);
+  EXPECT_NEAR(Last_deg(imported), 355.0, 1e-9);
+  EXPECT_NEAR(imported.readings.back().velocity_rad_s / units::deg, 500.0, 1e-6) << "the first name says what the time is in";
+}
+
+TEST_F(Importing, TakesCountsByWhatIsStatedOrByThePowerOfTwoAtWhichTheyFollow) {
+  std::string stated = "# counts per turn: 4000\nreference [deg],encoder [counts]\n", guessed = "reference [deg],encoder\n",
+              neither = "reference [deg],encoder [counts]\n";
+  for (int i = 0; i < 72; ++i) {
+    stated += fmt::format("{},{}\n", 5 * i, std::lround(4000.0 * i / 72.0));
+    guessed += fmt::format("{},{}\n", 5 * i, std::lround(65536.0 * i / 72.0));
+    neither += fmt::format("{},{}\n", 5 * i, std::lround(4321.0 * i / 72.0));
+  }
+  EXPECT_LT(Worst_deg(Take(stated).readings), 360.0 / 4000.0);
+  EXPECT_LT(Worst_deg(Take(guessed).readings), 360.0 / 65536.0);
+  EXPECT_THAT(Take(guessed).story, HasSubstr("65536 counts per turn"));
+  EXPECT_KEPT(MessageOf([&] { Take(neither); }));
+}
+
+TEST_F(Importing, AddsAColumnOfErrorsToTheAngleBesideIt) {
+  std::string text = "angle [deg];error [arcsec]\n";
+  for (int i = 0; i < 72; ++i) text += fmt::format("{};{}\n", 5 * i, 36 * (i % 3));
+  const Imported imported = Take(text);
+  const Reading& r = imported.readings.at(5);
+  EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::arcsec, 72.0, 1e-6);
+  EXPECT_THAT(imported.story, HasSubstr("less the reference"));
+}
+
+/// Random angles beside large steps: their difference, unwrapped, would go wherever the steps go.
+TEST_F(Importing, RefusesAColumnThatHasNothingToDoWithItsReference) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> anywhere(0.0, 360.0);
+  std::string text = "reference [deg];measured [deg]\n";
+  for (int i = 0; i < 200; ++i) text += fmt::format("{:.2f};{:.2f}\n", 91.3 * i, anywhere(random));
+  EXPECT_THAT(MessageOf([&] { Take(text); }), HasSubstr("does not follow"));
+}
+
+/// Torques, speeds and temperatures that are "commanded" or "measured" too.
+TEST_F(Importing, LeavesOtherQuantitiesAside) {
+  std::string text = "t [s];commanded velocity [deg/s];commanded;measured current [A];measured;measured temp [degC]\n";
+  for (int i = 0; i < 72; ++i) text += fmt::format("{};5;{};{};{};{}\n", i, 5 * i, 0.1 * (i % 7), 5 * i + 0.1, 20 + 0.01 * i);
+  EXPECT_LT(Worst_deg(Take(text).readings), 1e-9);
+}
+
+}  // namespace
+}  // namespace twinbench::imports

@@ -1,0 +1,128 @@
+#include "twin/import/column_words.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <set>
+#include <string_view>
+
+#include "twin/import/common.h"
+#include "twin/import/text.h"
+#include "twin/import/unit_names.h"
+
+namespace twinbench::imports {
+namespace {
+
+/// The clearest first.
+const std::vector<std::string>& WordsFor(Speaks of) {
+  static const std::vector<std::string> reference = {
+      "reference", "ref",      "true",     "laser",    "interferometer", "truth",        "target",     "commanded",
+      "command",   "cmd",      "setpoint", "posset",   "setpos",         "set",          "goal",       "nominal",
+      "nom",       "desired",  "des",      "demand",   "demanded",       "soll",         "sollwert",   "sollposition",
+      "sollwinkel", "referenz", "consigne", "consigna", "cible",          "référence",    "referencia", "riferimento",
+      "comando",   "zadana",   "эталон",   "задание",  "目标",           "指令",         "参考",       "motor",
+      "poscmd"};
+  static const std::vector<std::string> device = {
+      "measured", "meas",     "device",   "dut",      "encoder",     "sensor",    "actual",    "actpos",  "posact",
+      "present",  "resolver", "feedback", "fb",       "fbk",         "act",       "dial",      "gauge",   "indicator",
+      "messuhr",  "position", "ist",      "istwert",  "istposition", "istwinkel", "messwert",  "gemessen", "mesure",
+      "mesuré",   "medido",   "medida",   "misurato", "misura",      "zmierzona", "измерено",  "实际",    "测量",
+      "反馈",     "编码器",   "reading",  "angle",    "load",        "enc",       "probe"};
+  return of == Speaks::kReference ? reference : device;
+}
+
+bool IsPartOfWord(char c) {
+  return std::isalpha(static_cast<unsigned char>(c)) || static_cast<unsigned char>(c) >= 0x80;
+}
+
+/// The words of a name: "MAIN.fActPos" has "main", "f", "act", "pos", and "actpos" as a whole part.
+std::set<std::string> WordsOf(const std::string& name) {
+  std::set<std::string> words;
+  std::string word, part;
+  const auto end_word = [&] {
+    if (!word.empty()) words.insert(SmallLetters(word));
+    word.clear();
+  };
+  const auto end_part = [&] {
+    end_word();
+    if (part.size() > 2) words.insert(SmallLetters(part));
+    part.clear();
+  };
+  for (const char c : name) {
+    if (!IsPartOfWord(c)) {
+      end_part();
+      continue;
+    }
+    if (std::isupper(static_cast<unsigned char>(c)) && !word.empty() &&
+        std::islower(static_cast<unsigned char>(word.back())))
+      end_word();
+    word += c;
+    part += c;
+  }
+  end_part();
+  return words;
+}
+
+/// Words of scripts without blanks between them stand anywhere in a name.
+bool Has(const std::set<std::string>& own, const std::string& name, const std::string& word) {
+  const bool is_foreign = static_cast<unsigned char>(word[0]) >= 0xE0;
+  return own.contains(word) || (is_foreign && name.find(word) != std::string::npos);
+}
+
+template <std::size_t n>
+bool HasAny(const std::string& name, const std::array<const char*, n>& words) {
+  const std::set<std::string> own = WordsOf(name);
+  return std::ranges::any_of(words, [&](const char* word) { return own.contains(word); });
+}
+
+}  // namespace
+
+int Clearness(const std::string& name, Speaks of) {
+  const std::set<std::string> own = WordsOf(name);
+  const std::vector<std::string>& words = WordsFor(of);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (Has(own, name, words[i])) return static_cast<int>(words.size() - i);
+  }
+  return 0;
+}
+
+bool IsCalledError(const std::string& name) {
+  return HasAny(name, std::array{"error", "err", "errors", "deviation", "dev", "abweichung", "fehler", "residual", "diff",
+                                 "difference", "erreur", "écart", "desviación"});
+}
+
+bool IsCalledDirection(const std::string& name) {
+  return HasAny(name, std::array{"direction", "dir", "sense", "approach", "richtung", "side", "sens", "dirección"});
+}
+
+int DirectionOfWord(std::string_view word) {
+  const std::string small = SmallLetters(Trimmed(word));
+  const auto is_one_of = [&small](const auto& words) { return std::ranges::find(words, small) != words.end(); };
+  if (is_one_of(std::array{"+", "forward", "fwd", "up", "positive", "pos", "ccw", "vor", "vorwärts", "auf", "right", "rechts",
+                           "plus", "f", "↑", "→", "increasing"}))
+    return 1;
+  if (is_one_of(std::array{"-", "−", "backward", "backwards", "bwd", "back", "down", "negative", "neg", "cw", "reverse", "rev",
+                           "zurück", "rückwärts", "ab", "left", "links", "minus", "b", "r", "↓", "←", "decreasing"}))
+    return -1;
+  return 0;
+}
+
+bool IsOtherQuantity(const Column& column) {
+  const auto unit = UnitNamed(column.unit);
+  if (unit) return unit->dimension != Dimension::kAngle && unit->dimension != Dimension::kLength;
+  if (column.unit.find("/s") != std::string::npos || column.unit.find("/min") != std::string::npos) return true;
+  for (const std::string_view other : {"rpm", "A", "mA", "Hz", "Nm", "%", "N", "W"}) {
+    if (column.unit == other) return true;
+  }
+  return HasAny(column.name, std::array{"velocity", "vel", "speed", "torque", "voltage", "temperature", "temp", "geschwindigkeit",
+                                        "acceleration", "acc", "pwm"}) &&
+         !HasAny(column.name, std::array{"position", "pos", "angle", "encoder", "enc"});
+}
+
+bool IsNoUnit(const std::string& unit) {
+  const std::string small = SmallLetters(unit);
+  return std::ranges::any_of(std::array{"", "-", "1", "none", "(none)", "a.u.", "?"},
+                             [&small](const char* none) { return small == none; });
+}
+
+}  // namespace twinbench::imports

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/import/recording.h"
+
+/// What the names that people give to columns speak of.
+namespace twinbench::imports {
+
+enum class Speaks { kReference, kDevice };
+
+/// How clearly a name speaks of a reference or of a device under test; 0: not at all.
+int Clearness(const std::string& name, Speaks of);
+
+/// "error", "deviation", "Abweichung": what the device shows too much, not where it stands.
+bool IsCalledError(const std::string& name);
+
+/// "direction", "approach", "Richtung", "side".
+bool IsCalledDirection(const std::string& name);
+
+/// +1, -1, or 0 for a word that is no direction: "forward", "down", "cw", "+".
+int DirectionOfWord(std::string_view word);
+
+/// A speed, a current, a temperature by its name or unit: neither where the axis should stand nor where it does.
+bool IsOtherQuantity(const Column& column);
+
+/// A unit that says that there is none: "", "-", "1", "none".
+bool IsNoUnit(const std::string& unit);
+
+}  // namespace twinbench::imports

@@ -1,0 +1,95 @@
+#include "twin/import/counts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "twin/core/units.h"
+#include "twin/import/common.h"
+#include "twin/import/follows.h"
+#include "twin/import/unit_names.h"
+
+namespace twinbench::imports {
+namespace {
+
+bool SpeaksOf(const std::string& text, const std::vector<const char*>& words) {
+  const std::string small = SmallLetters(text);
+  return std::ranges::any_of(words, [&small](const char* word) { return small.find(word) != std::string::npos; });
+}
+
+bool IsCalledCounts(const Column& column) {
+  const std::vector<const char*> words = {"count", "cts", "tick", "pulse", "incr", "lsb", "digit"};
+  return SpeaksOf(column.unit, words) || (column.unit.empty() && SpeaksOf(column.name, words));
+}
+
+bool AreWhole(const Column& column) {
+  return std::ranges::all_of(column.value, [](double x) { return std::isnan(x) || x == std::round(x); });
+}
+
+std::optional<double> StatedPerTurn(const Track& track) {
+  for (const auto& [name, number] : track.numbers) {
+    const bool per_turn = SpeaksOf(name, {"cpr", "ppr"}) ||
+                          (SpeaksOf(name, {"count", "tick", "pulse", "step", "incr", "resolution"}) &&
+                           SpeaksOf(name, {"turn", "rev", "umdr"}));
+    if (per_turn && number > 1.0) return number;
+  }
+  return std::nullopt;
+}
+
+/// What the map has as the other angle, in rad; nothing if it is no column of this track as it stands.
+std::vector<double> OtherAngle(const std::string& target, const Track& track, const Map& map) {
+  for (const MappedColumn& other : map.columns) {
+    const auto unit = UnitNamed(other.unit);
+    if (other.column == target || !unit || unit->dimension != Dimension::kAngle) continue;
+    const auto found = std::ranges::find(track.columns, other.expression, &Column::name);
+    if (found == track.columns.end()) continue;
+    std::vector<double> angle = found->value;
+    for (double& x : angle) x *= unit->to_SI;
+    return angle;
+  }
+  return {};
+}
+
+std::optional<double> FoundPerTurn(const Column& column, const std::vector<double>& other) {
+  constexpr double kSame = 0.02, kClearly = 0.99;
+  if (other.size() != column.value.size()) return std::nullopt;
+  std::vector<double> reference, counts;
+  for (std::size_t i = 0; i < other.size(); ++i) {
+    if (!std::isfinite(other[i]) || !std::isfinite(column.value[i])) continue;
+    reference.push_back(other[i]);
+    counts.push_back(column.value[i]);
+  }
+  if (counts.size() < 3) return std::nullopt;
+  for (int bits = 8; bits <= 32; ++bits) {
+    std::vector<double> angle = counts;
+    for (double& x : angle) x *= units::turn / std::ldexp(1.0, bits);
+    const Following following = FollowingOf(reference, angle);
+    if (std::abs(following.gain - 1.0) < kSame && following.correlation > kClearly) return std::ldexp(1.0, bits);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool TakeCounts(const std::string& target, const Column& column, const Track& track, Map& map,
+                std::vector<std::string>& remarks) {
+  const auto wanted = UnitAtEnd(target);
+  const bool unit_is_open = column.unit.empty() || IsCalledCounts(column);
+  if (!wanted || wanted->dimension != Dimension::kAngle || !unit_is_open || !AreWhole(column)) return false;
+  const bool called = IsCalledCounts(column);
+  std::optional<double> per_turn = called ? StatedPerTurn(track) : std::nullopt;
+  const char* why = "as the file states";
+  if (!per_turn) {
+    per_turn = FoundPerTurn(column, OtherAngle(target, track, map));
+    why = "the power of two at which it follows";
+  }
+  if (!per_turn) return false;
+  map.columns.push_back({target, fmt::format("[{}] * 360 / {:.17g}", column.name, *per_turn), "deg", ""});
+  remarks.push_back(fmt::format("{} is taken from \"{}\", {:.17g} counts per turn, {}", target, column.name, *per_turn, why));
+  return true;
+}
+
+}  // namespace twinbench::imports
