@@ -206,8 +206,11 @@ bool MeetsTheSameAngles(const Course& swept) {
   return 10 * met > 8 * std::ssize(backward);
 }
 
-bool IsOneReadingAStop(const Course& swept) {
-  return swept.reference.size() < 2000 && swept.rests == 0 && MeetsTheSameAngles(swept);
+/// Nobody drives from place to place within a tenth of a second.
+bool IsOneReadingAStop(const Course& swept, const std::vector<double>& time_s) {
+  constexpr double kShortestStop_s = 0.1;
+  return swept.reference.size() < 2000 && swept.rests == 0 && MedianOf(StepsOf(time_s)) > kShortestStop_s &&
+         MeetsTheSameAngles(swept);
 }
 
 /// At rest for much of the time, at many places; or nearly always, as a command is that jumps from place to place.
@@ -284,7 +287,7 @@ Course CourseOf(std::vector<double> reference, const std::vector<double>& time_s
   }
   course.stop_and_go = !time_s.empty() && settings.kind != "sweep" && GoesFromRestToRest(course);
   course.stops = !course.stop_and_go && (time_s.empty() || settings.kind == "stops" ||
-                                         (settings.kind == "auto" && IsOneReadingAStop(course)));
+                                         (settings.kind == "auto" && IsOneReadingAStop(course, time_s)));
   if (course.stops) {
     course = {.stops = true,
               .reference = std::move(course.reference),

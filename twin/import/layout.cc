@@ -5,6 +5,7 @@
 #include <map>
 
 #include "twin/import/clock.h"
+#include "twin/import/records.h"
 
 namespace twinbench::imports {
 namespace {
@@ -76,6 +77,7 @@ bool IsComment(std::string_view line) {
 }
 
 std::string FindKind(const std::vector<std::string_view>& lines) {
+  if (OpensRecords(lines)) return "records";
   if (IsScope(lines)) return "scope";
   const auto changes = std::ranges::count_if(lines, IsChange);
   if (2 * changes > std::ssize(lines)) return "changes";

@@ -10,7 +10,7 @@ namespace twinbench::imports {
 
 /// [file] of a map: how the text is laid out. What is left open is found from the text itself.
 struct Layout {
-  std::string kind = "auto";       // table | changes | scope | array | cycles
+  std::string kind = "auto";       // table | changes | scope | array | cycles | records
   std::string separator = "auto";  // tab | semicolon | comma | bar | space
   std::string decimal = "auto";    // point | comma
   std::string header;              // what the line of the names begins with; empty: found

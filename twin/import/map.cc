@@ -74,8 +74,8 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
   top.Text("title", &map.title, {}, "what the map is for, one line");
   top.Text("bench", &map.bench, BenchNames(), "whose readings they are; left out: found by the columns");
   Table file(keys, "file");
-  file.Text("kind", &map.file.kind, {"auto", "table", "changes", "scope", "array", "cycles"},
-            "rows of fields | one change a line (camonitor) | TwinCAT scope | array in a program | ISO 230-2 runs");
+  file.Text("kind", &map.file.kind, {"auto", "table", "changes", "scope", "array", "cycles", "records"},
+            "rows of fields | one change a line (camonitor) | TwinCAT scope | array in a program | ISO 230-2 runs | JSON");
   file.Text("separator", &map.file.separator, {"auto", "tab", "semicolon", "comma", "bar", "space"},
             "between fields");
   file.Text("decimal", &map.file.decimal, {"auto", "point", "comma"}, "the decimal mark");

@@ -10,6 +10,7 @@
 #include "twin/import/changes.h"
 #include "twin/import/common.h"
 #include "twin/import/cycles.h"
+#include "twin/import/records.h"
 #include "twin/import/scope.h"
 #include "twin/import/text.h"
 
@@ -86,6 +87,8 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
     ReadArray(text, layout.array, recording);
   } else if (kind == "cycles") {
     ReadCycles(text, layout, recording);
+  } else if (kind == "records") {
+    ReadRecords(text, layout, clock, recording);
   } else {
     ReadTable(text, layout, clock, recording);
   }
