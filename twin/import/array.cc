@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <optional>
 
 #include "twin/core/errors.h"
+#include "twin/import/common.h"
+#include "twin/import/layout.h"
 #include "twin/import/table.h"
 #include "twin/import/text.h"
 
@@ -39,47 +43,102 @@ std::string WordBefore(std::string_view code, std::size_t at) {
   return std::string(code.substr(begin, at - begin));
 }
 
-std::vector<double> NumbersIn(std::string_view list) {
+/// 12, 1.5f, 4096u, 0x7F5E.
+std::optional<double> EntryNumber(std::string_view field) {
+  if (field.starts_with("0x") || field.starts_with("0X")) {
+    field.remove_prefix(2);
+    unsigned long number = 0;
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number, 16);
+    const bool whole = error == std::errc() && std::string_view(end, field.data() + field.size()).find_first_not_of("uUlL") == std::string_view::npos;
+    return whole ? std::optional(static_cast<double>(number)) : std::nullopt;
+  }
+  while (!field.empty() && std::string_view("fFuUlL").find(field.back()) != std::string_view::npos) field.remove_suffix(1);
+  return FieldNumber(field, false);
+}
+
+/// @param others  Counts what is no number.
+std::vector<double> NumbersIn(std::string_view list, std::size_t& others) {
+  constexpr std::string_view kBetween = ", \t\r\n{}[]();";
   std::vector<double> numbers;
-  while (!list.empty()) {
-    const std::size_t end = std::min(list.find_first_of(", \t\r\n{}"), list.size());
-    std::string_view field = list.substr(0, end);
-    while (field.ends_with('f') || field.ends_with('F') || field.ends_with('u') || field.ends_with('U'))
-      field.remove_suffix(1);
-    if (const auto number = FieldNumber(field, false)) numbers.push_back(*number);
-    list.remove_prefix(std::min(end + 1, list.size()));
+  for (std::size_t at = 0; (at = list.find_first_not_of(kBetween, at)) != std::string_view::npos;) {
+    const std::size_t end = std::min(list.find_first_of(kBetween, at), list.size());
+    if (const auto number = EntryNumber(list.substr(at, end - at))) {
+      numbers.push_back(*number);
+    } else {
+      ++others;
+    }
+    at = end;
   }
   return numbers;
 }
 
-/// name[...] = { numbers }: every one in the text.
+/// What is declared before an equals sign: "float lookup[256]", "std::array<float, 256> lookup", or in Python "lookup".
+std::string NameIn(std::string_view declared, char opening) {
+  const std::size_t open = declared.find('['), close = declared.rfind(']');
+  if (open != std::string_view::npos && close != std::string_view::npos && open < close) return WordBefore(declared, open);
+  const bool is_list = opening == '[' || declared.find("array<") != std::string_view::npos;
+  return is_list && open == close ? WordBefore(declared, declared.size()) : "";
+}
+
+/// Behind an equals sign: the list's opening, perhaps in a call ("np.array(["); npos if there is none.
+std::size_t Opening(std::string_view code, std::size_t at) {
+  at = code.find_first_not_of(" \t\r\n", at);
+  if (at == std::string_view::npos) return at;
+  std::size_t called = at;
+  while (called < code.size() && (IsLetter(code[called]) || code[called] == '.')) ++called;
+  if (called < code.size() && code[called] == '(') at = code.find_first_not_of(" \t\r\n", called + 1);
+  return at != std::string_view::npos && (code[at] == '{' || code[at] == '[') ? at : std::string_view::npos;
+}
+
+/// name[...] = { numbers }, name = [numbers]: every one in the text.
 std::vector<Column> ArraysIn(std::string_view code) {
   std::vector<Column> arrays;
-  for (std::size_t brace = 0; (brace = code.find('{', brace)) != std::string_view::npos; ++brace) {
-    const std::size_t equals = code.find_last_not_of(" \t\r\n", brace - (brace > 0 ? 1 : 0));
-    if (brace == 0 || equals == std::string_view::npos || equals == 0 || code[equals] != '=') continue;
-    const std::size_t close = code.find_last_not_of(" \t\r\n", equals - 1);
-    if (close == std::string_view::npos || code[close] != ']') continue;
-    const std::size_t open = code.rfind('[', close);
-    if (open == std::string_view::npos) continue;
-    const std::size_t end = std::min(code.find('}', brace), code.size());
-    Column array{WordBefore(code, open), "", NumbersIn(code.substr(brace + 1, end - brace - 1)), {}};
-    if (!array.value.empty()) arrays.push_back(std::move(array));
+  for (std::size_t equals = 0; (equals = code.find('=', equals)) != std::string_view::npos; ++equals) {
+    const std::size_t opening = Opening(code, equals + 1);
+    if (opening == std::string_view::npos) continue;
+    const std::size_t before = equals == 0 ? std::string_view::npos : code.find_last_of(";{}=", equals - 1);
+    const std::size_t begin = before == std::string_view::npos ? 0 : before + 1;
+    const std::string name = NameIn(code.substr(begin, equals - begin), code[opening]);
+    const std::size_t end = std::min(code.find(code[opening] == '{' ? '}' : ']', opening), code.size());
+    std::size_t others = 0;
+    Column array{name, "", NumbersIn(code.substr(opening + 1, end - opening - 1), others), {}};
+    if (!name.empty() && !array.value.empty()) arrays.push_back(std::move(array));
   }
   return arrays;
 }
 
+/// A text of numbers and nothing else is a list that lost its name.
+void TakeBareList(std::string_view code, std::vector<Column>& arrays) {
+  std::size_t others = 0;
+  Column list{"list", "", NumbersIn(code, others), {}};
+  if (others == 0 && !list.value.empty()) arrays.push_back(std::move(list));
+}
+
 }  // namespace
+
+bool IsBareList(const std::vector<std::string_view>& lines) {
+  constexpr std::size_t kFewest = 12;
+  std::size_t rows = 0, numbers = 0, most = 0, others = 0;
+  for (const std::string_view line : lines) {
+    if (IsComment(line)) continue;
+    const std::size_t here = NumbersIn(line, others).size();
+    if (here > 0) ++rows;
+    numbers += here;
+    most = std::max(most, here);
+  }
+  return others == 0 && numbers >= kFewest && (rows == 1 || most == 1);
+}
 
 void ReadArray(std::string_view text, const std::string& name, Recording& recording) {
   const std::string code = WithoutComments(text);
   std::vector<Column> arrays = ArraysIn(code);
+  if (arrays.empty() && name.empty()) TakeBareList(code, arrays);
   const auto found = name.empty()
                          ? std::ranges::max_element(arrays, {}, [](const Column& a) { return a.value.size(); })
                          : std::ranges::find(arrays, name, &Column::name);
   if (found == arrays.end())
     throw InputError(recording.file, name.empty() ? "no array of numbers" : "no array called " + name,
-                     "name[...] = { numbers }");
+                     "name[...] = { numbers }, name = [numbers], or numbers and nothing else");
   Track track;
   track.name = found->name;
   Lines lines(code);
@@ -94,6 +153,9 @@ void ReadArray(std::string_view text, const std::string& name, Recording& record
     }
   }
   recording.layout = fmt::format("the array {} in a program text, {} entries", found->name, found->value.size());
+  if (found->name == "list") recording.layout = fmt::format("a list of {} numbers", found->value.size());
+  if (AreErrorsOf16Bit(found->value))
+    recording.remarks.push_back("the entries are whole numbers about 32768: as errors, 32768 is none and 65536 is a turn");
   track.columns.push_back(std::move(*found));
   track.columns[0].name = "entry";
   track.time_s.resize(track.columns[0].value.size());

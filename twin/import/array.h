@@ -2,10 +2,14 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "twin/import/recording.h"
 
 namespace twinbench::imports {
+
+/// True of numbers and nothing else: all in one line, or one a line.
+bool IsBareList(const std::vector<std::string_view>& lines);
 
 /// A table in the text of a program, `const float lookup[16384] = { 63.92, 63.94, ... };`. Comments are skipped;
 /// `float zero = 1.2;` beside it becomes a named number.

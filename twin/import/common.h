@@ -40,4 +40,10 @@ inline std::vector<double> StepsOf(const std::vector<double>& values) {
   return steps;
 }
 
+/// SimpleFOC prints a table of errors as uint16_t: 32768 is none, 65536 would be a turn.
+inline bool AreErrorsOf16Bit(const std::vector<double>& entries) {
+  constexpr double kNone = 32768.0, kLargest = 8192.0;
+  return !entries.empty() && std::ranges::all_of(entries, [](double x) { return x == std::round(x) && std::abs(x - kNone) < kLargest; });
+}
+
 }  // namespace twinbench::imports

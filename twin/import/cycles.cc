@@ -200,7 +200,29 @@ class CycleReader {
   std::vector<CycleTable> tables_;
 };
 
+/// A target, perhaps behind the row's number, and nothing but runs.
+bool NamesRuns(const std::vector<std::string_view>& names) {
+  const std::size_t first = !names.empty() && CountsRows(names[0]) ? 2 : 1;
+  if (names.size() < first + 2 || DirectionIn(names[first - 1]) != 0) return false;
+  int up = 0, down = 0;
+  for (std::size_t c = first; c < names.size(); ++c) {
+    const int direction = DirectionIn(SplitHeader(names[c]).name);
+    if (direction == 0) return false;
+    ++(direction > 0 ? up : down);
+  }
+  return up > 0 && down > 0;
+}
+
 }  // namespace
+
+bool AreCycles(const std::vector<std::string_view>& lines) {
+  const Fields how = FindFields(lines, {});
+  std::vector<std::string_view> names;
+  return how.separator != '\0' && std::ranges::any_of(lines, [&](std::string_view line) {
+    Split(line, how.separator, names);
+    return !IsComment(line) && NamesRuns(names);
+  });
+}
 
 void ReadCycles(std::string_view text, const Layout& layout, Recording& recording) {
   CycleReader(text, layout, recording).Read();

@@ -10,6 +10,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
+#include "twin/import/common.h"
 
 namespace twinbench::imports {
 
@@ -62,7 +63,7 @@ auto Find(const Table& table, std::string_view name) {
 }
 
 std::size_t ArgumentsOf(std::string_view function) {
-  if (function == "before" || function == "turns" || Find(kOne, function)) return 1;
+  if (function == "before" || function == "turns" || function == "correction" || Find(kOne, function)) return 1;
   return function == "is" || Find(kTwo, function) ? 2 : 0;
 }
 
@@ -212,6 +213,7 @@ class Evaluator {
     if (node.text == "is") return Is(node);
     if (node.text == "before") return Before(node);
     if (node.text == "turns") return Turns(node);
+    if (node.text == "correction") return Correction(node);
     std::vector<double> a = Of(*node.arguments[0]);
     if (const auto* one = Find(kOne, node.text)) {
       std::ranges::transform(a, a.begin(), one->function);
@@ -265,6 +267,19 @@ class Evaluator {
                       high),
           "a factor instead of turns(...)");
     for (double& value : x) value /= nearest;
+    return x;
+  }
+
+  /// Errors of an angle as firmwares print them: rad, or 16 bit about their middle. No sensor errs by half a turn.
+  std::vector<double> Correction(const Node& node) const {
+    std::vector<double> x = Of(*node.arguments[0]);
+    const bool of_16_bit = AreErrorsOf16Bit(x);
+    const auto [low, high] = std::ranges::minmax(x);
+    if (!of_16_bit && !(std::max(high, -low) < units::kPi))
+      throw InputError(where_, fmt::format("the entries go from {:.6g} to {:.6g}: they are no errors in rad", low, high),
+                       "a map with a factor instead of correction(entry), as in (entry - 32768) / 65536 of 16 bit about their middle, or "
+                       "--map lookup_table for a table of angles");
+    for (double& value : x) value = of_16_bit ? (value - 32768.0) / 65536.0 : value / units::turn;
     return x;
   }
 

@@ -13,7 +13,7 @@
 /// signs: [Axis 1.ActPos]; numbers from the text above a table by their names; `index` (0, 1, ...), `count` (rows),
 /// `time_s`. Functions: sin cos tan asin acos atan atan2 sqrt abs (angles in rad), sind cosd (in deg), min max,
 /// before(x), the sum of x over all earlier rows; turns(x), x by its turn where x goes round once, in whatever
-/// unit; is(column, word), 1 where the column has the word, else 0.
+/// unit; correction(x), an error by its turn, x in rad or in 16 bit about 32768; is(column, word), 1 where the column has the word, else 0.
 ///
 /// Written here because no such library is among the packages that the program needs, and columns of a million rows
 /// are to go through it as a whole.

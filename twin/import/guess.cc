@@ -251,6 +251,20 @@ void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
   TakeWhatIsLeft(columns, recordings, compared, map, remarks);
 }
 
+void TakeReadyMapOfList(const std::vector<Recording>& recordings, Map& map, std::vector<std::string>& remarks) {
+  constexpr double kLargestError_rad = 0.5;
+  if (recordings.size() != 1 || recordings[0].tracks.size() != 1 || !map.name.empty() || !map.columns.empty()) return;
+  const std::vector<Column>& columns = recordings[0].tracks[0].columns;
+  if (columns.size() != 1 || columns[0].name != "entry") return;
+  const bool errors = AreErrorsOf16Bit(columns[0].value) || StaysWithin(columns[0], kLargestError_rad);
+  const Map ready = LoadMap(errors ? "correction_table" : "lookup_table");
+  map.name = ready.name;
+  map.bench = ready.bench;
+  map.columns = ready.columns;
+  map.course.kind = ready.course.kind;
+  remarks.push_back(fmt::format("a list of {}: taken as --map {}", errors ? "small errors" : "angles that go round once", ready.name));
+}
+
 const BenchFormat& BenchFor(const std::vector<Recording>& recordings, const Map& map) {
   if (!map.bench.empty()) return FormatOf(map.bench);
   const BenchFormat* by_name = FormatByColumns([&](const ReadingColumn& column) {

@@ -16,6 +16,10 @@ namespace twinbench::imports {
 void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
             const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks);
 
+/// Of a list of numbers without a map: the columns of the ready map for tables of angles, which go round once, or of
+/// the one for errors. Anything else is left as it is.
+void TakeReadyMapOfList(const std::vector<Recording>& recordings, Map& map, std::vector<std::string>& remarks);
+
 /// The bench whose columns the map or the files speak of; the one that compares two columns if none does.
 const BenchFormat& BenchFor(const std::vector<Recording>& recordings, const Map& map);
 

@@ -385,8 +385,9 @@ std::size_t MostReadings(const BenchFormat& bench, const Map& map) {
 }
 
 Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
-  const BenchFormat& bench = BenchFor(recordings, map);
   std::vector<std::string> guessed;
+  TakeReadyMapOfList(recordings, map, guessed);
+  const BenchFormat& bench = BenchFor(recordings, map);
   FillIn(recordings, bench, ComparedColumns(bench), map, guessed);
   RequireColumns(bench, map, recordings);
   const Joined joined = Join(recordings, map, bench.compared ? bench.compared->shown : map.columns.at(0).column);

@@ -4,7 +4,9 @@
 #include <cctype>
 #include <map>
 
+#include "twin/import/array.h"
 #include "twin/import/clock.h"
+#include "twin/import/cycles.h"
 #include "twin/import/records.h"
 
 namespace twinbench::imports {
@@ -82,7 +84,8 @@ std::string FindKind(const std::vector<std::string_view>& lines) {
   const auto changes = std::ranges::count_if(lines, IsChange);
   if (2 * changes > std::ssize(lines)) return "changes";
   if (Has(lines, "ref_pos(i,")) return "cycles";
-  if (std::ranges::any_of(lines, OpensArray)) return "array";
+  if (std::ranges::any_of(lines, OpensArray) || IsBareList(lines)) return "array";
+  if (AreCycles(lines)) return "cycles";
   return "table";
 }
 
