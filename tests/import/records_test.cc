@@ -68,7 +68,7 @@ TEST_F(Importing, NamesWhatStandsFurtherDownWithADot) {
 }
 
 TEST_F(Importing, RefusesJsonWithoutRecords) {
-  for (const char* text : {R"({"kp": 32, "ki": 1})", R"([{"a": 1}, {"a": 2)", R"([[1, 2], [3, 4], [5, 6]])"})
+  for (const char* text : {R"({"kp": 32, "ki": 1})", R"([{"a": 1}, {"a": 2)", R"([[1, 2, 3], [3, 4, 8], [5, 6, 9]])"})
     EXPECT_KEPT(MessageOf([&] { Take(text); }));
 }
 

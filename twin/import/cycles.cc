@@ -36,8 +36,8 @@ bool HasAny(const std::string& text, const std::vector<const char*>& words) {
 int DirectionIn(std::string_view text) {
   const std::string small = SmallLetters(text);
   const bool up =
-      HasAny(small, {"forward", "up", "positive", "vorw", "↑", "pos. dir"}) || Trimmed(text).ends_with('+');
-  const bool down = HasAny(small, {"backward", "down", "negative", "reverse", "rückw", "↓", "neg. dir"}) ||
+      HasAny(small, {"forward", "up", "positive", "vorw", "↑", "pos. dir", "below", "von unten", "aller"}) || Trimmed(text).ends_with('+');
+  const bool down = HasAny(small, {"backward", "down", "negative", "reverse", "rückw", "↓", "neg. dir", "above", "von oben", "retour"}) ||
                     Trimmed(text).ends_with('-');
   return up == down ? 0 : up ? 1 : -1;
 }
@@ -56,6 +56,22 @@ bool IsRule(std::string_view line) {
 double Ratio(const std::string& from, const std::string& to) {
   const auto a = UnitNamed(from), b = UnitNamed(to);
   return a && b && a->dimension == b->dimension ? a->to_SI / b->to_SI : 1.0;
+}
+
+/// All names from there on say up or down, and both come.
+bool RunsFrom(std::size_t first, const std::vector<std::string_view>& names) {
+  int up = 0, down = 0;
+  for (std::size_t c = first; c < names.size(); ++c) {
+    const int direction = DirectionIn(SplitHeader(names[c]).name);
+    if (direction == 0) return false;
+    ++(direction > 0 ? up : down);
+  }
+  return up > 0 && down > 0;
+}
+
+/// "up; down" without a target: one place, a row a repetition.
+bool IsOnePlace(const std::vector<std::string_view>& names) {
+  return RunsFrom(!names.empty() && CountsRows(names[0]) ? 1 : 0, names);
 }
 
 class CycleReader {
@@ -99,8 +115,8 @@ class CycleReader {
     const auto at = [this](std::size_t c) {
       return FieldNumber(fields_[c], how_.decimal_comma).value_or(std::nan(""));
     };
-    table_.target.push_back(at(first_));
-    for (std::size_t c = first_ + 1; c < width_; ++c) table_.runs[c - first_ - 1].value.push_back(at(c));
+    table_.target.push_back(one_place_ ? 0.0 : at(first_));
+    for (std::size_t c = first_run_; c < width_; ++c) table_.runs[c - first_run_].value.push_back(at(c));
   }
 
   void BeginTable() {
@@ -109,9 +125,11 @@ class CycleReader {
     width_ = fields_.size();
     const bool named = names.size() == width_;
     first_ = named && CountsRows(names[0]) && width_ > 2 ? 1 : 0;
+    one_place_ = named && IsOnePlace(names);
+    first_run_ = first_ + (one_place_ ? 0 : 1);
     table_ = {};
     if (named) table_.target_unit = SplitHeader(names[first_]).unit;
-    for (std::size_t c = first_ + 1; c < width_; ++c) {
+    for (std::size_t c = first_run_; c < width_; ++c) {
       const int own = named ? DirectionIn(SplitHeader(names[c]).name) : 0;
       if (named && table_.value_unit.empty()) table_.value_unit = SplitHeader(names[c]).unit;
       table_.runs.push_back({own != 0 ? own : said_, {}});
@@ -159,6 +177,7 @@ class CycleReader {
     track.name = recording_.file;
     track.columns = {
         {"target", unit, {}, {}}, {"actual", unit, {}, {}}, {"direction", "", {}, {}}, {"run", "", {}, {}}};
+    if (one_place_ && tables_.size() == 1) return WriteOnePlace(std::move(track));
     const bool deviations = AreDeviations();
     std::array<std::vector<const Run*>, 2> runs;  // up, down
     for (const CycleTable& table : tables_) {
@@ -173,6 +192,22 @@ class CycleReader {
     recording_.layout = fmt::format(
         "a positioning test (ISO 230-2): {} targets, {} runs up, {} down, entries are {}", tables_[0].target.size(),
         runs[0].size(), runs[1].size(), deviations ? "deviations" : "positions");
+    recording_.tracks.push_back(std::move(track));
+  }
+
+  /// Row by row, as such a test is done.
+  void WriteOnePlace(Track track) {
+    const CycleTable& table = tables_[0];
+    for (std::size_t row = 0; row < table.target.size(); ++row) {
+      for (const Run& run : table.runs) {
+        track.columns[0].value.push_back(0.0);
+        track.columns[1].value.push_back(run.value[row]);
+        track.columns[2].value.push_back(run.direction);
+        track.columns[3].value.push_back(static_cast<double>(row) + 1.0);
+        track.time_s.push_back(static_cast<double>(track.time_s.size()));
+      }
+    }
+    recording_.layout = fmt::format("a test at one place from both sides: {} repetitions", table.target.size());
     recording_.tracks.push_back(std::move(track));
   }
 
@@ -195,22 +230,16 @@ class CycleReader {
   std::vector<std::string_view> fields_;
   std::string_view above_;
   int said_ = 0;
-  std::size_t width_ = 0, first_ = 0;
+  std::size_t width_ = 0, first_ = 0, first_run_ = 1;
+  bool one_place_ = false;
   CycleTable table_;
   std::vector<CycleTable> tables_;
 };
 
 /// A target, perhaps behind the row's number, and nothing but runs.
 bool NamesRuns(const std::vector<std::string_view>& names) {
-  const std::size_t first = !names.empty() && CountsRows(names[0]) ? 2 : 1;
-  if (names.size() < first + 2 || DirectionIn(names[first - 1]) != 0) return false;
-  int up = 0, down = 0;
-  for (std::size_t c = first; c < names.size(); ++c) {
-    const int direction = DirectionIn(SplitHeader(names[c]).name);
-    if (direction == 0) return false;
-    ++(direction > 0 ? up : down);
-  }
-  return up > 0 && down > 0;
+  const std::size_t first = names.empty() || !CountsRows(names[0]) ? 0 : 1;
+  return first < names.size() && DirectionIn(names[first]) == 0 && RunsFrom(first + 1, names);
 }
 
 }  // namespace
@@ -220,7 +249,7 @@ bool AreCycles(const std::vector<std::string_view>& lines) {
   std::vector<std::string_view> names;
   return how.separator != '\0' && std::ranges::any_of(lines, [&](std::string_view line) {
     Split(line, how.separator, names);
-    return !IsComment(line) && NamesRuns(names);
+    return !IsComment(line) && (NamesRuns(names) || IsOnePlace(names));
   });
 }
 

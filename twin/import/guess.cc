@@ -177,12 +177,14 @@ void TakeDirection(const std::vector<Choice>& columns, Map& map, std::vector<std
 void TakeReferenceByName(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
                          std::vector<std::string>& remarks) {
   if (IsGiven(map, compared[0])) return;
+  const std::set<std::string> taken = Taken(map);
   std::vector<Choice> moving;
-  std::ranges::copy_if(columns, std::back_inserter(moving), [](const Choice& c) {
-    return Changes(c) && !IsOtherQuantity(*c.column) && !IsCalledError(c.name);
+  std::ranges::copy_if(columns, std::back_inserter(moving), [&taken](const Choice& c) {
+    return Changes(c) && !taken.contains(c.name) && !IsOtherQuantity(*c.column) && !IsCalledError(c.name);
   });
-  const Choice* found = Clearest(moving, Speaks::kReference, Taken(map));
-  if (!found && moving.size() < compared.size()) found = Clearest(columns, Speaks::kReference, Taken(map));
+  const Choice* found = Clearest(moving, Speaks::kReference, taken);
+  const bool may_stand = moving.size() < compared.size() || IsGiven(map, "direction");
+  if (!found && may_stand) found = Clearest(columns, Speaks::kReference, taken);
   if (found) Put(compared[0], *found, "by its name", map, remarks);
 }
 

@@ -20,7 +20,8 @@ namespace {
 
 constexpr double kLikeOne = 0.2;     // a gain further from 1 is no error of a scale but another quantity
 constexpr double kFollows = 0.5;     // correlation below which a device does not follow at all
-constexpr std::size_t kFewest = 12;  // readings that are worth a diagnosis
+constexpr std::size_t kFewest = 12;  // readings that are worth a diagnosis ...
+constexpr std::size_t kFewestCompared = 3;  // ... and where two quantities are compared
 
 const ReadingColumn* ColumnOf(const BenchFormat& bench, const std::string& name) {
   const auto found = std::ranges::find(bench.columns, name, &ReadingColumn::name);
@@ -104,8 +105,10 @@ class Maker {
     const std::vector<double>& reference = session.value.at(by);
     const double wrap = FindWrap(reference, map_.course, linear_);
     const std::vector<double> no_clock;
-    Course course = CourseOf(reference, session.has_clock ? session.time_s : no_clock, map_.course, wrap);
-    if (bench_.compared) CheckFollowing(session, course.reference);
+    const bool one_place = bench_.compared && IsOnePlace(session);
+    Course course = CourseOf(reference, session.has_clock && !one_place ? session.time_s : no_clock, map_.course, wrap);
+    if (one_place) NumberApproaches(session.value.at("direction"), course);
+    if (bench_.compared) CheckFollowing(session, course.reference, one_place);
     const Blocks cut = CutIntoBlocks(course, session.time_s, most, course.stop_and_go);
     Count(session, course, cut);
     if (course.stop_and_go) {
@@ -131,7 +134,24 @@ class Maker {
     return session.value.begin()->first;
   }
 
-  void CheckFollowing(const Session& session, const std::vector<double>& reference) const {
+  /// The reference stands still, and every row says from which side the axis came to it.
+  bool IsOnePlace(const Session& session) const {
+    const auto [low, high] = std::ranges::minmax(session.value.at(bench_.compared->reference));
+    const auto direction = session.value.find("direction");
+    if (low != high || direction == session.value.end()) return false;
+    const auto comes = [&direction](double from) { return std::ranges::find(direction->second, from) != direction->second.end(); };
+    return comes(1.0) && comes(-1.0);
+  }
+  /// Every change of the side begins a pass.
+  static void NumberApproaches(const std::vector<double>& direction, Course& course) {
+    for (std::size_t i = 1; i < direction.size(); ++i) {
+      const bool turned = direction[i] != direction[i - 1];
+      course.reversals += turned ? 1 : 0;
+      course.pass[i] = course.pass[i - 1] + (turned ? 1 : 0);
+    }
+  }
+
+  void CheckFollowing(const Session& session, const std::vector<double>& reference, bool one_place) const {
     const std::string& name = bench_.compared->shown;
     const std::vector<double>& shown = session.value.at(name);
     const auto [low, high] = std::ranges::minmax(shown);
@@ -139,9 +159,11 @@ class Maker {
     if (low == high)
       throw InputError(source, fmt::format("{} is {:g} in all {} rows: the channel is dead", name, low / UnitAtEnd(name)->to_SI, shown.size()),
                        "another column");
+    if (one_place) return;
     const auto [first, last] = std::ranges::minmax(reference);
     if (first == last)
-      throw InputError(NameOf(bench_.compared->reference), "the reference never moves", "another column");
+      throw InputError(NameOf(bench_.compared->reference), "the reference never moves",
+                       "another column; for one place from both sides a column \"direction\" of 1 and -1");
     const Following following = FollowingOf(reference, shown);
     const bool one_to_one = std::abs(following.gain - 1.0) <= kLikeOne;
     if (one_to_one && following.correlation > kFollows) return;
@@ -292,7 +314,10 @@ void NumberPositions(std::vector<Reading>& readings, const ReadingColumn& refere
   for (std::size_t i = 1; i < sorted.size(); ++i) {
     if (sorted[i] - sorted[i - 1] > 1e-9) steps.push_back(sorted[i] - sorted[i - 1]);
   }
-  if (steps.empty()) return;
+  if (steps.empty()) {
+    for (Reading& reading : readings) reading.position = 0;
+    return;
+  }
   const double largest = std::ranges::max(steps);
   std::erase_if(steps, [largest](double step) { return step < 0.05 * largest; });  // within a stop
   const double same = 0.25 * std::ranges::min(steps);
@@ -322,8 +347,10 @@ std::string StoryOf(const std::vector<Recording>& recordings, const Joined& join
                         unit.empty() ? "" : " [" + unit + "]");
   }
   const auto unit = [&](double rad) { return InUnit(rad, joined.linear, joined.turn_m); };
-  text += fmt::format("the reference goes from {} to {} ({:.4g} turns)", unit(tally.low), unit(tally.high),
-                      (tally.high - tally.low) / units::turn);
+  text += tally.low == tally.high
+              ? fmt::format("the reference stands at {}, reached from both sides", unit(tally.low))
+              : fmt::format("the reference goes from {} to {} ({:.4g} turns)", unit(tally.low), unit(tally.high),
+                            (tally.high - tally.low) / units::turn);
   text += fmt::format(", {} reversals, {} fly-backs, {} rests", tally.reversals, tally.fly_backs, tally.rests);
   if (tally.fastest > 0.0)
     text += fmt::format(", usual top speed {}/s, at rest {:.1f} % of the rows", unit(tally.fastest),
@@ -359,6 +386,13 @@ void RequireColumns(const BenchFormat& bench, const Map& map, const std::vector<
     throw InputError(recordings[0].file,
                      fmt::format("nothing is said about {}; there are {}", missing, ColumnNames(recordings)),
                      "a line for each under [columns] of a map");
+}
+
+/// ", 38 rows ... were left out" for a message.
+std::string CostOf(const std::vector<LeftOut>& left_out) {
+  std::string cost;
+  for (const LeftOut& entry : left_out) cost += fmt::format("{} {} {}", cost.empty() ? "; left out are" : ",", entry.count, entry.why);
+  return cost;
 }
 
 std::vector<Recording> ReadAll(const std::vector<std::string>& files, const Map& map) {
@@ -399,9 +433,10 @@ Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
     const Session whole = Rows(session, bench).Whole(maker.tally.left_out);
     maker.Take(whole, std::max<std::size_t>(most, kFewest), imported);
   }
-  if (imported.readings.size() < kFewest)
-    throw InputError(recordings[0].file, fmt::format("{} readings are left", imported.readings.size()),
-                     fmt::format("{} at least", kFewest));
+  const std::size_t fewest = bench.compared ? kFewestCompared : kFewest;
+  if (imported.readings.size() < fewest)
+    throw InputError(recordings[0].file, fmt::format("{} readings are left{}", imported.readings.size(), CostOf(maker.tally.left_out)),
+                     fmt::format("{} at least", fewest));
   if (bench.compared && maker.tally.stops && !Gives(map, "position"))
     NumberPositions(imported.readings, *ColumnOf(bench, bench.compared->reference));
   if (bench.compared)

@@ -8,6 +8,7 @@
 #include "twin/core/errors.h"
 #include "twin/import/array.h"
 #include "twin/import/changes.h"
+#include "twin/import/column_words.h"
 #include "twin/import/common.h"
 #include "twin/import/cycles.h"
 #include "twin/import/records.h"
@@ -72,6 +73,17 @@ std::string Describe(const Track& track) {
   return numbers.empty() ? text : text + "    numbers above the rows: " + numbers + "\n";
 }
 
+/// "up" and "down" in a column called direction are 1 and -1.
+void WordsToDirections(Column& column) {
+  const bool all = !column.IsNumber() && IsCalledDirection(column.name) &&
+                   std::ranges::all_of(column.words, [](const std::string& word) { return DirectionOfWord(word) != 0; });
+  if (!all) return;
+  for (double& x : column.value) {
+    if (std::isfinite(x)) x = DirectionOfWord(column.words[static_cast<std::size_t>(x)]);
+  }
+  column.words.clear();
+}
+
 }  // namespace
 
 Recording ReadRecording(const std::string& path, const Layout& layout, const ClockSettings& clock) {
@@ -91,6 +103,9 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
     ReadRecords(text, layout, clock, recording);
   } else {
     ReadTable(text, layout, clock, recording);
+  }
+  for (Track& track : recording.tracks) {
+    for (Column& column : track.columns) WordsToDirections(column);
   }
   return recording;
 }
