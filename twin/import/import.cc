@@ -14,6 +14,7 @@
 #include "twin/import/guess.h"
 #include "twin/import/join.h"
 #include "twin/import/source.h"
+#include "twin/import/unnamed_clock.h"
 
 namespace twinbench::imports {
 namespace {
@@ -397,7 +398,10 @@ std::string CostOf(const std::vector<LeftOut>& left_out) {
 
 std::vector<Recording> ReadAll(const std::vector<std::string>& files, const Map& map) {
   std::vector<Recording> recordings;
-  for (const std::string& file : files) recordings.push_back(ReadRecording(file, map.file, map.clock));
+  for (const std::string& file : files) {
+    recordings.push_back(ReadRecording(file, map.file, map.clock));
+    TakeUnnamedClock(map, recordings.back());
+  }
   return recordings;
 }
 

@@ -155,12 +155,27 @@ Map LoadMap(const std::string& name_or_path) {
   return ParseMap(InputText(name_or_path, "a map in TOML"), name_or_path);
 }
 
+namespace {
+
+/// "time_ms=[column 1]": the clock, which is no quantity of a bench.
+bool SetClock(const std::string& key, const std::string& column, Map& map) {
+  const auto unit = UnitAtEnd(key);
+  if (!unit || unit->dimension != Dimension::kTime || BaseOf(key) != "time") return false;
+  const bool in_brackets = column.starts_with('[') && column.ends_with(']');
+  map.clock.column = in_brackets ? column.substr(1, column.size() - 2) : column;
+  map.clock.unit = unit->name;
+  return true;
+}
+
+}  // namespace
+
 void SetColumn(const std::string& assignment, Map& map) {
   const std::string where = "--column " + assignment;
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos)
     throw InputError(where, "there is no =", "QUANTITY=COLUMN, as in reference_deg=angle");
   const std::string key = assignment.substr(0, equals);
+  if (SetClock(key, assignment.substr(equals + 1), map)) return;
   const ColumnKeys columns(map.bench.empty() ? BenchFormats() : std::vector{&FormatOf(map.bench)});
   const auto found =
       std::ranges::find_if(columns.entries, [&key](const MappedColumn& e) { return ColumnKeys::Key(e) == key; });

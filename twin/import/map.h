@@ -51,7 +51,8 @@ Map LoadMap(const std::string& name_or_path);
 /// @param name  For messages.
 Map ParseMap(const std::string& text, const std::string& name);
 
-/// "reference_mm=Axis 1.ActPos": one quantity said on the command line; it goes before the map's.
+/// "reference_mm=Axis 1.ActPos": one quantity said on the command line; it goes before the map's. "time_ms=[column 1]" is
+/// the clock.
 /// @throws InputError if that is no quantity of the map's bench.
 void SetColumn(const std::string& assignment, Map& map);
 

@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "tests/import/importing.h"
+#include "tests/support/kept_text.h"
+
+/// Which column is the clock.
+namespace twinbench::imports {
+namespace {
+
+using testing::HasSubstr, testing::Not;
+
+/// A sine of 5 mm in 2 s, the device 4 ms late; a row every 10 ms.
+std::string Rows(const char* format, int from = 0) {
+  std::string text;
+  for (int i = from; i < 600; ++i) {
+    const double command = -5.0 * std::cos(0.01 * i * units::kPi), device = -5.0 * std::cos((0.01 * i - 0.004) * units::kPi);
+    text += fmt::format(fmt::runtime(format), 10 * i, command, device);
+  }
+  return text;
+}
+
+void ExpectMotionInTime(const Imported& imported, const char* what) {
+  ASSERT_EQ(imported.readings.size(), 600u) << what;
+  EXPECT_NEAR(ToSeconds(imported.readings[599].time - imported.readings[0].time), 5.99, 1e-6) << what;
+  // Half way up it moves at 5 pi mm/s; a step of the command, 0.01 mm, between two rows on is 0.5 mm/s.
+  EXPECT_NEAR(imported.readings[50].velocity_rad_s / units::deg, 5.0 * units::kPi, 0.5) << what;
+  EXPECT_THAT(imported.story, HasSubstr("motion that is read while it goes on")) << what;
+}
+
+const std::vector<std::string> kTwo = {"reference_mm=[column 2]", "measured_mm=[column 3]"};
+
+TEST_F(Importing, FindsAClockWithoutANameAndSaysIt) {
+  const Imported imported = Take(Rows("{}\t{:.2f}\t{:.3f}\n"), "", kTwo);
+  ExpectMotionInTime(imported, "named by the user");
+  EXPECT_THAT(imported.story, HasSubstr("\"column 1\" rises in equal steps of 10: it is taken as a clock in ms"));
+  ExpectMotionInTime(Take(Rows("{}\t{:.2f}\t{:.3f}\n")), "by their order");
+}
+
+TEST_F(Importing, TakesTheClockThatTheCommandLineNames) {
+  std::vector<std::string> columns = kTwo;
+  columns.emplace_back("time_ms=[column 1]");
+  ExpectMotionInTime(Take(Rows("{}\t{:.2f}\t{:.3f}\n"), "", columns), "time_ms");
+  columns = {"reference_mm=b", "measured_mm=c", "time_ms=a"};
+  ExpectMotionInTime(Take("a,b,c\n" + Rows("{},{:.2f},{:.3f}\n"), "", columns), "a name of their own");
+  columns.back() = "time_ms=d";
+  EXPECT_KEPT(MessageOf([&] { Take("a,b,c\n" + Rows("{},{:.2f},{:.3f}\n"), "", columns); }));
+}
+
+TEST_F(Importing, TakesAColumnThatCountsTheRowsForNoClock) {
+  std::string text;
+  for (int i = 0; i < 72; ++i) text += fmt::format("{} {} {}\n", i, 5 * i, 5 * i + 0.01);
+  const Imported imported = Take(text);
+  EXPECT_THAT(imported.story, HasSubstr("it counts the rows"));
+  EXPECT_NEAR(imported.readings.back().reference_rad / units::deg, 355.0, 1e-9);
+}
+
+TEST_F(Importing, TakesAReferenceInEqualStepsForNoClock) {
+  std::string text;
+  for (int i = 0; i < 72; ++i) text += fmt::format("{} {} {}\n", 5 * i, 5 * i + 0.01 * (i % 3), 20 + i % 7);
+  EXPECT_THAT(Take(text, "", {"reference_deg=[column 1]", "measured_deg=[column 2]"}).story, Not(HasSubstr("clock in")));
+  EXPECT_THAT(MessageOf([&] { Take(text); }), HasSubstr("is not clear"));
+}
+
+/// "dwell time" and "cycle time" are of a row, not between rows.
+TEST_F(Importing, TakesATimeThatDoesNotGoOnForNoClock) {
+  std::string text = "settling_time [ms];stamp;reference [deg];measured [deg]\n";
+  for (int i = 0; i < 72; ++i) text += fmt::format("{};{};{};{}\n", 100 + i * 37 % 11, 0.02 * i, 5 * i, 5 * i);
+  EXPECT_NEAR(ToSeconds(Take(text).readings.at(50).time), 1.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace twinbench::imports

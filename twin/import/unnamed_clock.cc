@@ -1,0 +1,80 @@
+#include "twin/import/unnamed_clock.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "twin/import/clock.h"
+#include "twin/import/common.h"
+#include "twin/import/follows.h"
+
+namespace twinbench::imports {
+namespace {
+
+constexpr std::size_t kFewestOfAClock = 12;
+
+/// The usual step of a column that rises strictly and evenly, up to the rounding of its last digit; 0: it does not.
+double EqualStep(const std::vector<double>& values) {
+  constexpr double kEqual = 0.02;
+  const std::vector<double> steps = StepsOf(values);
+  if (steps.size() + 1 != values.size() || values.size() < kFewestOfAClock) return 0.0;
+  const double usual = MedianOf(steps);
+  const bool equal = usual > 0.0 && std::ranges::all_of(steps, [usual](double step) { return std::abs(step - usual) <= kEqual * usual; });
+  return equal ? usual : 0.0;
+}
+
+/// Two columns that go together one to one: the reference and the device are there already.
+bool TwoOthersFollow(const Track& track) {
+  for (std::size_t a = 1; a < track.columns.size(); ++a) {
+    for (std::size_t b = a + 1; b < track.columns.size(); ++b) {
+      const Column &first = track.columns[a], &second = track.columns[b];
+      if (!first.IsNumber() || !second.IsNumber()) continue;
+      const Following following = FollowingOf(first.value, second.value);
+      if (std::abs(following.gain - 1.0) < 0.2 && following.correlation > 0.9) return true;
+    }
+  }
+  return false;
+}
+
+bool IsSpokenOf(const std::string& name, const Map& map) {
+  return std::ranges::any_of(map.columns, [&name](const MappedColumn& c) { return c.expression.find(name) != std::string::npos; });
+}
+
+NumberClock ClockByStep(const std::vector<double>& values, double step) {
+  const NumberClock by_size = *ClockOf(values, "");
+  if (by_size.absolute) return by_size;
+  return *ClockOf(values, step != std::round(step) ? "s" : step < 1000.0 ? "ms" : "us");
+}
+
+void Take(Track& track, double step, Recording& recording) {
+  const Column column = std::move(track.columns.front());
+  track.columns.erase(track.columns.begin());
+  if (step == 1.0) {
+    recording.remarks.push_back(fmt::format("\"{0}\" rises by one from row to row: it counts the rows; --column 'time_s=[{0}]' makes it a clock", column.name));
+    return;
+  }
+  const NumberClock clock = ClockByStep(column.value, step);
+  track.time_s = column.value;
+  for (double& t : track.time_s) t = (t - clock.origin) * clock.to_s;
+  track.absolute = clock.absolute;
+  track.clock = fmt::format("{} [{}]", column.name, clock.words);
+  recording.remarks.push_back(fmt::format("\"{0}\" rises in equal steps of {1:.6g}: it is taken as a clock in {2}; --column 'time_s=[{0}]' says another unit", column.name,
+                                          step, clock.words));
+}
+
+}  // namespace
+
+void TakeUnnamedClock(const Map& map, Recording& recording) {
+  if (!map.clock.column.empty() || map.clock.rate_Hz > 0.0) return;
+  for (Track& track : recording.tracks) {
+    if (track.HasClock() || track.columns.size() < 3) continue;
+    const Column& first = track.columns.front();
+    if (first.name != "column 1" || !first.IsNumber() || IsSpokenOf(first.name, map)) continue;
+    const double step = EqualStep(first.value);
+    if (step > 0.0 && TwoOthersFollow(track)) Take(track, step, recording);
+  }
+}
+
+}  // namespace twinbench::imports
