@@ -29,34 +29,29 @@ double UsualInterval(const std::vector<double>& time_s) {
   return *middle;
 }
 
-/// The last two thirds of each rest, when the axis has settled.
-std::vector<Block> SettledRests(const Course& course) {
-  std::vector<Block> rests;
-  for (std::size_t i = 0; i < course.reference.size();) {
-    std::size_t end = i;
-    while (end < course.reference.size() && course.direction[end] == 0) ++end;
-    if (end > i) rests.push_back({i + (end - i) / 3, end});
-    i = std::max(end, i + 1);
-  }
-  return rests;
-}
-
 /// In about equal pieces of three rows at least.
-void AddPieces(const Block& rest, std::size_t pieces, std::vector<Block>& blocks) {
+void AddPieces(const Rest& rest, std::size_t pieces, std::vector<Block>& blocks) {
   constexpr std::size_t kFewestRows = 3;
-  const std::size_t rows = rest.end - rest.begin;
+  const std::size_t rows = rest.end - rest.stands;
   pieces = std::clamp<std::size_t>(rows / kFewestRows, 1, pieces);
   for (std::size_t k = 0; k < pieces; ++k)
-    blocks.push_back({rest.begin + rows * k / pieces, rest.begin + rows * (k + 1) / pieces});
+    blocks.push_back({rest.stands + rows * k / pieces, rest.stands + rows * (k + 1) / pieces, rest.begin});
 }
 
 /// Rests become one reading each; several where there would be too few for anything else.
-Blocks CutStops(const Course& course) {
+Blocks CutStops(const Course& course, const std::vector<Rest>& rests) {
   constexpr std::size_t kFewest = 12, kWanted = 24;
-  const std::vector<Block> rests = SettledRests(course);
-  const std::size_t pieces = rests.size() < kFewest ? (kWanted + rests.size() - 1) / rests.size() : 1;
   Blocks cut;
-  for (const Block& rest : rests) AddPieces(rest, pieces, cut.blocks);
+  const auto arrived = static_cast<std::size_t>(std::ranges::count(rests, true, &Rest::arrives));
+  const std::size_t pieces = arrived > 0 && arrived < kFewest ? (kWanted + arrived - 1) / arrived : 1;
+  for (const Rest& rest : rests) {
+    if (rest.arrives) {
+      AddPieces(rest, pieces, cut.blocks);
+    } else {
+      cut.moving += rest.end - rest.begin;
+      ++cut.moving_rests;
+    }
+  }
   for (const Block& block : cut.blocks) cut.usual_rows = std::max(cut.usual_rows, block.end - block.begin);
   cut.left_out = static_cast<std::size_t>(std::ranges::count_if(course.direction, [](int d) { return d != 0; }));
   return cut;
@@ -75,7 +70,7 @@ Blocks CutMotion(const Course& course, const std::vector<double>& time_s, std::s
                                 : behind_reversal < kBehindReversal ? std::max<std::size_t>(1, rows / 8)
                                                                     : rows;
     if (i < n && i - begin < longest && !Parts(course, time_s, usual_s, i)) continue;
-    cut.blocks.push_back({begin, i});
+    cut.blocks.push_back({begin, i, 0});
     if (moves) cut.widest = std::max(cut.widest, std::abs(course.reference[i - 1] - course.reference[begin]));
     if (moves) ++behind_reversal;
     if (i < n && course.pass[i] != course.pass[i - 1]) behind_reversal = 0;
@@ -104,12 +99,13 @@ Blocks CutToAbout(const Course& course, const std::vector<double>& time_s, std::
 
 }  // namespace
 
-Blocks CutIntoBlocks(const Course& course, const std::vector<double>& time_s, std::size_t most, bool stop_and_go) {
-  if (stop_and_go) return CutStops(course);
+Blocks CutIntoBlocks(const Course& course, const std::vector<double>& time_s, std::size_t most,
+                     const std::vector<Rest>& rests) {
+  if (!rests.empty()) return CutStops(course, rests);
   const std::size_t n = course.reference.size();
   if (n <= most || (course.stops && !AreDense(course))) {
     Blocks cut;
-    for (std::size_t i = 0; i < n; ++i) cut.blocks.push_back({i, i + 1});
+    for (std::size_t i = 0; i < n; ++i) cut.blocks.push_back({i, i + 1, 0});
     return cut;
   }
   Blocks cut = CutToAbout(course, time_s, most);

@@ -6,6 +6,7 @@
 
 #include "twin/import/course.h"
 #include "twin/import/join.h"
+#include "twin/import/rests.h"
 
 /// Rows of a set-up put together to readings.
 namespace twinbench::imports {
@@ -13,17 +14,19 @@ namespace twinbench::imports {
 /// Several neighbouring rows: [begin, end).
 struct Block {
   std::size_t begin = 0, end = 0;
+  std::size_t rest = 0;  // of a stop: the row in which the command began to rest
 };
 
 struct Blocks {
   std::vector<Block> blocks;
   std::size_t left_out = 0;  // rows between stops, on the way
+  std::size_t moving = 0, moving_rests = 0;  // rows, and rests of the command, at whose end the device was still on its way
   double widest = 0.0;       // of a block in motion [rad]
   std::size_t usual_rows = 1;
 };
 
-/// A recording of stops in time has one block a rest, without the rows in which the axis still settles; several
-/// where there are less than a dozen rests. One of motion is cut into at most about `most` blocks that never span
+/// A recording of stops in time has one block a rest, of the rows in which the device stands; several where there are less
+/// than a dozen rests. One of motion is cut into at most about `most` blocks that never span
 /// a reversal, a rest's end, a gap or a ramp's end; behind a reversal, where play is crossed, they are an eighth as
 /// long.
 ///
@@ -31,7 +34,10 @@ struct Blocks {
 /// orders below 30, there are up to four times as many.
 ///
 /// A block of width w lowers a wave of order k by (k w)^2 / 24: one part in a hundred at k = 0.49 / w.
-Blocks CutIntoBlocks(const Course& course, const std::vector<double>& time_s, std::size_t most, bool stop_and_go);
+///
+/// @param rests  Of a recording of stops; empty: of one in motion, or with a row a stop.
+Blocks CutIntoBlocks(const Course& course, const std::vector<double>& time_s, std::size_t most,
+                     const std::vector<Rest>& rests);
 
 /// The highest order of which blocks of that width keep 99 %; 0 where nothing is averaged.
 int HighestOrderKept(double widest_rad);

@@ -18,13 +18,6 @@ constexpr std::size_t kShortestRest = 3;  // rows; a turning point is no rest
 constexpr int kWidestWindow = 200;        // rows over which a speed is taken
 constexpr double kReversal = 6.0;  // standard deviations of the reference's noise: a smaller way back is noise
 
-/// White noise of a smooth course, from second differences: they have variance 6 sigma^2.
-double NoiseOf(const std::vector<double>& x) {
-  std::vector<double> size;
-  for (std::size_t i = 2; i < x.size(); ++i) size.push_back(std::abs(x[i] - 2.0 * x[i - 1] + x[i - 2]));
-  return 1.4826 * MedianOf(std::move(size)) / std::sqrt(6.0);
-}
-
 std::vector<double> Sizes(std::vector<double> steps) {
   for (double& step : steps) step = std::abs(step);
   return steps;
@@ -232,6 +225,12 @@ bool GoesFromRestToRest(const Course& swept) {
 }
 
 }  // namespace
+
+double NoiseOf(const std::vector<double>& x) {
+  std::vector<double> size;  // of second differences, which have variance 6 sigma^2
+  for (std::size_t i = 2; i < x.size(); ++i) size.push_back(std::abs(x[i] - 2.0 * x[i - 1] + x[i - 2]));
+  return 1.4826 * MedianOf(std::move(size)) / std::sqrt(6.0);
+}
 
 const char* MotionName(Motion motion) {
   switch (motion) {

@@ -110,7 +110,7 @@ class Maker {
     Course course = CourseOf(reference, session.has_clock && !one_place ? session.time_s : no_clock, map_.course, wrap);
     if (one_place) NumberApproaches(session.value.at("direction"), course);
     if (bench_.compared) CheckFollowing(session, course.reference, one_place);
-    const Blocks cut = CutIntoBlocks(course, session.time_s, most, course.stop_and_go);
+    const Blocks cut = CutIntoBlocks(course, session.time_s, most, RestsIn(session, course));
     Count(session, course, cut);
     if (course.stop_and_go) {
       TakeStops(session, course, cut, imported);
@@ -125,6 +125,20 @@ class Maker {
   Tally tally;
 
  private:
+  /// Of a drive from stop to stop; empty: of another.
+  std::vector<Rest> RestsIn(const Session& session, const Course& course) const {
+    if (!course.stop_and_go) return {};
+    const std::vector<double> none;
+    const std::vector<Rest> rests =
+        RestsOf(course, bench_.compared ? session.value.at(bench_.compared->shown) : none, linear_ ? 0.0 : units::turn);
+    const auto arrived = std::ranges::count(rests, true, &Rest::arrives);
+    if (bench_.compared && arrived < static_cast<std::ptrdiff_t>(kFewestCompared))
+      throw InputError(NameOf(bench_.compared->shown),
+                       fmt::format("the device arrives in {} of the {} rests of {} only", arrived, rests.size(), bench_.compared->reference),
+                       "longer rests; or [course] kind = \"sweep\" in a map, to take it as motion");
+    return rests;
+  }
+
   /// By what the course is told: the reference of a bench that compares, else the first column there is.
   std::string CourseColumn(const Session& session) const {
     if (bench_.compared) return bench_.compared->reference;
@@ -226,6 +240,12 @@ class Maker {
     tally.usual_rows = std::max(tally.usual_rows, cut.usual_rows);
     tally.stops = tally.stops && (course.stops || course.stop_and_go);
     if (cut.left_out > 0) tally.left_out.push_back({cut.left_out, "rows on the way between measuring positions"});
+    std::size_t settling = 0;
+    for (std::size_t k = 0; course.stop_and_go && k < cut.blocks.size(); ++k)
+      settling += k > 0 && cut.blocks[k].rest == cut.blocks[k - 1].rest ? 0 : cut.blocks[k].begin - cut.blocks[k].rest;
+    if (settling > 0) tally.left_out.push_back({settling, "rows at the begin of rests, before the device stood"});
+    if (cut.moving > 0)
+      tally.left_out.push_back({cut.moving, fmt::format("rows of {} rests of the command at whose end the device was still on its way", cut.moving_rests)});
   }
 
   /// Every rest is a reading; the senses are those from rest to rest.
@@ -238,13 +258,8 @@ class Maker {
     for (std::size_t k = 0; k < cut.blocks.size(); ++k) {
       Reading& reading = Append(session, from_stop_to_stop, cut.blocks[k], {k, places[k]}, imported);
       if (ColumnOf(bench_, "dwell_s"))
-        reading.dwell_s = session.time_s[cut.blocks[k].begin] - session.time_s[ArrivalOf(cut, k)];
+        reading.dwell_s = session.time_s[cut.blocks[k].begin] - session.time_s[cut.blocks[k].rest];
     }
-  }
-  static std::size_t ArrivalOf(const Blocks& cut, std::size_t k) {
-    const Block& block = cut.blocks[k];
-    const std::size_t kept = block.end - block.begin;
-    return block.begin - std::min(block.begin, kept / 2);  // a third of the rest was left out
   }
 
   /// Where a reading stands in the course: which entry, at which angle.
