@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <sstream>
+
 #include "tests/import/importing.h"
 #include "tests/support/kept_text.h"
+#include "twin/core/reading_clock.h"
 
 /// Which column is the clock.
 namespace twinbench::imports {
@@ -67,6 +70,22 @@ TEST_F(Importing, TakesATimeThatDoesNotGoOnForNoClock) {
   std::string text = "settling_time [ms];stamp;reference [deg];measured [deg]\n";
   for (int i = 0; i < 72; ++i) text += fmt::format("{};{};{};{}\n", 100 + i * 37 % 11, 0.02 * i, 5 * i, 5 * i);
   EXPECT_NEAR(ToSeconds(Take(text).readings.at(50).time), 1.0, 1e-9);
+}
+
+/// Whoever reads the run later has to know it: no drift has a rate there.
+TEST_F(Importing, MarksTheReadingsOfAListThatNobodyTimed) {
+  std::string list = "reference [deg],measured [deg]\n", timed = "time [s],reference [deg],measured [deg]\n";
+  for (int i = 0; i < 72; ++i) {
+    list += fmt::format("{},{}\n", 5 * i, 5 * i);
+    timed += fmt::format("{},{},{}\n", i, 5 * i, 5 * i);
+  }
+  EXPECT_TRUE(HasClock(Take(timed).readings)) << "a second a row, as a list counts too";
+  const Imported imported = Take(list);
+  EXPECT_FALSE(HasClock(imported.readings));
+  EXPECT_THAT(imported.story, HasSubstr("no clock: the rows are in order"));
+  std::stringstream written;
+  WriteReadingsCsv(imported.readings, imported.bench, written);
+  EXPECT_FALSE(HasClock(ParseReadingsCsv(written, "readings.csv", imported.bench)));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "twin/core/errors.h"
+#include "twin/core/reading_clock.h"
 #include "twin/core/units.h"
 #include "twin/import/blocks.h"
 #include "twin/import/course.h"
@@ -286,6 +287,7 @@ class Maker {
     if (bench_.compared && !course.stops && std::isfinite(course.velocity[at]))
       ColumnOf(bench_, bench_.compared->velocity)->number(reading) = MeanOf(course.velocity, block);
     reading.extra["motion"] = MotionName(course.motion[at]);
+    if (!session.has_clock) reading.extra[kClockColumn] = kNoClock;
     imported.readings.push_back(std::move(reading));
     return imported.readings.back();
   }
@@ -375,6 +377,7 @@ std::string StoryOf(const std::vector<Recording>& recordings, const Joined& join
   if (tally.wraps > 0) text += fmt::format("the reference starts again {} times: it was unwrapped\n", tally.wraps);
   text += tally.stops ? "taken as stops: every row, or every rest, is a reading at rest (course.kind)\n"
                       : "taken as motion that is read while it goes on (course.kind)\n";
+  if (!HasClock(imported.readings)) text += "no clock: the rows are in order, and no duration or rate is known\n";
   if (tally.widest > 0.0)
     text += fmt::format(
         "averaged in blocks of up to {} rows, never across a reversal, a rest or a gap: orders up to {} keep 99 "

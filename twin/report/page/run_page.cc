@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "twin/core/bench_format.h"
+#include "twin/core/reading_clock.h"
 #include "twin/report/page/causes.h"
 #include "twin/report/page/circles.h"
 #include "twin/report/page/curves.h"
@@ -99,9 +100,10 @@ std::string SubtitleOf(const PageSource& source, const std::vector<Reading>& rea
   std::string text = from.bench;
   text += from.source == "twin" ? fmt::format(" · simulated, seed {}", from.seed) : " · " + from.source;
   if (!from.clock_origin_utc.empty()) text += " · " + from.clock_origin_utc;
-  if (!readings.empty()) {
+  if (!readings.empty()) text += fmt::format(" · {} reading{}", readings.size(), readings.size() == 1 ? "" : "s");
+  if (!readings.empty() && HasClock(readings)) {
     const auto minutes = std::lround(ToSeconds(readings.back().time - readings.front().time) / 60.0);
-    text += fmt::format(" · {} reading{} in {}:{:02} h", readings.size(), readings.size() == 1 ? "" : "s", minutes / 60, minutes % 60);
+    text += fmt::format(" in {}:{:02} h", minutes / 60, minutes % 60);
   }
   return from.program_version.empty() ? text : text + " · twinbench " + from.program_version;
 }
