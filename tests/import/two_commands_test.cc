@@ -110,6 +110,16 @@ TEST_F(TwoCommands, LookBeforeAnythingIsWritten) {
   EXPECT_THAT(Call({"import", "hal.txt"}).err, HasSubstr("-o FOLDER"));
 }
 
+TEST_F(TwoCommands, LookAndFailWhereNothingCanBeImported) {
+  Write("abc.csv", "t,a,b,c\n0,1,2,3\n1,2,3,5\n2,3,4,9\n");
+  const Outcome unclear = Call({"import", "abc.csv", "--look"});
+  EXPECT_EQ(unclear.exit_code, 2);
+  EXPECT_THAT(unclear.out, HasSubstr("a: 1 to 3"));
+  EXPECT_THAT(unclear.err, HasSubstr("which column is reference_deg is not clear"));
+  Write("three.csv", "reference [deg],measured [deg]\n0,0.1\n10,10.2\n20,20.1\n");
+  EXPECT_EQ(Call({"import", "three.csv", "--look"}).exit_code, 2) << "three readings cannot be trusted";
+}
+
 TEST_F(TwoCommands, RefuseWhatCannotBe) {
   const auto samples = DriveAxis({.turns = 0.5}, LostMotion);
   std::string dead = "time_s,reference_deg,measured_deg\n";

@@ -109,10 +109,13 @@ void Write(const Imported& taken, const ImportOptions& options, JsonAnswer& answ
   answer.Write(json);
 }
 
+/// @throws InputError where nothing would be imported, behind what was seen.
 void LookOnly(const ImportOptions& options, JsonAnswer& answer) {
-  const std::string seen = imports::Look(options.files, MapOf(options));
-  fmt::print("{}", seen);
-  answer.Write({{"look", seen}});
+  const imports::Seen seen = imports::Look(options.files, MapOf(options));
+  fmt::print("{}", seen.text);
+  if (seen.needs) throw InputError(*seen.needs);
+  TellDoubts(seen.imported->readings, ScenarioOf(options, *seen.imported), options.files.front());
+  answer.Write({{"look", seen.text}});
 }
 
 void Import(const ImportOptions& options, JsonAnswer& answer) {

@@ -476,16 +476,18 @@ Imported Import(const std::vector<std::string>& files, const Map& map) {
   return MakeReadings(ReadAll(files, map), map);
 }
 
-std::string Look(const std::vector<std::string>& files, const Map& map) {
+Seen Look(const std::vector<std::string>& files, const Map& map) {
   const std::vector<Recording> recordings = ReadAll(files, map);
-  std::string text;
-  for (const Recording& recording : recordings) text += Describe(recording);
+  Seen seen;
+  for (const Recording& recording : recordings) seen.text += Describe(recording);
   try {
-    return text + "\nIt would be imported like this:\n" + MakeReadings(recordings, map).story;
+    seen.imported = MakeReadings(recordings, map);
+    seen.text += "\nIt would be imported like this:\n" + seen.imported->story;
   } catch (const InputError& needs) {
-    for (const Recording& recording : recordings) text += RemarksOn(recording);
-    return text + "\nIt cannot be imported yet:\n" + needs.what() + "\n";
+    for (const Recording& recording : recordings) seen.text += RemarksOn(recording);
+    seen.needs = needs;
   }
+  return seen;
 }
 
 }  // namespace twinbench::imports

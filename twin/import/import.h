@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "twin/core/errors.h"
 #include "twin/core/reading.h"
 #include "twin/import/map.h"
 #include "twin/import/recording.h"
@@ -17,9 +19,14 @@ struct Imported {
   std::string story;             // what was understood, derived and left out: lines for a person
 };
 
-/// What the files give away without a bench, and what is still needed: for `import --look`.
+/// What the files give away without a bench, and what would come of them or is still needed: for `import --look`.
+struct Seen {
+  std::string text;
+  std::optional<Imported> imported;
+  std::optional<InputError> needs;  // why nothing is imported
+};
 /// @throws InputError if a file cannot be understood at all.
-std::string Look(const std::vector<std::string>& files, const Map& map);
+Seen Look(const std::vector<std::string>& files, const Map& map);
 
 /// Joins the files, unwraps the reference, derives direction, pass, set-up, position and phase where the map does
 /// not give them, marks rests and ramps (extra column `motion`), averages what is long.
