@@ -70,10 +70,16 @@ std::vector<std::string> MissingForVdi3441(const std::vector<TargetPositioning>&
   return {};
 }
 
-void AppendVdi(int setup, const std::vector<TargetPositioning>& targets, const measure::ToldIn& told, PositioningResults& results) {
+/// Some place was reached twice: a table of a firmware or a single pass has nothing to say of reversals and repeats.
+bool IsPositioningTest(const std::vector<TargetPositioning>& targets) {
+  return std::ranges::any_of(targets, [](const TargetPositioning& t) { return t.forward.runs + t.backward.runs > 1; });
+}
+
+/// @return what there is to say of it.
+std::string AppendVdi(int setup, const std::vector<TargetPositioning>& targets, const measure::ToldIn& told, PositioningResults& results) {
   const measure::VdiPositioning vdi = measure::EvaluateVdi3441(targets);
   results.vdi.push_back({{"setup", setup}, {"axis", AxisJson(measure::kVdiValueNames, vdi.axis)}, {"u_parts", OfScatterAlone()}, {"missing", MissingForVdi3441(targets)}});
-  results.text += VdiText(vdi, told);
+  return VdiText(vdi, told);
 }
 
 void Append(int setup, const measure::PositioningStops& stops, const DeviceSettings& device, const measure::RunRounding& rounding,
@@ -95,10 +101,12 @@ void Append(int setup, const measure::PositioningStops& stops, const DeviceSetti
                           {"left_out", stops.left_out},
                           {"missing", missing},
                           {"notes", stops.notes}});
+  const std::string vdi_text = AppendVdi(setup, positioning.targets, told, results);
+  if (!IsPositioningTest(positioning.targets)) return;
   results.text += fmt::format("mounting {}, {} targets over {:.4g} {}\n", setup, targets.size(),
                               travel_rad / coarse.to_SI, coarse.name);
   results.text += targets.size() <= kMostRows ? PositioningText(positioning, told) : AxisText(positioning, told);
-  AppendVdi(setup, positioning.targets, told, results);
+  results.text += vdi_text;
   for (const std::string& what : missing) results.text += "missing: " + what + "\n";
 }
 

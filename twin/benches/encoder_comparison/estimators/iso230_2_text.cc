@@ -9,8 +9,8 @@ namespace twinbench::measure {
 namespace {
 
 std::string Fine(double value, const ToldIn& told) {
-  if (std::isnan(value)) return fmt::format("{:>9}", "-");
-  return fmt::format("{:9.3f}", value / told.fine);
+  if (std::isnan(value)) return fmt::format(" {:>8}", "-");
+  return fmt::format(" {:8.3f}", value / told.fine);
 }
 
 std::string Row(const TargetPositioning& t, const ToldIn& told) {
@@ -24,14 +24,18 @@ std::string Row(const TargetPositioning& t, const ToldIn& told) {
 
 }  // namespace
 
+/// Values that the runs do not give have no row.
 std::string AxisText(const AxisPositioning& positioning, const ToldIn& told) {
+  bool has_u = false;
   std::string text = fmt::format("axis        value        u     bias   (ISO 230-2, {})\n", told.fine_name);
   for (std::size_t i = 0; i < kAxisValues; ++i) {
     const ScatteredValue& v = positioning.axis[i];
+    if (std::isnan(v.value)) continue;
+    has_u = has_u || !std::isnan(v.u);
     text += fmt::format("{:<8}", kAxisValueNames[i]) + Fine(v.value, told) + Fine(v.u, told) + Fine(v.bias, told) +
             "\n";
   }
-  return text + "u and bias hold the scatter of the runs only\n";
+  return text + (has_u ? "u and bias hold the scatter of the runs only\n" : "");
 }
 
 std::string PositioningText(const AxisPositioning& positioning, const ToldIn& told) {

@@ -34,14 +34,15 @@ VdiPositioning EvaluateVdi3441(const std::vector<TargetPositioning>& targets, co
 }
 
 std::string VdiText(const VdiPositioning& positioning, const ToldIn& told) {
-  std::string text = fmt::format("VDI/DGQ 3441, {}:", told.fine_name);
+  std::string text;
   for (std::size_t i = 0; i < kVdiValues; ++i) {
     const ScatteredValue& v = positioning.axis[i];
-    text += std::isnan(v.value) ? fmt::format(" {} -", kVdiValueNames[i])
-                                : fmt::format(" {} {:.3f} ± {:.3f}", kVdiValueNames[i], v.value / told.fine, v.u / told.fine);
-    text += i + 1 < kVdiValues ? "," : "\n";
+    if (std::isnan(v.value)) continue;
+    text += text.empty() ? fmt::format("VDI/DGQ 3441, {}:", told.fine_name) : ",";
+    text += fmt::format(" {} {:.3f}", kVdiValueNames[i], v.value / told.fine);
+    if (!std::isnan(v.u)) text += fmt::format(" ± {:.3f}", v.u / told.fine);
   }
-  return text;
+  return text.empty() ? text : text + "\n";
 }
 
 }  // namespace twinbench::measure
