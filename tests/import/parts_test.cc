@@ -82,8 +82,25 @@ TEST(Text, KeepsSeparatorsInsideQuotesAndTakesBlanksTogether) {
   EXPECT_THAT(fields, ElementsAre("1", "2"));
   EXPECT_EQ(FieldNumber("1,25", true), 1.25);
   EXPECT_FALSE(FieldNumber("1,25", false));
-  EXPECT_FALSE(FieldNumber("1.250,5", true)) << "marks of thousands are not guessed";
+  EXPECT_EQ(FieldNumber("1.250,5", true), 1250.5);
+  EXPECT_EQ(FieldNumber("-1,234,567.25", false), -1234567.25);
+  EXPECT_EQ(FieldNumber("1 234,5", true), 1234.5);
+  EXPECT_EQ(FieldNumber("\xE2\x88\x92" "4.5", false), -4.5);
+  for (const char* text : {"1.250", "1.25,5", "12.3456,5", ".250,5"}) EXPECT_FALSE(FieldNumber(text, true)) << text << " may be either, or is none";
   EXPECT_FALSE(FieldNumber("nan", false));
+}
+
+TEST(Text, ReadsNumbersWithAUnitInTheirCell) {
+  const std::map<std::string, std::pair<double, std::string>> cells = {
+      {"12.5 deg", {12.5, "deg"}}, {"-3mm", {-3.0, "mm"}}, {"12.5°", {12.5, "°"}}, {"7", {7.0, ""}}, {"12° 30' 36\"", {12.51, "deg"}},
+      {"-0° 30' 00.0\"", {-0.5, "deg"}}, {"350°15′", {350.25, "deg"}}};
+  for (const auto& [text, cell] : cells) {
+    const auto read = CellOf(text, false);
+    ASSERT_TRUE(read) << text;
+    EXPECT_NEAR(read->number, cell.first, 1e-12) << text;
+    EXPECT_EQ(read->unit, cell.second) << text;
+  }
+  for (const char* text : {"3 up", "run 4 deg", "12° 70'", "deg", ""}) EXPECT_FALSE(CellOf(text, false)) << text;
 }
 
 std::vector<double> Evaluate(const std::string& text, const std::vector<double>& x) {

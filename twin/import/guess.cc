@@ -90,6 +90,8 @@ void Put(const std::string& target, const Choice& from, const std::string& why, 
   if (own.empty() && wanted && TakeCounts(target, *from.column, *from.track, map, remarks)) return;
   if (own.empty() && wanted && !IsNoUnit(from.column->unit)) RefuseUnit(from, target);
   const std::string unit = own.empty() ? UsualUnit(from, target, map) : own;
+  if (SmallLetters(from.column->unit) == "grad")
+    remarks.push_back(fmt::format("\"{}\" is in grad, read as degrees; where 400 are a turn: --column '{}_gon={}'", from.name, BaseOf(target), from.name));
   map.columns.push_back({target, from.name, unit, ""});
   std::string line = fmt::format("{} is taken from \"{}\"", target, from.name);
   if (!why.empty()) line += ", " + why;

@@ -244,7 +244,7 @@ class Maker {
     std::size_t settling = 0;
     for (std::size_t k = 0; course.stop_and_go && k < cut.blocks.size(); ++k)
       settling += k > 0 && cut.blocks[k].rest == cut.blocks[k - 1].rest ? 0 : cut.blocks[k].begin - cut.blocks[k].rest;
-    if (settling > 0) tally.left_out.push_back({settling, "rows at the begin of rests, before the device stood"});
+    if (settling > 0) tally.left_out.push_back({settling, "rows at the beginning of rests, before the device stood"});
     if (cut.moving > 0)
       tally.left_out.push_back({cut.moving, fmt::format("rows of {} rests of the command at whose end the device was still on its way", cut.moving_rests)});
   }

@@ -52,7 +52,7 @@ double Score(const std::vector<std::string_view>& lines, const Fields& how) {
     Split(line, how.separator, fields);
     if (fields.size() < 2) continue;
     const auto good = std::ranges::count_if(fields, [&how](std::string_view field) {
-      return field.empty() || FieldNumber(field, how.decimal_comma) || LooksLikeDate(field);
+      return field.empty() || CellOf(field, how.decimal_comma) || LooksLikeDate(field);
     });
     const double share = static_cast<double>(good) / static_cast<double>(fields.size());
     if (share >= 0.4) score[fields.size()] += share * share * share;

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostColumns = 500, kFewestRecords = 3;
+constexpr std::size_t kMostNames = 500, kFewestRecords = 3;
 constexpr int kDeepest = 6;
 
 /// Names and cells, written out as a table of text: which columns are numbers, times or words is found there.
@@ -61,7 +61,7 @@ class Sheet {
   std::vector<std::string>* CellsOf(const std::string& name) {
     const auto found = at_.find(name);
     if (found != at_.end()) return &cells_[found->second];
-    if (names_.size() >= kMostColumns) return nullptr;
+    if (names_.size() >= kMostNames) return nullptr;
     at_[name] = names_.size();
     names_.push_back(name);
     cells_.emplace_back();
@@ -120,11 +120,18 @@ bool IsListOf(const Json& list, bool (*is)(const Json&)) {
   return list.is_array() && list.size() >= kFewestRecords && std::ranges::all_of(list, [is](const Json& entry) { return is(entry); });
 }
 
+/// A list, or as pandas has it an object of numbered entries.
+bool IsColumn(const Json& part) {
+  constexpr std::size_t kFewestNumbered = 12;
+  return (part.is_array() && part.size() >= kFewestRecords) ||
+         (part.is_object() && part.size() >= kFewestNumbered && std::ranges::none_of(part, [](const Json& e) { return e.is_structured(); }));
+}
+
 /// Lists of one length in an object: the length that most of them have.
 std::size_t RowsOfColumns(const Json& object) {
   std::map<std::size_t, int> counts;
   for (const auto& [name, part] : object.items()) {
-    if (part.is_array() && part.size() >= kFewestRecords) ++counts[part.size()];
+    if (IsColumn(part)) ++counts[part.size()];
   }
   const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
   return most == counts.end() || most->second < 2 ? 0 : most->first;
@@ -169,8 +176,9 @@ class Search {
 
   void PutColumns(Sheet& sheet) const {
     for (const auto& [name, list] : best_->items()) {
-      if (!list.is_array() || list.size() != rows_) continue;
-      for (std::size_t row = 0; row < rows_; ++row) sheet.Put(name, list[row], row);
+      if (!IsColumn(list) || list.size() != rows_) continue;
+      std::size_t row = 0;
+      for (const Json& cell : list) sheet.Put(name, cell, row++);
     }
   }
 

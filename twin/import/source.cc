@@ -11,6 +11,7 @@
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
 #include "twin/import/cycles.h"
+#include "twin/import/pairs.h"
 #include "twin/import/records.h"
 #include "twin/import/scope.h"
 #include "twin/import/text.h"
@@ -101,6 +102,9 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
     ReadCycles(text, layout, recording);
   } else if (kind == "records") {
     ReadRecords(text, layout, clock, recording);
+  } else if (layout.separator == "auto" && ArePairs(FirstLines(text))) {
+    ReadTable(TableOfPairs(text), layout, clock, recording);
+    recording.layout = "lines of names and values";
   } else {
     ReadTable(text, layout, clock, recording);
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -28,7 +29,7 @@ class Gatherer {
 
   void Take(std::string_view field, bool decimal_comma) {
     if (kind_ == Kind::kNumber) {
-      values_.push_back(FieldNumber(field, decimal_comma).value_or(kNaN));
+      TakeNumber(field, decimal_comma);
     } else if (kind_ == Kind::kInstant) {
       TakeInstant(field);
     } else {
@@ -40,7 +41,18 @@ class Gatherer {
   std::vector<double> TakeValues() { return std::move(values_); }
   std::vector<std::string> TakeWords() { return std::move(words_); }
 
+  /// That its cells have, of the first one.
+  std::string UnitOfCells() const { return unit_; }
+
  private:
+  void TakeNumber(std::string_view field, bool decimal_comma) {
+    const auto cell = CellOf(field, decimal_comma);
+    values_.push_back(cell ? cell->number : kNaN);
+    if (!cell || cell->unit.empty() || cell->unit == unit_) return;
+    if (unit_.empty()) unit_ = cell->unit;
+    const auto own = UnitNamed(cell->unit), first = UnitNamed(unit_);
+    values_.back() *= own->dimension == first->dimension ? own->to_SI / first->to_SI : kNaN;
+  }
   /// A clock without a date that jumps back has passed midnight.
   void TakeInstant(std::string_view field) {
     const auto instant = ParseInstant(field);
@@ -65,6 +77,7 @@ class Gatherer {
   std::vector<double> values_;
   std::vector<std::string> words_;
   std::map<std::string, double, std::less<>> number_;
+  std::string unit_;
   double midnight_s_ = 0.0;
   bool has_date_ = false;
 };
@@ -76,7 +89,7 @@ std::vector<Kind> KindsOf(const std::vector<std::vector<std::string_view>>& rows
     int numbers = 0, instants = 0, words = 0;
     for (const auto& row : rows) {
       if (c >= row.size() || row[c].empty()) continue;
-      if (FieldNumber(row[c], how.decimal_comma)) {
+      if (CellOf(row[c], how.decimal_comma)) {
         ++numbers;
       } else if (ParseInstant(row[c])) {
         ++instants;
@@ -91,11 +104,11 @@ std::vector<Kind> KindsOf(const std::vector<std::vector<std::string_view>>& rows
 
 /// Most of a row's fields hold something that is no name.
 bool IsRow(const std::vector<std::string_view>& fields, const Fields& how) {
-  if (fields.size() < 2) return !fields.empty() && FieldNumber(fields[0], how.decimal_comma);
+  if (fields.size() < 2) return !fields.empty() && CellOf(fields[0], how.decimal_comma);
   const auto numbers = std::ranges::count_if(fields, [&how](std::string_view field) {
-    return FieldNumber(field, how.decimal_comma).has_value() || ParseInstant(field).has_value();
+    return CellOf(field, how.decimal_comma).has_value() || ParseInstant(field).has_value();
   });
-  return numbers >= 1 && (FieldNumber(fields[0], how.decimal_comma) || ParseInstant(fields[0]) ||
+  return numbers >= 1 && (CellOf(fields[0], how.decimal_comma) || ParseInstant(fields[0]) ||
                           2 * numbers >= std::ssize(fields));
 }
 
@@ -108,7 +121,9 @@ struct Heading {
 bool AllUnits(const std::vector<std::string_view>& fields) {
   return std::ranges::all_of(fields, [](std::string_view field) { return BareUnit(field).has_value(); }) &&
          std::ranges::any_of(
-             fields, [](std::string_view field) { return UnitNamed(field).has_value() || field.starts_with('['); });
+             fields, [](std::string_view field) {
+               return UnitNamed(*BareUnit(field)).has_value() || field.starts_with('[') || field.starts_with('(');
+             });
 }
 
 std::string_view WithoutMark(std::string_view line) {
@@ -277,6 +292,7 @@ class TableReader {
     for (std::size_t c = 0; c < gatherers_.size(); ++c) {
       Gatherer& g = gatherers_[c];
       Column column{NameOf(c), UnitOf(c), g.TakeValues(), g.TakeWords()};
+      if (column.unit.empty()) column.unit = g.UnitOfCells();
       if (g.kind() == Kind::kInstant) column.unit = g.HasDate() ? "instant" : "time of day";
       track_.columns.push_back(std::move(column));
     }
@@ -379,12 +395,28 @@ void ReadTable(std::string_view text, const Layout& layout, const ClockSettings&
   TableReader(text, layout, clock, recording).Read();
 }
 
+namespace {
+
+/// "4096 counts/rev": a number that says what it is behind it.
+void AddNumberBefore(std::string_view part, Track& track) {
+  const std::size_t end = part.find_first_of(" \t");
+  if (end == std::string_view::npos) return;
+  const std::string what = SmallLetters(Trimmed(part.substr(end)));
+  const bool per_turn = std::ranges::any_of(std::array{"/rev", "/turn", "/umdr", "per rev", "per turn", "cpr", "ppr"},
+                                            [&what](const char* word) { return what.find(word) != std::string::npos; });
+  const auto number = FieldNumber(part.substr(0, end), false);
+  if (per_turn && number) track.numbers[what] = *number;
+}
+
+}  // namespace
+
 void AddNumbers(std::string_view line, Track& track) {
   while (!line.empty()) {
     const std::size_t comma = line.find_first_of(",;\t");
     const std::string_view part = line.substr(0, comma);
     line.remove_prefix(comma == std::string_view::npos ? line.size() : comma + 1);
     const std::size_t equals = part.find_first_of("=:");
+    AddNumberBefore(Trimmed(equals == std::string_view::npos ? part : part.substr(equals + 1)), track);
     if (equals == std::string_view::npos) continue;
     std::string_view value = Trimmed(part.substr(equals + 1));
     value = value.substr(0, value.find_first_of(" \t\"%"));

@@ -8,7 +8,7 @@
 /// Text files of unknown making: bytes, lines, fields.
 namespace twinbench::imports {
 
-/// The whole file as UTF-8 without a byte order mark; UTF-16 is translated.
+/// The whole file as UTF-8 without a byte order mark; UTF-16, and bytes that are no UTF-8 (Latin 1), are translated.
 /// @throws InputError if it cannot be read, is empty or is no text.
 std::string LoadText(const std::string& path);
 
@@ -35,8 +35,17 @@ void Split(std::string_view line, char separator, std::vector<std::string_view>&
 
 std::string_view Trimmed(std::string_view text);
 
-/// The number that a field is, all of it; nothing if it is none or not finite.
+/// The number that a field is, all of it; nothing if it is none or not finite. Marks of thousands are taken where a
+/// decimal mark leaves no doubt: "1.234,5", "1,234.5", "1 234,5".
 std::optional<double> FieldNumber(std::string_view field, bool decimal_comma);
+
+/// A number with a unit in its cell: "12.5 deg", "3 mm", degrees with minutes and seconds ("12° 30' 4.5\"", in deg). The unit
+/// is empty of a mere number.
+struct Cell {
+  double number = 0.0;
+  std::string_view unit;
+};
+std::optional<Cell> CellOf(std::string_view field, bool decimal_comma);
 
 /// "tab", "comma", ... of a separator, and back; 0 if there is no such name.
 std::string SeparatorName(char separator);

@@ -111,7 +111,9 @@ std::optional<NameAndUnit> InTheName(std::string_view field) {
     at = field.find_last_not_of("abcdefghijklmnopqrstuvwxyz");
     if (at != std::string_view::npos && std::isupper(static_cast<unsigned char>(field[at])) && at > 0) --at;
   }
-  if (at == std::string_view::npos || at == 0 || IsWord(field.substr(at + 1))) return std::nullopt;
+  if (at == std::string_view::npos || at == 0) return std::nullopt;
+  const bool turns = field[at] == '_' && (field.ends_with("_turns") || field.ends_with("_rev") || field.ends_with("_revs"));
+  if (!turns && IsWord(field.substr(at + 1))) return std::nullopt;
   const auto unit = UnitNamed(field.substr(at + 1));
   if (!unit) return std::nullopt;
   return NameAndUnit{std::string(field), std::string(unit->name)};
