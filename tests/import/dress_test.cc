@@ -82,6 +82,7 @@ TEST_F(Dress, HasHeadsAndMarksOfItsProgram) {
   ExpectIt(Dressed("Winkel soll [\xB0];Winkel ist [\xB0]\n", row), "Latin 1");
   ExpectIt(Dressed("  Reference   Measured\n    (deg)      (deg)\n", [](double a, double b) { return fmt::format("{:11.3f}{:11.4f}\n", a, b); }),
            "units below the names");
+  ExpectIt(Dressed("| ref [deg] | enc [deg] |\n|---|---|\n", [](double a, double b) { return fmt::format("| {} | {:.4f} |\n", a, b); }), "Markdown");
   std::string again = "reference [deg];measured [deg]\n";
   for (int i = 0; i < kRows; ++i) again += (i == 40 ? "reference [deg];measured [deg]\n" : "") + row(Angle_deg(i), Shown_deg(i));
   ExpectIt(again, "its head again");

@@ -80,6 +80,25 @@ TEST_F(Importing, TakesCountsByWhatIsStatedOrByThePowerOfTwoAtWhichTheyFollow) {
   EXPECT_KEPT(MessageOf([&] { Take(neither); }));
 }
 
+TEST_F(Importing, TakesWholeNumbersOfAServoForCountsAndSaysIt) {
+  std::string text = "time [s],goal_position,present_position\n";
+  for (int i = 0; i < 200; ++i) text += fmt::format("{:.2f},{},{}\n", 0.02 * i, 2048 + 10 * (i % 100), 2048 + 10 * (i % 100) + i % 3);
+  const Imported imported = Take(text);
+  EXPECT_NEAR(imported.readings.at(0).reference_rad / units::deg, 180.0, 1e-9);
+  EXPECT_THAT(imported.story, HasSubstr("taken as 4096 counts per turn"));
+  EXPECT_THAT(imported.story, Not(HasSubstr("taken as deg")));
+}
+
+TEST_F(Importing, KeepsColumnsOfOneNameApart) {
+  EXPECT_NEAR(Last_deg(Take(Scaled("angle,angle"))), 355.0, 1e-6);
+  EXPECT_KEPT(Take(Scaled("angle,angle")).story);
+}
+
+/// A row of units that nobody knows is no row of names.
+TEST_F(Importing, RefusesUnknownUnitsBelowTheNames) {
+  EXPECT_THAT(MessageOf([&] { Take(Scaled("reference,measured\nbananas,bananas")); }), HasSubstr("\"reference\" is in \"bananas\""));
+}
+
 TEST_F(Importing, AddsAColumnOfErrorsToTheAngleBesideIt) {
   std::string text = "angle [deg];error [arcsec]\n";
   for (int i = 0; i < 72; ++i) text += fmt::format("{};{}\n", 5 * i, 36 * (i % 3));

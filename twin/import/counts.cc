@@ -72,7 +72,44 @@ std::optional<double> FoundPerTurn(const Column& column, const std::vector<doubl
   return std::nullopt;
 }
 
+/// The column that was guessed as it stands; null of what somebody said, or of a formula.
+const Column* PlainColumn(const MappedColumn& mapped, const std::vector<Recording>& recordings) {
+  if (!mapped.where.empty()) return nullptr;
+  for (const Recording& recording : recordings) {
+    for (const Track& track : recording.tracks) {
+      const auto found = std::ranges::find(track.columns, mapped.expression, &Column::name);
+      if (found != track.columns.end()) return &*found;
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace
+
+void TakeBothForCounts(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, Map& map,
+                       std::vector<std::string>& remarks) {
+  constexpr double kLeast = 1000.0, kMost = 65536.0;
+  std::vector<MappedColumn*> both;
+  double high = 0.0;
+  for (MappedColumn& mapped : map.columns) {
+    if (std::ranges::find(compared, mapped.column) == compared.end()) continue;
+    const Column* column = PlainColumn(mapped, recordings);
+    if (!column || !column->unit.empty() || !AreWhole(*column)) return;
+    const auto [least, most] = std::ranges::minmax(column->value);
+    if (!(least >= 0.0) || !(most > kLeast && most < kMost)) return;
+    high = std::max(high, most);
+    both.push_back(&mapped);
+  }
+  if (both.size() != 2) return;
+  const double per_turn = std::pow(4.0, std::ceil(std::log(high + 1.0) / std::log(4.0)));
+  std::erase_if(remarks, [](const std::string& remark) { return remark.find("its unit is not said") != std::string::npos; });
+  for (MappedColumn* mapped : both) {
+    remarks.push_back(fmt::format("{} is taken from \"{}\": whole numbers without a unit, taken as {:g} counts per turn (--column '{}=[{}] * 360 / N' says another)",
+                                  mapped->column, mapped->expression, per_turn, mapped->column, mapped->expression));
+    mapped->expression = fmt::format("[{}] * 360 / {:g}", mapped->expression, per_turn);
+    mapped->unit = "deg";
+  }
+}
 
 bool TakeCounts(const std::string& target, const Column& column, const Track& track, Map& map,
                 std::vector<std::string>& remarks) {

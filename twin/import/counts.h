@@ -15,4 +15,9 @@ namespace twinbench::imports {
 bool TakeCounts(const std::string& target, const Column& column, const Track& track, Map& map,
                 std::vector<std::string>& remarks);
 
+/// Reference and device in whole numbers from 0 up to more than 1000, neither with a unit, as servos on a bus have them: taken
+/// as counts of the power of four above them (1024, 4096, 16384, 65536), of which nothing but the sizes of angles depends.
+void TakeBothForCounts(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, Map& map,
+                       std::vector<std::string>& remarks);
+
 }  // namespace twinbench::imports

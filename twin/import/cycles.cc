@@ -48,10 +48,6 @@ bool CountsRows(std::string_view name) {
          small == "point";
 }
 
-bool IsRule(std::string_view line) {
-  return !Trimmed(line).empty() && line.find_first_not_of("-| \t:=+") == std::string_view::npos;
-}
-
 /// The unit of a deviation beside the target's: both are known or it is the same.
 double Ratio(const std::string& from, const std::string& to) {
   const auto a = UnitNamed(from), b = UnitNamed(to);

@@ -208,12 +208,20 @@ bool TakeAngleAndError(const std::vector<Choice>& columns, const std::vector<std
   return true;
 }
 
+/// "encoder 1" and "encoder 2" without a reference: neither is the device by its name.
+bool IsTied(const std::vector<Choice>& columns, const Choice& best, const std::set<std::string>& taken) {
+  const int own = Clearness(best.name, Speaks::kDevice);
+  return std::ranges::count_if(columns, [&](const Choice& c) { return !taken.contains(c.name) && Clearness(c.name, Speaks::kDevice) == own; }) > 1;
+}
+
 void TakeByName(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
                 std::vector<std::string>& remarks) {
   for (std::size_t k = 0; k < compared.size(); ++k) {
     if (IsGiven(map, compared[k])) continue;
-    if (const Choice* found = Clearest(columns, k == 0 ? Speaks::kReference : Speaks::kDevice, Taken(map)))
-      Put(compared[k], *found, "by its name", map, remarks);
+    const std::set<std::string> taken = Taken(map);
+    const Choice* found = Clearest(columns, k == 0 ? Speaks::kReference : Speaks::kDevice, taken);
+    if (!found || (k > 0 && !IsGiven(map, compared[0]) && IsTied(columns, *found, taken))) continue;
+    Put(compared[k], *found, "by its name", map, remarks);
   }
 }
 
@@ -253,6 +261,7 @@ void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
   if (columns.size() > compared.size()) std::erase_if(columns, [](const Choice& c) { return IsCalledError(c.name); });
   TakeByName(columns, compared, map, remarks);
   TakeWhatIsLeft(columns, recordings, compared, map, remarks);
+  TakeBothForCounts(compared, recordings, map, remarks);
 }
 
 void TakeReadyMapOfList(const std::vector<Recording>& recordings, Map& map, std::vector<std::string>& remarks) {

@@ -78,6 +78,10 @@ bool IsComment(std::string_view line) {
   return line.empty() || line.front() == '#' || line.front() == '%' || line.starts_with("//");
 }
 
+bool IsRule(std::string_view line) {
+  return !Trimmed(line).empty() && line.find_first_not_of("-| \t:=+") == std::string_view::npos;
+}
+
 std::string FindKind(const std::vector<std::string_view>& lines) {
   if (OpensRecords(lines)) return "records";
   if (IsScope(lines)) return "scope";

@@ -29,6 +29,9 @@ std::string FindKind(const std::vector<std::string_view>& lines);
 /// @return separator '\0' if no line is.
 Fields FindFields(const std::vector<std::string_view>& lines, const Layout& layout);
 
+/// True of a line that is drawn: "|---|---|", "=====".
+bool IsRule(std::string_view line);
+
 /// True of a line that is no part of the table.
 bool IsComment(std::string_view line);
 

@@ -126,6 +126,12 @@ bool AllUnits(const std::vector<std::string_view>& fields) {
              });
 }
 
+/// A name comes once, a unit as often as there are quantities of it.
+bool Repeats(std::vector<std::string_view> fields) {
+  std::ranges::sort(fields);
+  return std::ranges::adjacent_find(fields) != fields.end();
+}
+
 std::string_view WithoutMark(std::string_view line) {
   line = Trimmed(line);
   const std::size_t first = line.find_first_not_of("#%/ \t");
@@ -169,7 +175,7 @@ class TableReader {
       open_ = true;
       return;
     }
-    if (!open_ || Trimmed(line).empty()) return;
+    if (!open_ || Trimmed(line).empty() || IsRule(line)) return;
     if (!named_) return TakeLineAbove(line);
     if (IsComment(line)) return TakeAside(line);
     Split(line, how_.separator, fields_);
@@ -249,15 +255,20 @@ class TableReader {
       Split(WithoutMark(above_[i]), how_.separator, names);
       if (names.size() > 1 && names.back().empty()) names.pop_back();
       if (names.size() != width_ && !(names.size() + 1 == width_ || names.size() == width_ + 1)) continue;
-      if (units.empty() && names.size() == width_ && AllUnits(names) && i > 0) {
+      if (units.empty() && names.size() == width_ && i > 0 && (AllUnits(names) || (Repeats(names) && IsAsWide(above_[i - 1])))) {
         units.assign(names.begin(), names.end());
         continue;
       }
       TakeHeader(names);
       for (std::size_t c = 0; c < std::min(units.size(), heading_.columns.size()); ++c)
-        heading_.columns[c].unit = BareUnit(units[c]).value_or("");
+        heading_.columns[c].unit = BareUnit(units[c]).value_or(units[c]);
       return;
     }
+  }
+  bool IsAsWide(std::string_view line) const {
+    std::vector<std::string_view> fields;
+    Split(WithoutMark(line), how_.separator, fields);
+    return fields.size() == width_;
   }
 
   void Append(const std::vector<std::string_view>& fields) {
@@ -278,6 +289,14 @@ class TableReader {
     return fmt::format("column {}", c + 1);
   }
 
+  /// "angle (2)" where an "angle" is there already.
+  std::string OwnName(const std::string& name) const {
+    std::string own = name;
+    const auto is_taken = [this, &own] { return std::ranges::find(track_.columns, own, &Column::name) != track_.columns.end(); };
+    for (int k = 2; is_taken(); ++k) own = fmt::format("{} ({})", name, k);
+    return own;
+  }
+
   /// As the map's name has it, else as the file's.
   std::string UnitOf(std::size_t c) const {
     const std::string said = c < layout_.names.size() ? SplitHeader(layout_.names[c]).unit : "";
@@ -291,7 +310,7 @@ class TableReader {
     if (!heading_.found && layout_.names.empty()) unnamed_ = true;
     for (std::size_t c = 0; c < gatherers_.size(); ++c) {
       Gatherer& g = gatherers_[c];
-      Column column{NameOf(c), UnitOf(c), g.TakeValues(), g.TakeWords()};
+      Column column{OwnName(NameOf(c)), UnitOf(c), g.TakeValues(), g.TakeWords()};
       if (column.unit.empty()) column.unit = g.UnitOfCells();
       if (g.kind() == Kind::kInstant) column.unit = g.HasDate() ? "instant" : "time of day";
       track_.columns.push_back(std::move(column));
