@@ -72,6 +72,14 @@ TEST_F(Importing, TakesATimeThatDoesNotGoOnForNoClock) {
   EXPECT_NEAR(ToSeconds(Take(text).readings.at(50).time), 1.0, 1e-9);
 }
 
+TEST_F(Importing, ReadsAScopeWhoseRowsAreStampedWithFileTimes) {
+  std::string text = "Starttime of export;132907960342450000;Thursday, March 3, 2022;16:47:14.245\n\nName;fSetPos;fActPos (Resolver)\nData-Type;REAL64;REAL64\n"
+                     "SampleTime;10;10\nUnit;(None);(None)\n\n";
+  for (int i = 0; i < 200; ++i) text += fmt::format("{};{};{:.4f}\n", 132907960342450000 + 100000 * static_cast<long long>(i), 0.5 * i, 0.5 * i + 0.01);
+  const Imported imported = Take(text, "twincat");
+  EXPECT_NEAR(ToSeconds(imported.readings.back().time), 1.99, 1e-5) << "10 ms a row";
+}
+
 /// Whoever reads the run later has to know it: no drift has a rate there.
 TEST_F(Importing, MarksTheReadingsOfAListThatNobodyTimed) {
   std::string list = "reference [deg],measured [deg]\n", timed = "time [s],reference [deg],measured [deg]\n";

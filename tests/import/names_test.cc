@@ -89,6 +89,16 @@ TEST_F(Importing, TakesWholeNumbersOfAServoForCountsAndSaysIt) {
   EXPECT_THAT(imported.story, Not(HasSubstr("taken as deg")));
 }
 
+TEST_F(Importing, TakesTheDeviceOfTheAxisThatTheReferenceIsOf) {
+  std::string text = "time [s],pos (1) [deg],target pos (2) [deg],pos (2) [deg],load (2)\n";
+  for (int i = 0; i < 72; ++i) text += fmt::format("{},7,{},{},{}\n", i, 5 * i, 5 * i + 0.01 * (i % 3), i % 5);
+  EXPECT_LT(Worst_deg(Take(text).readings), 0.011);
+  text = "time [s],pos (1) [deg],target pos (2) [deg],pos (2) [deg]\n";
+  for (int i = 0; i < 72; ++i) text += fmt::format("{},{},{},{}\n", i, 100 - i, 5 * i, 5 * i + 0.01 * (i % 3));
+  EXPECT_LT(Worst_deg(Take(text).readings), 0.011);
+  EXPECT_THAT(Take(text).story, HasSubstr("\"pos (2)\", by its name, one of 2 such"));
+}
+
 TEST_F(Importing, KeepsColumnsOfOneNameApart) {
   EXPECT_NEAR(Last_deg(Take(Scaled("angle,angle"))), 355.0, 1e-6);
   EXPECT_KEPT(Take(Scaled("angle,angle")).story);

@@ -56,6 +56,18 @@ TEST_F(Importing, KeepsTwoThirdsOfTheRestsOfAFastServo) {
   EXPECT_GE(imported.readings[5].n_samples, 45) << "of 77 rows";
 }
 
+/// It has arrived all the same: nothing goes on.
+TEST_F(Importing, TakesAServoThatHuntsAboutItsPlaceForOneThatArrived) {
+  std::string text = "time [s];commanded [deg];measured [deg]\n";
+  for (int i = 0; i < 1600; ++i) {
+    const double to_deg = i / 80 % 2 == 0 ? 20.0 : 120.0;
+    text += fmt::format("{:.2f};{};{}\n", 0.05 * i, to_deg, to_deg == 120.0 && i * i % 7 < 4 ? to_deg - 13.0 : to_deg);
+  }
+  const Imported imported = Take(text);
+  EXPECT_EQ(imported.readings.size(), 20u);
+  EXPECT_THAT(imported.story, Not(HasSubstr("still on its way")));
+}
+
 TEST_F(Importing, SaysWhichRestsADeviceNeverReached) {
   const Imported some = Take(StepTest({.last_rest_s = 0.5}));
   EXPECT_EQ(some.readings.size(), 19u);

@@ -27,7 +27,7 @@ const std::vector<std::string>& WordsFor(Speaks of) {
       "present",  "resolver", "feedback", "fb",       "fbk",         "act",       "dial",      "gauge",   "indicator",
       "messuhr",  "position", "ist",      "istwert",  "istposition", "istwinkel", "messwert",  "gemessen", "mesure",
       "mesuré",   "medido",   "medida",   "misurato", "misura",      "zmierzona", "измерено",  "实际",    "测量",
-      "反馈",     "编码器",   "reading",  "angle",    "load",        "enc",       "probe"};
+      "反馈",     "编码器",   "reading",  "angle",    "enc",         "probe",     "pos",       "load"};
   return of == Speaks::kReference ? reference : device;
 }
 
@@ -80,10 +80,14 @@ bool HasAny(const std::string& name, const std::array<const char*, n>& words) {
 int Clearness(const std::string& name, Speaks of) {
   const std::set<std::string> own = WordsOf(name);
   const std::vector<std::string>& words = WordsFor(of);
+  int clearest = 0, count = 0;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (Has(own, name, words[i])) return static_cast<int>(words.size() - i);
+    if (!Has(own, name, words[i])) continue;
+    ++count;
+    if (clearest == 0) clearest = static_cast<int>(words.size() - i);
   }
-  return 0;
+  constexpr int kMostWords = 100;
+  return kMostWords * clearest + count;
 }
 
 bool IsCalledError(const std::string& name) {

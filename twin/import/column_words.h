@@ -10,7 +10,8 @@ namespace twinbench::imports {
 
 enum class Speaks { kReference, kDevice };
 
-/// How clearly a name speaks of a reference or of a device under test; 0: not at all.
+/// How clearly a name speaks of a reference or of a device under test: by its clearest word, then by how many there are; 0:
+/// not at all.
 int Clearness(const std::string& name, Speaks of);
 
 /// "error", "deviation", "Abweichung": what the device shows too much, not where it stands.

@@ -208,10 +208,32 @@ bool TakeAngleAndError(const std::vector<Choice>& columns, const std::vector<std
   return true;
 }
 
-/// "encoder 1" and "encoder 2" without a reference: neither is the device by its name.
-bool IsTied(const std::vector<Choice>& columns, const Choice& best, const std::set<std::string>& taken) {
-  const int own = Clearness(best.name, Speaks::kDevice);
-  return std::ranges::count_if(columns, [&](const Choice& c) { return !taken.contains(c.name) && Clearness(c.name, Speaks::kDevice) == own; }) > 1;
+/// How many letters two names end alike: "target pos (3)" and "pos (3)" are of one axis.
+std::size_t EndsAlike(const std::string& a, const std::string& b) {
+  const auto [end, other] = std::mismatch(a.rbegin(), a.rend(), b.rbegin(), b.rend());
+  return static_cast<std::size_t>(end - a.rbegin());
+}
+
+/// All whose names speak of the device as clearly as `best` does.
+std::vector<const Choice*> AsClear(const std::vector<Choice>& columns, const Choice& best, const std::set<std::string>& taken) {
+  std::vector<const Choice*> tied;
+  for (const Choice& c : columns) {
+    if (!taken.contains(c.name) && Clearness(c.name, Speaks::kDevice) == Clearness(best.name, Speaks::kDevice)) tied.push_back(&c);
+  }
+  return tied;
+}
+
+/// Of several devices the one that is called most as the reference is; none where there is no reference to go by.
+void PutDevice(const std::string& target, const std::vector<const Choice*>& tied, const std::string& reference, Map& map,
+               std::vector<std::string>& remarks) {
+  if (tied.size() > 1 && reference.empty()) return;
+  const auto best = std::ranges::max_element(tied, {}, [&reference](const Choice* c) { return EndsAlike(c->name, reference); });
+  Put(target, **best, tied.size() > 1 ? fmt::format("by its name, one of {} such", tied.size()) : "by its name", map, remarks);
+}
+
+std::string ReferenceOf(const std::string& reference, const Map& map) {
+  const auto found = std::ranges::find(map.columns, reference, &MappedColumn::column);
+  return found == map.columns.end() ? "" : found->expression;
 }
 
 void TakeByName(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
@@ -220,8 +242,12 @@ void TakeByName(const std::vector<Choice>& columns, const std::vector<std::strin
     if (IsGiven(map, compared[k])) continue;
     const std::set<std::string> taken = Taken(map);
     const Choice* found = Clearest(columns, k == 0 ? Speaks::kReference : Speaks::kDevice, taken);
-    if (!found || (k > 0 && !IsGiven(map, compared[0]) && IsTied(columns, *found, taken))) continue;
-    Put(compared[k], *found, "by its name", map, remarks);
+    if (!found) continue;
+    if (k == 0) {
+      Put(compared[k], *found, "by its name", map, remarks);
+    } else {
+      PutDevice(compared[k], AsClear(columns, *found, taken), ReferenceOf(compared[0], map), map, remarks);
+    }
   }
 }
 

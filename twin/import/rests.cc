@@ -10,7 +10,6 @@ namespace twinbench::imports {
 namespace {
 
 constexpr std::size_t kFewestToJudge = 10;  // rows of a rest
-constexpr double kMadToSigma = 1.4826;
 
 /// From where it is last, by the nearest way.
 std::vector<double> FromItsEnd(std::span<const double> shown, double turn_rad) {
@@ -19,17 +18,17 @@ std::vector<double> FromItsEnd(std::span<const double> shown, double turn_rad) {
   return way;
 }
 
-double SpreadOf(const std::vector<double>& values) {
-  const double middle = MedianOf(values);
-  std::vector<double> away;
-  for (const double x : values) away.push_back(std::abs(x - middle));
-  return kMadToSigma * MedianOf(std::move(away));
-}
-
 double MeanOfRows(const std::vector<double>& values, std::size_t begin, std::size_t end) {
   double sum = 0.0;
   for (std::size_t i = begin; i < end; ++i) sum += values[i];
   return sum / static_cast<double>(end - begin);
+}
+
+double DeviationOf(const std::vector<double>& values, std::size_t begin, std::size_t end) {
+  const double mean = MeanOfRows(values, begin, end);
+  double sum = 0.0;
+  for (std::size_t i = begin; i < end; ++i) sum += (values[i] - mean) * (values[i] - mean);
+  return std::sqrt(sum / static_cast<double>(end - begin));
 }
 
 /// @param step  Of the command before this rest [rad].
@@ -37,10 +36,12 @@ void Judge(std::span<const double> shown, double turn_rad, double step, Rest& re
   const std::vector<double> way = FromItsEnd(shown, turn_rad);
   const std::size_t rows = way.size(), tenth = std::max<std::size_t>(3, rows / 10);
   const std::vector<double> last(way.end() - static_cast<std::ptrdiff_t>(tenth), way.end());
+  const double spread = DeviationOf(way, rows - tenth, rows);
   const double goes_on = std::abs(MeanOfRows(way, rows - tenth, rows) - MeanOfRows(way, rows - 2 * tenth, rows - tenth));
-  rest.arrives = goes_on <= 0.02 * step;
+  // Of a steady motion the tenths are sqrt(12) deviations apart; a device that shakes about its place is not on its way.
+  rest.arrives = goes_on <= 0.02 * step || goes_on <= 2.0 * spread;
   if (!rest.arrives) return;
-  const double end = MedianOf(last), stands = 6.0 * std::max(NoiseOf(way), SpreadOf(last));
+  const double end = MedianOf(last), stands = 6.0 * std::max(NoiseOf(way), spread);
   std::size_t from = rows - tenth;
   while (from > 0 && std::abs(way[from - 1] - end) <= stands) --from;
   rest.stands = std::max(rest.stands, rest.begin + from);

@@ -17,8 +17,8 @@ struct Rest {
 /// @param shown  What the device shows [rad], whole turns aside where `turn_rad` is positive; empty: there is none.
 ///
 /// The device stands where it ends: within six standard deviations of its own noise of the median of the last tenth of
-/// the rest. It has not arrived if it goes on by more than 1/50 of the command's step between the last tenth and the one
-/// before. At least the first third of a rest is left out.
+/// the rest. It has not arrived if it goes on by more than 1/50 of the command's step, and twice its own spread, between the
+/// last tenth and the one before. At least the first third of a rest is left out.
 std::vector<Rest> RestsOf(const Course& course, const std::vector<double>& shown, double turn_rad);
 
 }  // namespace twinbench::imports

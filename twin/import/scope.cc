@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <limits>
 
 #include "twin/core/errors.h"
 #include "twin/core/reading.h"
+#include "twin/import/clock.h"
 #include "twin/import/common.h"
 #include "twin/import/text.h"
 
@@ -122,10 +124,21 @@ class ScopeReader {
   void Finish(Track& track) {
     track.name = track.columns.empty() ? "" : track.columns[0].name;
     track.clock = "time of its group [ms]";
+    if (TakeFileTimes(track)) return;
     if (start_s_ == 0.0) return;
     track.clock += ", from the start of the export [Windows file time]";
     track.absolute = true;
     for (double& t : track.time_s) t += start_s_;
+  }
+
+  /// Some exports stamp every row with the Windows file time.
+  static bool TakeFileTimes(Track& track) {
+    const auto clock = track.time_s.empty() ? std::nullopt : ClockOf({1e3 * track.time_s[0]}, "");
+    if (!clock || !clock->absolute || clock->origin == 0.0) return false;
+    for (double& t : track.time_s) t = (1e3 * t - clock->origin) * clock->to_s;
+    track.clock = "time of its group [Windows file time]";
+    track.absolute = true;
+    return true;
   }
 
   std::string_view text_;
