@@ -79,6 +79,7 @@ TEST_F(Importing, GuessesAPositioningTestByItsColumnsUpAndDown) {
   ASSERT_EQ(imported.readings.size(), 24u);
   EXPECT_EQ(imported.readings[12].direction, -1);
   EXPECT_THAT(imported.story, HasSubstr("a positioning test"));
+  EXPECT_EQ(Take(text, "", {"reference_deg=angle", "measured_deg=forward"}).readings.size(), 12u) << "who names columns means them";
 }
 
 }  // namespace

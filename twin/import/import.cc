@@ -416,8 +416,10 @@ std::string CostOf(const std::vector<LeftOut>& left_out) {
 
 std::vector<Recording> ReadAll(const std::vector<std::string>& files, const Map& map) {
   std::vector<Recording> recordings;
+  Layout layout = map.file;
+  layout.columns_are_open = map.columns.empty() && map.bench.empty();
   for (const std::string& file : files) {
-    recordings.push_back(ReadRecording(file, map.file, map.clock));
+    recordings.push_back(ReadRecording(file, layout, map.clock));
     TakeUnnamedClock(map, recordings.back());
   }
   return recordings;

@@ -82,14 +82,15 @@ bool IsRule(std::string_view line) {
   return !Trimmed(line).empty() && line.find_first_not_of("-| \t:=+") == std::string_view::npos;
 }
 
-std::string FindKind(const std::vector<std::string_view>& lines) {
+std::string FindKind(const std::vector<std::string_view>& lines, bool columns_are_open) {
   if (OpensRecords(lines)) return "records";
   if (IsScope(lines)) return "scope";
   const auto changes = std::ranges::count_if(lines, IsChange);
   if (2 * changes > std::ssize(lines)) return "changes";
   if (Has(lines, "ref_pos(i,")) return "cycles";
-  if (std::ranges::any_of(lines, OpensArray) || IsBareList(lines)) return "array";
-  if (AreCycles(lines)) return "cycles";
+  if (std::ranges::any_of(lines, OpensArray)) return "array";
+  if (columns_are_open && IsBareList(lines)) return "array";
+  if (columns_are_open && AreCycles(lines)) return "cycles";
   return "table";
 }
 

@@ -17,13 +17,15 @@ struct Layout {
   std::string section;             // what a line begins with that opens a part; empty: one part
   std::vector<std::string> names;  // of the columns of a file without names
   std::string array;               // of a program text: the array's name; empty: the longest
+  bool columns_are_open = true;    // no map names columns: numbers alone may be a list, runs up and down a positioning test
 };
 
 /// Lines from the beginning, enough to judge by.
 std::vector<std::string_view> FirstLines(std::string_view text, std::size_t most = 600);
 
 /// The kind of a text whose map does not say it.
-std::string FindKind(const std::vector<std::string_view>& lines);
+/// @param columns_are_open  See Layout.
+std::string FindKind(const std::vector<std::string_view>& lines, bool columns_are_open = true);
 
 /// Separator and decimal mark under which most lines are rows of numbers.
 /// @return separator '\0' if no line is.

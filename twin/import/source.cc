@@ -91,7 +91,7 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
   Recording recording;
   recording.file = path;
   const std::string text = LoadText(path);
-  const std::string kind = layout.kind == "auto" ? FindKind(FirstLines(text)) : layout.kind;
+  const std::string kind = layout.kind == "auto" ? FindKind(FirstLines(text), layout.columns_are_open) : layout.kind;
   if (kind == "changes") {
     ReadChanges(text, recording);
   } else if (kind == "scope") {
