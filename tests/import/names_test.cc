@@ -74,6 +74,9 @@ TEST_F(Importing, TakesCountsByWhatIsStatedOrByThePowerOfTwoAtWhichTheyFollow) {
     guessed += fmt::format("{},{}\n", 5 * i, std::lround(65536.0 * i / 72.0));
     neither += fmt::format("{},{}\n", 5 * i, std::lround(4321.0 * i / 72.0));
   }
+  std::string both = "counts per turn = 4000\ncounts told;counts seen\n";
+  for (int i = 0; i < 72; ++i) both += fmt::format("{};{}\n", 50 * i, 50 * i + 1);
+  EXPECT_NEAR(Last_deg(Take(both)), 71.0 * 50.0 * 360.0 / 4000.0, 1e-9);
   EXPECT_LT(Worst_deg(Take(stated).readings), 360.0 / 4000.0);
   EXPECT_LT(Worst_deg(Take(guessed).readings), 360.0 / 65536.0);
   EXPECT_THAT(Take(guessed).story, HasSubstr("65536 counts per turn"));

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "twin/core/errors.h"
+#include "twin/import/choices.h"
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
 #include "twin/import/counts.h"
@@ -14,91 +15,6 @@
 
 namespace twinbench::imports {
 namespace {
-
-struct Choice {
-  std::string name;  // as an expression has it
-  const Column* column = nullptr;
-  const Track* track = nullptr;
-  const Recording* recording = nullptr;
-};
-
-/// Columns of numbers, each under a name that is its own.
-std::vector<Choice> NumberColumns(const std::vector<Recording>& recordings) {
-  std::vector<Choice> all;
-  for (const Recording& recording : recordings) {
-    for (const Track& track : recording.tracks) {
-      for (const Column& column : track.columns) {
-        const bool again =
-            std::ranges::find(all, column.name, [](const Choice& c) { return c.column->name; }) != all.end();
-        if (column.IsNumber() && !(again && (recording.parts_are_setups || recordings.size() > 1)))
-          all.push_back({column.name, &column, &track, &recording});
-      }
-    }
-  }
-  return all;
-}
-
-/// A column that never changes is nobody's reference and no device: it is not guessed to be one.
-bool Changes(const Choice& choice) {
-  return std::ranges::any_of(choice.column->value, [&](double x) { return x != choice.column->value[0]; });
-}
-
-bool IsGiven(const Map& map, const std::string& column) {
-  return std::ranges::any_of(map.columns, [&column](const MappedColumn& c) { return c.column == column; });
-}
-
-/// A unit that can stand for the column's, or nothing.
-std::string UnitFor(const Column& column, const std::string& target) {
-  const auto wanted = UnitAtEnd(target);
-  const auto has = UnitNamed(column.unit);
-  if (!wanted || !has) return "";
-  const bool fits = has->dimension == wanted->dimension ||
-                    (wanted->dimension == Dimension::kAngle && has->dimension == Dimension::kLength);
-  return fits ? std::string(has->name) : "";
-}
-
-bool StaysWithin(const Column& column, double limit) {
-  return std::ranges::all_of(column.value, [limit](double x) { return !(std::abs(x) > limit); });
-}
-
-/// Of a column that says none: as the other one that it is compared with, or as such files have it.
-std::string UsualUnit(const Choice& from, const std::string& target, const Map& map) {
-  constexpr double kTwoTurns_rad = 12.6;
-  const auto wanted = UnitAtEnd(target);
-  for (const MappedColumn& other : map.columns) {
-    const auto unit = UnitAtEnd(other.column);
-    if (unit && wanted && unit->dimension == wanted->dimension && !other.unit.empty()) return other.unit;
-  }
-  if (wanted && wanted->dimension == Dimension::kAngle && StaysWithin(*from.column, kTwoTurns_rad))
-    return from.recording->usual_angle;
-  return wanted ? std::string(wanted->name) : "";
-}
-
-[[noreturn]] void RefuseUnit(const Choice& from, const std::string& target) {
-  std::string known;
-  for (const Dimension dimension : {Dimension::kAngle, Dimension::kLength}) {
-    for (const NamedUnit& unit : UnitsOf(dimension)) known += (known.empty() ? "" : ", ") + std::string(unit.name);
-  }
-  throw InputError(from.recording->file, fmt::format("\"{}\" is in \"{}\", which is no unit of an angle or a length", from.name, from.column->unit),
-                   fmt::format("{}; or a formula, as in --column '{}=[{}] * 360 / 4096' of 4096 counts per turn", known, target, from.name));
-}
-
-void Put(const std::string& target, const Choice& from, const std::string& why, Map& map,
-         std::vector<std::string>& remarks) {
-  const std::string own = UnitFor(*from.column, target);
-  const auto wanted = UnitAtEnd(target);
-  if (own.empty() && wanted && TakeCounts(target, *from.column, *from.track, map, remarks)) return;
-  if (own.empty() && wanted && !IsNoUnit(from.column->unit)) RefuseUnit(from, target);
-  const std::string unit = own.empty() ? UsualUnit(from, target, map) : own;
-  if (SmallLetters(from.column->unit) == "grad")
-    remarks.push_back(fmt::format("\"{}\" is in grad, read as degrees; where 400 are a turn: --column '{}_gon={}'", from.name, BaseOf(target), from.name));
-  map.columns.push_back({target, from.name, unit, ""});
-  std::string line = fmt::format("{} is taken from \"{}\"", target, from.name);
-  if (!why.empty()) line += ", " + why;
-  if (own.empty() && wanted)
-    line += fmt::format("; its unit is not said and taken as {}", unit);
-  if (!why.empty() || (own.empty() && wanted)) remarks.push_back(line);
-}
 
 /// Numbers in a list: whole, without a unit, fewer than rows. "Position [deg]" is where a device says that it stands.
 bool IsLabel(const Column& column) {
@@ -162,11 +78,6 @@ const Choice* Clearest(const std::vector<Choice>& columns, Speaks of, const std:
   return best;
 }
 
-std::set<std::string> Taken(const Map& map) {
-  std::set<std::string> taken;
-  for (const MappedColumn& column : map.columns) taken.insert(column.expression);
-  return taken;
-}
 
 /// "approach" or "side" is the direction where the bench's own name for it is in no file.
 void TakeDirection(const std::vector<Choice>& columns, Map& map, std::vector<std::string>& remarks) {

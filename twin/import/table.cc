@@ -363,51 +363,6 @@ class TableReader {
   std::size_t width_ = 0, rows_ = 0, misfits_ = 0, text_lines_ = 0;
 };
 
-bool IsCalledTime(const Column& column) {
-  const std::string name = SmallLetters(column.name);
-  if (column.unit == "instant" || column.unit == "time of day") return true;
-  for (const char* word : {"time", "timestamp", "t", "zeit", "zeitstempel", "date", "datetime", "utc", "uhrzeit", "datum", "temps",
-                           "tiempo", "tempo", "время", "时间", "ts", "stamp", "elapsed", "millis", "micros"}) {
-    if (name == word || name.starts_with(std::string(word) + "_") || name.starts_with(std::string(word) + " ") ||
-        name.ends_with(std::string("_") + word))
-      return column.IsNumber();
-  }
-  const auto unit = UnitNamed(column.unit);
-  return column.IsNumber() && unit && unit->dimension == Dimension::kTime &&
-         name.find("dwell") == std::string::npos;
-}
-
-/// A time that each row has of its own, as a dwell, does not go on from row to row.
-bool GoesOn(const Column& column) {
-  const std::vector<double> steps = StepsOf(column.value);
-  const auto back = std::ranges::count_if(steps, [](double step) { return step < 0.0; });
-  const bool moves = std::ranges::any_of(steps, [](double step) { return step > 0.0; });
-  return moves && 10 * back <= std::ssize(steps);
-}
-
-/// Named as the file's head has it, with its unit or without.
-auto ColumnCalled(const std::string& name, std::vector<Column>& columns) {
-  const auto found = std::ranges::find(columns, name, &Column::name);
-  if (found != columns.end()) return found;
-  const NameAndUnit split = SplitHeader(name);
-  return std::ranges::find_if(columns, [&split](const Column& c) { return c.name == split.name && c.unit == split.unit; });
-}
-
-/// "time [ms]" has its unit; "millis" is one.
-std::string UnitOfClock(const ClockSettings& settings, const Column& column) {
-  if (!settings.unit.empty()) return settings.unit;
-  const auto name = UnitNamed(column.name);
-  return column.unit.empty() && name && name->dimension == Dimension::kTime ? std::string(name->name) : column.unit;
-}
-
-/// Rows in order, counted, or by a rate.
-void CountRows(double rate_Hz, Track& track) {
-  track.time_s.resize(track.Rows());
-  for (std::size_t i = 0; i < track.time_s.size(); ++i)
-    track.time_s[i] = static_cast<double>(i) / (rate_Hz > 0.0 ? rate_Hz : 1.0);
-  if (rate_Hz > 0.0) track.clock = fmt::format("rows at {:g} Hz, as the map says", rate_Hz);
-}
-
 }  // namespace
 
 void ReadTable(std::string_view text, const Layout& layout, const ClockSettings& clock, Recording& recording) {
@@ -442,40 +397,6 @@ void AddNumbers(std::string_view line, Track& track) {
     if (const auto number = FieldNumber(value, false))
       track.numbers[std::string(Trimmed(part.substr(0, equals)))] = *number;
   }
-}
-
-void FindClock(const ClockSettings& settings, const std::string& where, Track& track) {
-  const auto is_clock = [](const Column& column) { return IsCalledTime(column) && GoesOn(column); };
-  auto found = settings.column.empty() ? std::ranges::find_if(track.columns, is_clock) : ColumnCalled(settings.column, track.columns);
-  if (!settings.column.empty() && found == track.columns.end())
-    throw InputError(where, fmt::format("there is no column \"{}\" to take the time from", settings.column),
-                     "[time] column = one of the file's columns");
-  if (found == track.columns.end() || (settings.column.empty() && settings.rate_Hz > 0.0))
-    return CountRows(settings.rate_Hz, track);
-  if (!found->IsNumber())
-    throw InputError(where, fmt::format("\"{}\" holds words and no time", found->name), "times");
-  Column column = std::move(*found);
-  track.columns.erase(found);
-  track.time_s = std::move(column.value);
-  if (column.unit == "instant" || column.unit == "time of day") {
-    track.absolute = column.unit == "instant";
-    track.clock = fmt::format("{} ({})", column.name, column.unit);
-    return;
-  }
-  if (settings.rate_Hz > 0.0) {  // the column counts samples
-    for (double& t : track.time_s) t /= settings.rate_Hz;
-    track.clock = fmt::format("{}, samples at {:g} Hz", column.name, settings.rate_Hz);
-    return;
-  }
-  const std::string unit = UnitOfClock(settings, column);
-  const auto clock = ClockOf(track.time_s, unit);
-  if (!clock)
-    throw InputError(where,
-                     fmt::format("{} is given in \"{}\", which is no unit of time", column.name, unit),
-                     "[time] unit = s, ms, us, ns, min, h, epoch or filetime");
-  for (double& t : track.time_s) t = (t - clock->origin) * clock->to_s;
-  track.absolute = clock->absolute;
-  track.clock = fmt::format("{} [{}]", column.name, clock->words);
 }
 
 }  // namespace twinbench::imports
