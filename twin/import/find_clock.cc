@@ -91,7 +91,8 @@ void FindClock(const ClockSettings& settings, const std::string& where, Track& t
                      "[time] unit = s, ms, us, ns, min, h, epoch or filetime");
   for (double& t : track.time_s) t = (t - clock->origin) * clock->to_s;
   track.absolute = clock->absolute;
-  track.clock = fmt::format("{} [{}]", column.name, clock->words);
+  const bool is_said = !unit.empty() || clock->absolute;
+  track.clock = fmt::format("{} [{}{}]", column.name, clock->words, is_said ? "" : ", which is not said");
 }
 
 }  // namespace twinbench::imports

@@ -377,7 +377,8 @@ std::string StoryOf(const std::vector<Recording>& recordings, const Joined& join
   if (tally.wraps > 0) text += fmt::format("the reference starts again {} times: it was unwrapped\n", tally.wraps);
   text += tally.stops ? "taken as stops: every row, or every rest, is a reading at rest (course.kind)\n"
                       : "taken as motion that is read while it goes on (course.kind)\n";
-  if (!HasClock(imported.readings)) text += "no clock: the rows are in order, and no duration or rate is known\n";
+  text += HasClock(imported.readings) ? ClockText(recordings[0].tracks[0]) + "\n"
+                                      : "no clock: the rows are in order, and no duration or rate is known\n";
   if (tally.widest > 0.0)
     text += fmt::format(
         "averaged in blocks of up to {} rows, never across a reversal, a rest or a gap: orders up to {} keep 99 "

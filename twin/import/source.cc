@@ -21,22 +21,6 @@ namespace {
 
 constexpr std::size_t kMostColumns = 40;  // of a file that is still looked at
 
-std::string ClockText(const Track& track) {
-  if (!track.HasClock()) return "no clock: rows in order";
-  const std::vector<double> steps = StepsOf(track.time_s);
-  const double usual_s = MedianOf(steps);
-  std::string text = fmt::format("clock: {}", track.clock);
-  if (usual_s > 0.0) text += fmt::format(", {:.6g} s between rows ({:.4g} Hz)", usual_s, 1.0 / usual_s);
-  const auto gaps = std::ranges::count_if(steps, [usual_s](double step) { return step > kGapIntervals * usual_s; });
-  if (gaps > 0) {
-    text += fmt::format(", {} gaps of more than {:.3g} s, the longest {:.4g} s", gaps, kGapIntervals * usual_s,
-                        *std::ranges::max_element(steps));
-  }
-  const auto back = std::ranges::count_if(steps, [](double step) { return step < 0.0; });
-  if (back > 0) text += fmt::format(", {} times it goes back", back);
-  return text;
-}
-
 std::string ColumnText(const Column& column) {
   const std::string unit = column.unit.empty() ? "" : " [" + column.unit + "]";
   if (!column.IsNumber()) {
@@ -112,6 +96,22 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
     for (Column& column : track.columns) WordsToDirections(column);
   }
   return recording;
+}
+
+std::string ClockText(const Track& track) {
+  if (!track.HasClock()) return "no clock: rows in order";
+  const std::vector<double> steps = StepsOf(track.time_s);
+  const double usual_s = MedianOf(steps);
+  std::string text = fmt::format("clock: {}", track.clock);
+  if (usual_s > 0.0) text += fmt::format(", {:.6g} s between rows ({:.4g} Hz)", usual_s, 1.0 / usual_s);
+  const auto gaps = std::ranges::count_if(steps, [usual_s](double step) { return step > kGapIntervals * usual_s; });
+  if (gaps > 0) {
+    text += fmt::format(", {} gaps of more than {:.3g} s, the longest {:.4g} s", gaps, kGapIntervals * usual_s,
+                        *std::ranges::max_element(steps));
+  }
+  const auto back = std::ranges::count_if(steps, [](double step) { return step < 0.0; });
+  if (back > 0) text += fmt::format(", {} times it goes back", back);
+  return text;
 }
 
 std::string Describe(const Recording& recording) {

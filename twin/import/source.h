@@ -17,4 +17,7 @@ std::string Describe(const Recording& recording);
 /// What was left out of the file and what was taken for granted, a line each.
 std::string RemarksOn(const Recording& recording);
 
+/// "clock: t [s], 0.1 s between rows (10 Hz)" or "no clock: rows in order".
+std::string ClockText(const Track& track);
+
 }  // namespace twinbench::imports
