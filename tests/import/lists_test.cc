@@ -68,8 +68,13 @@ TEST_F(Importing, TakesCorrectionsInRadOrIn16BitAboutTheirMiddle) {
 TEST_F(Importing, GuessesTheReadyMapOfAListAndSaysIt) {
   EXPECT_NEAR(Order_deg(Take(Entries(", ")), 1), 2.4, 0.01);
   EXPECT_THAT(Take(Entries(", ")).story, HasSubstr("lookup_table"));
+  EXPECT_NEAR(Order_deg(Take("lut = [\n" + Entries(",\n") + "\n]\n"), 1), 2.4, 0.01);
   EXPECT_NEAR(Order_deg(Take(Errors16Bit(0.55, 0.42)), 1), 0.55, 0.01);
   EXPECT_THAT(Take(Errors16Bit(0.55, 0.42)).story, HasSubstr("correction_table"));
+}
+
+TEST_F(Importing, AsksForTheReferenceOfASingleColumn) {
+  EXPECT_THAT(MessageOf([&] { Take("measured [deg]\n" + Entries("\n")); }), HasSubstr("which column is reference_deg is not clear; there are \"measured\""));
 }
 
 TEST_F(Importing, GuessesAPositioningTestByItsColumnsUpAndDown) {

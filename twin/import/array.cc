@@ -116,12 +116,24 @@ void TakeBareList(std::string_view code, std::vector<Column>& arrays) {
 
 }  // namespace
 
+namespace {
+
+/// What stands behind "lut = " or "lut = np.array(", as Python has it.
+std::string_view BehindName(std::string_view line) {
+  const std::size_t equals = line.find('=');
+  if (equals == std::string_view::npos || !std::ranges::all_of(Trimmed(line.substr(0, equals)), IsLetter)) return line;
+  const std::size_t opening = Opening(line, equals + 1);
+  return opening == std::string_view::npos ? line : line.substr(opening);
+}
+
+}  // namespace
+
 bool IsBareList(const std::vector<std::string_view>& lines) {
   constexpr std::size_t kFewest = 12;
   std::size_t rows = 0, numbers = 0, most = 0, others = 0;
   for (const std::string_view line : lines) {
     if (IsComment(line)) continue;
-    const std::size_t here = NumbersIn(line, others).size();
+    const std::size_t here = NumbersIn(rows == 0 ? BehindName(line) : line, others).size();
     if (here > 0) ++rows;
     numbers += here;
     most = std::max(most, here);

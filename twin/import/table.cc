@@ -253,6 +253,7 @@ class TableReader {
     std::vector<std::string> units;
     for (std::size_t i = above_.size(); i-- > 0 && above_.size() - i <= 3;) {
       Split(WithoutMark(above_[i]), how_.separator, names);
+      if (width_ == 1) names = {WithoutMark(above_[i])};
       if (names.size() > 1 && names.back().empty()) names.pop_back();
       if (names.size() != width_ && !(names.size() + 1 == width_ || names.size() == width_ + 1)) continue;
       if (units.empty() && names.size() == width_ && i > 0 && (AllUnits(names) || (Repeats(names) && IsAsWide(above_[i - 1])))) {
