@@ -12,13 +12,22 @@ const Rival* RivalryOf(const Cause& cause, const Cause& other) {
   return nullptr;
 }
 
+/// Only one of a group is there: together they are no more probable than that.
+bool ExcludesAll(const std::vector<Cause>& causes, const CauseGroup& group, const Cause& other) {
+  constexpr double kRounding = 1e-6;
+  double sum = other.probability;
+  for (const std::size_t k : group) sum += causes[k].probability;
+  return !(sum > 1.0 + kRounding);
+}
+
 }  // namespace
 
 std::vector<CauseGroup> GroupsOf(const std::vector<Cause>& causes) {
   std::vector<CauseGroup> groups;
   for (std::size_t k = 0; k < causes.size(); ++k) {
-    const auto its = std::ranges::find_if(
-        groups, [&](const CauseGroup& group) { return RivalryOf(causes[group.front()], causes[k]) != nullptr; });
+    const auto its = std::ranges::find_if(groups, [&](const CauseGroup& group) {
+      return RivalryOf(causes[group.front()], causes[k]) != nullptr && ExcludesAll(causes, group, causes[k]);
+    });
     if (its == groups.end())
       groups.push_back({k});
     else

@@ -7,4 +7,9 @@ const char* VerdictName(Verdict verdict) {
   return kNames[static_cast<std::size_t>(verdict)];
 }
 
+bool HasUnmodelled(const Diagnosis& diagnosis) {
+  if (diagnosis.verdict == Verdict::kUnknown) return true;
+  return diagnosis.unknown.probability > 0.5 && !diagnosis.unknown.signature.empty();
+}
+
 }  // namespace twinbench::diagnose

@@ -92,4 +92,7 @@ struct Diagnosis {
   std::vector<std::string> notes;   // missing columns and what cannot be named without them, and the like
 };
 
+/// Some of the readings' structure has no name, whether it dominates (Verdict::kUnknown) or stands beside causes.
+bool HasUnmodelled(const Diagnosis& diagnosis);
+
 }  // namespace twinbench::diagnose

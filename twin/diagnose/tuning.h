@@ -61,6 +61,13 @@ inline constexpr double kNearlyAsMuch = 0.6;
 inline constexpr double kLostBetween = 0.27;
 inline constexpr int kMostLeaders = 8;
 
+/// Causes and shapes with a form that are tried before shapes that take any course in time: an angle device may well
+/// show so many orders.
+inline constexpr int kMostBeforeCourses = 12;
+/// Of the power that does not repeat at places visited again, the most that a course in time may explain: those that
+/// wander little between two visits repeat in part.
+inline constexpr double kMostOfNotRepeating = 2.0;
+
 // --- noise ---
 
 /// Log Bayes factor from which a noise model is not used any more. Single values: less than one run in a thousand
@@ -81,8 +88,9 @@ inline constexpr double kWorthTelling = 3.0;
 
 // --- shapes without a name ---
 
-/// Whole orders of an angle that may change with direction, speed or time; higher ones change with the stop.
-inline constexpr int kModulatedOrders = 24;
+/// Whole orders of an angle that may change with speed or time, and with direction: cogging and commutation come 50,
+/// 100 or 200 times a turn.
+inline constexpr int kModulatedOrders = 24, kDirectionOrders = 250;
 /// Values of a label (passes, set-ups) with an offset, or with waves, of their own; more are a wander.
 inline constexpr int kMostOffsets = 64, kMostWaves = 24, kMostDwells = 8;
 /// Orders that may differ from pass to pass, and from set-up to set-up.

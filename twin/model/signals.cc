@@ -145,16 +145,4 @@ int HighestOrder(double step_rad, int most) {
   return static_cast<int>(std::ceil(units::kPi / step_rad - 1e-6)) - 1;
 }
 
-Eigen::VectorXd Acceleration(const Course& course, const Eigen::VectorXd& velocity) {
-  Eigen::VectorXd acceleration = Eigen::VectorXd::Zero(course.Readings());
-  for (Eigen::Index i = 1; i + 1 < acceleration.size(); ++i) {
-    const auto before = static_cast<std::size_t>(i - 1), behind = static_cast<std::size_t>(i + 1);
-    const double step_s = course.time_s[i + 1] - course.time_s[i - 1];
-    const bool together =
-        course.pass[before] == course.pass[behind] && course.setup[before] == course.setup[behind];
-    if (together && step_s > 0.0) acceleration[i] = (velocity[i + 1] - velocity[i - 1]) / step_s;
-  }
-  return acceleration;
-}
-
 }  // namespace twinbench::model

@@ -78,7 +78,4 @@ double TypicalStep_rad(const Course& course, const Eigen::VectorXd& angle_rad);
 /// more, for at exactly two the sine may vanish at every stop. 0 for a step of 0.
 int HighestOrder(double step_rad, int most = 120);
 
-/// Rate of change of a velocity, zero at the ends of a pass.
-Eigen::VectorXd Acceleration(const Course& course, const Eigen::VectorXd& velocity);
-
 }  // namespace twinbench::model

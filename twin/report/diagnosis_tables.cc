@@ -80,11 +80,13 @@ std::string MeaningOnce(const Harmonic& harmonic, std::map<std::string, int>& to
 
 std::string CauseTable(const DiagnosisRun& found, const diagnose::Shown& shown) {
   const Diagnosis& d = found.diagnosis;
-  Cells rows;
-  if (d.verdict == Verdict::kUnknown)
-    rows.push_back({"unmodelled effect", SignatureLines(d.unknown.signature), Percent(d.unknown.probability),
-                    Percent(shown.share_unnamed)});
+  Cells rows, unmodelled;
+  if (diagnose::HasUnmodelled(d))
+    unmodelled = {{"unmodelled effect", SignatureLines(d.unknown.signature), Percent(d.unknown.probability),
+                   Percent(shown.share_unnamed)}};
+  if (d.verdict == Verdict::kUnknown) rows = unmodelled;
   for (const diagnose::CauseGroup& group : GroupsOf(d.causes)) AddGroup(found, group, ShareOf(group, shown.share), rows);
+  if (d.verdict != Verdict::kUnknown) rows.insert(rows.end(), unmodelled.begin(), unmodelled.end());
   if (rows.empty()) return "";
   return "Causes (share: of the variance beyond noise)\n" +
          TextTable({{"cause"}, {"size ± u", false, true}, {"probability", true}, {"share", true}}, rows,

@@ -108,9 +108,11 @@ Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, cons
       analysis.power = Project(*analysis.projector, {}, white).power[0];
     }
     analysis.found = Search(run, analysis.noise, *analysis.projector, *analysis.scanner, log_priors,
-                            analysis.threshold, options.most_causes);
+                            analysis.threshold, options.most_causes, options.largest_only);
     const NoiseView view = LookAtNoise(run, analysis);
     const NoiseCause* repair = repairs < tuning::kMostRepairs ? NextRepair(analysis, view) : nullptr;
+    // What else is there yet looks like noise of another kind.
+    if (options.largest_only && repair && repair->kind != NoiseCause::Kind::kOutliers) repair = nullptr;
     if (!repair) {
       analysis.observations = view.after;
       return analysis;

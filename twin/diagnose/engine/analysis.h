@@ -16,6 +16,7 @@ struct AnalysisOptions {
   int most_causes = 4;
   const NullCalibration* null = nullptr;  // of a design that is the same but for its unknowns; else simulated
   bool design_only = false;               // no search
+  bool largest_only = false;              // the first large cause with a name, to be asked about: see Search
 };
 
 /// A run searched with a noise model that its own residuals do not refute.

@@ -176,13 +176,19 @@ void Candidates::AddDrift(const Showing& showing, const std::string& rate, const
   steady.parameters = [=](const Eigen::VectorXd&, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
     return std::vector{estimate(rate, x[0], std::sqrt(cov(0, 0))), estimate("curvature", 0.0, kNaN)};
   };
-  Family& bent = Add(showing, {rate, rate}, drift_s);
+  AddBent(showing, rate, drift_s);
+}
+
+void Candidates::AddBent(const Showing& showing, const std::string& size, const Eigen::MatrixXd& straight_and_bend) {
+  Family& bent = Add(showing, {size, size}, straight_and_bend);
   bent.amplitudes[1].name = "bend";
-  bent.parameters = [=](const Eigen::VectorXd&, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
+  bent.parameters = [catalogue = catalogue_, effect = showing.effect, size](
+                        const Eigen::VectorXd&, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
     const double curvature = x[1] / x[0];
     const Eigen::Vector2d slope(-curvature / x[0], 1.0 / x[0]);
     const double u = std::sqrt(slope.dot(cov.topLeftCorner<2, 2>() * slope));
-    return std::vector{estimate(rate, x[0], std::sqrt(cov(0, 0))), estimate("curvature", curvature, u)};
+    return std::vector{catalogue.Estimate(effect, size, x[0], std::sqrt(cov(0, 0))),
+                       catalogue.Estimate(effect, "curvature", curvature, u)};
   };
 }
 

@@ -80,6 +80,8 @@ class Candidates {
                     const std::vector<double>& orders);
   /// `rate` along time, with "curvature" and without: two families.
   void AddDrift(const Showing& showing, const std::string& rate, const Eigen::VectorXd& time_s);
+  /// `size` of the first column, with "curvature" as the share of the second.
+  void AddBent(const Showing& showing, const std::string& size, const Eigen::MatrixXd& straight_and_bend);
   /// A step of size `parameter` at any reading; nothing if there is no room.
   void AddStep(const Showing& showing, const std::string& parameter, const TimeSeries& series);
   /// What a body still has to go after a move: `at` times "amplitude" on arrival, at a "time_constant".

@@ -83,6 +83,8 @@ struct Family {
 
   /// One value at a time on each channel, whatever the bench does: without products it is tabulated by time.
   bool goes_by_time = false;
+  /// So many columns in time that they follow nearly anything: what has a form is tried first.
+  bool takes_any_course = false;
 
   /// Describes a fitted member of an unknown family in the grammar of docs/diagnosis.md.
   std::function<std::string(int grid_point, const Eigen::VectorXd& amplitudes)> describe;

@@ -70,6 +70,7 @@ struct LinearRun {
   bool noise_free = false;   // a simulation without noise: its residuals say nothing about sigma
   Nuisance nuisance;
   std::vector<Pattern> patterns;
+  std::vector<int> place = {};  // by row (repeats.h); empty: no place was visited again
   LeftByAnother left_by_another = {};  // none: another scenario makes another run
 
   /// Best prediction, SI. Regress on this, never on `observed`: that has the residual in it.

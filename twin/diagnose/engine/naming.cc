@@ -11,6 +11,8 @@
 namespace twinbench::diagnose {
 namespace {
 
+constexpr const char* kUnexplained = "structure that the causes identified here do not explain";
+
 /// The answers of all places, and the power that they explain.
 struct Answered {
   std::vector<Answer> answers;
@@ -67,11 +69,23 @@ UnknownPart UnknownOf(const Answered& answered) {
   return unknown;
 }
 
-/// Something significant is left, or a place has a shape without a name.
+double UnnamedPower(const Answered& answered) {
+  double power = 0.0;
+  for (const Answer& answer : answered.answers) {
+    if (answer.causes.empty()) power += std::max(0.0, answer.weight);
+  }
+  return power;
+}
+
+/// Something significant is left.
 bool LeavesStructure(const Answered& answered, double last_statistic, double threshold) {
-  if (last_statistic > std::max(threshold, 0.5 * tuning::kSmallRest * answered.power)) return true;
-  return std::ranges::any_of(answered.answers,
-                             [&](const Answer& a) { return a.causes.empty() && !answered.IsSmall(a); });
+  return last_statistic > std::max(threshold, 0.5 * tuning::kSmallRest * answered.power);
+}
+
+/// What has no name explains more than what has one, or something larger is left.
+bool IsMostlyUnnamed(const Answered& answered, double last_statistic, double threshold) {
+  const double unnamed = UnnamedPower(answered) + (last_statistic > threshold ? 2.0 * last_statistic : 0.0);
+  return unnamed > answered.power - UnnamedPower(answered);
 }
 
 /// Several named causes together against one generic shape alone, which needs no coincidence.
@@ -136,14 +150,6 @@ std::string DisbelievePieces(Naming& naming) {
   return effects;
 }
 
-double UnnamedPower(const Answered& answered) {
-  double power = 0.0;
-  for (const Answer& answer : answered.answers) {
-    if (answer.causes.empty()) power += std::max(0.0, answer.weight);
-  }
-  return power;
-}
-
 Verdict VerdictOf(const Answered& answered) {
   const auto has = [&](auto test) { return std::ranges::any_of(answered.answers, test); };
   if (has([](const Answer& a) { return a.causes.size() > 1; })) return Verdict::kTie;
@@ -165,8 +171,10 @@ Naming Name(const SearchResult& found, const std::vector<Family>& families, doub
   } else if (found.overtones > 0.5) {
     DeclareUnknown("something that repeats as the wave identified here and is no sine, function of time", UnnamedPower(answered),
                    naming);
-  } else if (LeavesStructure(answered, found.last_statistic, threshold) || one_unknown > 0.5) {
-    DeclareUnknown("structure that the causes identified here do not explain", UnnamedPower(answered), naming);
+  } else if (IsMostlyUnnamed(answered, found.last_statistic, threshold) || one_unknown > 0.5) {
+    DeclareUnknown(kUnexplained, UnnamedPower(answered), naming);
+  } else if (naming.unknown.signature.empty() && LeavesStructure(answered, found.last_statistic, threshold)) {
+    naming.unknown = {tuning::kListed, kUnexplained};
   }
   if (const std::string effects = DisbelievePieces(naming); !effects.empty()) {
     naming.verdict = Verdict::kUnknown;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "twin/core/units.h"
@@ -10,6 +11,7 @@
 #include "twin/diagnose/engine/overtones.h"
 #include "twin/diagnose/engine/prior.h"
 #include "twin/diagnose/engine/refine.h"
+#include "twin/diagnose/engine/repeats.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
@@ -26,7 +28,12 @@ struct Problem {
   Eigen::VectorXd log_priors;
   double threshold;
   int most_causes;
+  bool largest_only;
   Eigen::MatrixXd white;  // the residual, rows x 1
+
+  bool IsNamed(int family) const {
+    return scanner.Families()[static_cast<std::size_t>(family)].kind == Kind::kNamed;
+  }
 };
 
 /// Signatures of all terms but one, whitened, with the shapes' slopes: a shape that is a little off must not look
@@ -126,24 +133,67 @@ Eigen::VectorXd LogPosterior(const Problem& problem, const Evidence& evidence) {
   return logs;
 }
 
+/// Of those that explain the same, the one that the bench lists first: which of them is no matter of chance.
+int FirstOfTheBest(const Eigen::VectorXd& log_posterior) {
+  constexpr double kSame = 0.1;  // log
+  const double best = log_posterior.maxCoeff();
+  int first = 0;
+  while (!(log_posterior[first] >= best - kSame)) ++first;
+  return first;
+}
+
+/// A single event in time; many of them are the pieces of a course.
+bool IsEvent(const Family& family) {
+  return std::ranges::count(family.shapes, "at_reading", &Shape::name) > 0;
+}
+
+/// Leaves the place to what has a name and explains nearly as much as the shape without one that is more probable there.
+void LeaveToNamed(const Problem& problem, const Evidence& evidence, int unnamed, Eigen::VectorXd& log_posterior) {
+  const auto& families = problem.scanner.Families();
+  const bool is_course = families[static_cast<std::size_t>(unnamed)].takes_any_course;
+  const double least = problem.threshold + std::log(tuning::kPriorNone);
+  Eigen::VectorXd named = Eigen::VectorXd::Constant(log_posterior.size(), kNever);
+  for (int k = 0; k < std::ssize(families); ++k) {
+    const bool is_near = evidence.explained(k, 0) >= tuning::kNearlyAsMuch * evidence.explained(unnamed, 0);
+    const bool is_there = evidence.log_bayes(k, 0) + problem.log_priors[k] > least;
+    const bool is_piece = is_course && IsEvent(families[static_cast<std::size_t>(k)]);
+    if (problem.IsNamed(k) && is_near && is_there && !is_piece) named[k] = log_posterior[k];
+  }
+  if (named.maxCoeff() > kNever) log_posterior = named.array() - LogSum(named);
+}
+
 /// The most probable of what is left.
 void TakeAmong(const Problem& problem, const std::map<int, Eigen::VectorXd>& shapes, const Evidence& evidence,
                Term& term) {
   term.log_posterior = LogPosterior(problem, evidence);
-  Eigen::Index best = 0;
-  term.log_posterior.head(evidence.log_bayes.rows()).maxCoeff(&best);
-  term.family = static_cast<int>(best);
-  term.grid_point = evidence.grid_point(best, 0);
+  term.family = FirstOfTheBest(term.log_posterior.head(evidence.log_bayes.rows()));
+  if (problem.largest_only && !problem.IsNamed(term.family)) {
+    LeaveToNamed(problem, evidence, term.family, term.log_posterior);
+    term.family = FirstOfTheBest(term.log_posterior.head(evidence.log_bayes.rows()));
+  }
+  term.grid_point = evidence.grid_point(term.family, 0);
   const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
   const auto refined = shapes.find(term.family);
   term.shape = refined == shapes.end() ? family.ShapeAt(term.grid_point) : refined->second;
   term.columns = refined == shapes.end() ? family.ColumnsAt(term.grid_point) : family.at(term.shape);
 }
 
+/// A function of the place is the same at every visit. What is left may follow any course in time only as far as it is
+/// not: there and back, cosine modes of the time contain every curve of the angle.
+void LeaveToPlaces(const Problem& problem, const Projected& data, Evidence& evidence) {
+  if (problem.run.place.empty()) return;
+  const double most = tuning::kMostOfNotRepeating * PowerNotRepeating(problem.run.place, data.rows.col(0));
+  for (Eigen::Index k = 0; k < evidence.log_bayes.rows(); ++k) {
+    const Family& family = problem.scanner.Families()[static_cast<std::size_t>(k)];
+    if (family.goes_by_time && evidence.explained(k, 0) > most) evidence.log_bayes(k, 0) = kNever;
+  }
+}
+
 /// The most probable family in a place of its own.
 Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidence) {
   const Projected data = Project(problem.projector, others, problem.white);
   evidence = problem.scanner.Scan(data, others);
+  LeaveToPlaces(problem, data, evidence);
   Eigen::VectorXd as_scanned = evidence.log_bayes.col(0) + problem.log_priors;
   const auto statistic = [&] { return LogSum(as_scanned) - std::log(tuning::kPriorNone); };
   std::map<int, Eigen::VectorXd> shapes;
@@ -213,6 +263,7 @@ void Forward(const Problem& problem, SearchResult& result) {
     if (term.statistic < problem.threshold || std::ssize(result.terms) == problem.most_causes) return;
     result.joint_evidence += term.statistic;
     result.terms.push_back(term);
+    if (problem.largest_only && problem.IsNamed(term.family)) return;
   }
 }
 
@@ -258,48 +309,66 @@ void Settle(const Problem& problem, SearchResult& result) {
   Revise(problem, result);
 }
 
-bool HasUnnamed(const Problem& problem, const std::vector<Term>& terms) {
+using IsOneOf = std::function<bool(const Family&)>;
+
+bool HasAny(const Problem& problem, const std::vector<Term>& terms, const IsOneOf& is_one) {
   return std::ranges::any_of(terms, [&](const Term& term) {
-    return problem.scanner.Families()[static_cast<std::size_t>(term.family)].kind == Kind::kUnknown;
+    return is_one(problem.scanner.Families()[static_cast<std::size_t>(term.family)]);
   });
 }
 
-/// The same without the shapes that have no name.
-Problem OnlyNamed(Problem problem) {
+bool AreInPieces(const Problem& problem, const std::vector<Term>& terms) {
+  constexpr int kPieces = 3;
+  return std::ranges::count_if(terms, [&](const Term& term) {
+           const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
+           return family.goes_by_time || IsEvent(family);
+         }) >= kPieces;
+}
+
+Problem Without(Problem problem, const IsOneOf& is_one) {
   const auto& families = problem.scanner.Families();
   for (int k = 0; k < std::ssize(families); ++k) {
-    if (families[static_cast<std::size_t>(k)].kind == Kind::kUnknown) problem.log_priors[k] = kNever;
+    if (is_one(families[static_cast<std::size_t>(k)])) problem.log_priors[k] = kNever;
   }
   return problem;
 }
 
-/// A shape with many columns may explain at one step what several causes explain together, and is taken before any
-/// of them: then the causes are tried first, and what is the more probable of all of it stays.
-void TryCausesFirst(const Problem& problem, SearchResult& result) {
-  if (!HasUnnamed(problem, result.terms)) return;
-  SearchResult causes;
-  Forward(OnlyNamed(problem), causes);
-  if (causes.terms.size() < 2 || causes.joint_evidence <= result.joint_evidence) return;
-  Forward(problem, causes);
-  Settle(problem, causes);
-  causes.first_statistic = result.first_statistic;
-  causes.alone = result.alone;
-  result = std::move(causes);
+/// What has many columns may explain at one step what several that have a form explain together, and is taken before
+/// any of them: then these are tried first, and what is the more probable of all of it stays.
+/// @param most  Of these.
+void TryFirst(Problem problem, const IsOneOf& is_last, int most, SearchResult& result) {
+  if (!HasAny(problem, result.terms, is_last)) return;
+  SearchResult first;
+  Problem plain = Without(problem, is_last);
+  plain.most_causes = std::max(most, problem.most_causes);
+  Forward(plain, first);
+  if (first.terms.size() < 2 || first.joint_evidence <= result.joint_evidence) return;
+  if (AreInPieces(problem, first.terms)) return;
+  problem.most_causes = std::max(plain.most_causes, static_cast<int>(std::ssize(first.terms)) + 1);
+  Forward(problem, first);
+  Settle(problem, first);
+  first.first_statistic = result.first_statistic;
+  first.alone = result.alone;
+  result = std::move(first);
 }
 
 }  // namespace
 
 SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
-                    const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold, int most_causes) {
-  const Problem problem{run,        noise,     projector,   scanner,
-                        log_priors, threshold, most_causes, noise.Whiten(run, run.residual)};
+                    const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold, int most_causes,
+                    bool largest_only) {
+  const Problem problem{run,       noise,       projector,    scanner,
+                        log_priors, threshold,  most_causes,  largest_only, noise.Whiten(run, run.residual)};
   SearchResult result;
   Forward(problem, result);
-  Settle(problem, result);
-  TryCausesFirst(problem, result);
+  if (!largest_only) {
+    Settle(problem, result);
+    TryFirst(problem, [](const Family& f) { return f.takes_any_course; }, tuning::kMostBeforeCourses, result);
+    TryFirst(problem, [](const Family& f) { return f.kind == Kind::kUnknown; }, most_causes, result);
+  }
   MeasureShares(problem, result.terms);
   EstimateTerms(run, noise, projector, scanner, problem.white, result.terms);
-  if (HasNamedWave(scanner.Families(), result.terms))
+  if (!largest_only && HasNamedWave(scanner.Families(), result.terms))
     result.overtones = ProbabilityOfOvertones(run, noise, projector, scanner.Families(), problem.white, result.terms,
                                               ColumnsWithout(problem, result.terms, -1));
   return result;

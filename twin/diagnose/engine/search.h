@@ -35,7 +35,12 @@ struct SearchResult {
 /// Finds up to `most_causes` simultaneous causes: scan, take the most probable, refine its shape, scan what
 /// remains; then select every term again with the others accepted (swaps), and drop those that are not
 /// needed any more.
+///
+/// @param largest_only  Only the first cause with a name is wanted, and what it stands behind: the largest first, and of
+/// what explains nearly as much the one that has a name. As long as much is not explained, shapes without one follow
+/// parts of it. Nothing is selected again.
 SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
-                    const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold, int most_causes);
+                    const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold, int most_causes,
+                    bool largest_only = false);
 
 }  // namespace twinbench::diagnose

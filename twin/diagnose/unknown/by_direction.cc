@@ -6,6 +6,7 @@
 #include "twin/diagnose/engine/candidates.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/diagnose/unknown/collector.h"
+#include "twin/model/motion.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose::unknown {
@@ -47,7 +48,7 @@ void AddByDirection(Collector& collect) {
   for (const Angle& angle : d.angles) {
     if (!angle.is_turned_by_motion) continue;
     for (const Eigen::VectorXd& sense : d.senses) {
-      collect.AddModulated("direction harmonic", angle, tuning::kModulatedOrders, sense,
+      collect.AddModulated("direction harmonic", angle, tuning::kDirectionOrders, sense,
                            "direction times order {} synchronous with " + angle.name + ", odd in direction");
       if (&sense == &d.senses.front()) collect.AreHarmonics(angle, Following({}, "direction"));
     }
@@ -71,7 +72,7 @@ void AddBySpeed(Collector& collect) {
   collect.Add("speed", speed, "proportional to the speed, even in direction");
   is_constant("speed");
   collect.Add("speed", v.cwiseProduct(speed), "proportional to the square of the speed, odd in direction");
-  collect.Add("speed", model::Unit(model::Acceleration(d.course, d.velocity)), "proportional to the acceleration");
+  collect.Add("speed", model::Unit(model::RateOfChange(d.course, d.velocity)), "proportional to the acceleration");
   if (d.angles.empty()) return;
   const Angle& angle = d.angles.front();
   const std::string order = "order {} synchronous with " + angle.name;

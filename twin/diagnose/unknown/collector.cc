@@ -184,6 +184,11 @@ void Collector::GoByTime() {
   for (std::size_t k = last_; k < families_.size(); ++k) families_[k].goes_by_time = true;
 }
 
+void Collector::TakeAnyCourse() {
+  GoByTime();
+  for (std::size_t k = last_; k < families_.size(); ++k) families_[k].takes_any_course = true;
+}
+
 void Collector::AreHarmonics(const Angle& angle, const EffectSettings& factor) {
   if (angle.by.empty()) return;
   Are([by = angle.by, factor](const Eigen::VectorXd&, int g) {

@@ -50,6 +50,8 @@ class Collector {
   void Are(const Products& products);
   /// One value at a time, whatever the bench does.
   void GoByTime();
+  /// The same, and nearly any values.
+  void TakeAnyCourse();
   /// Whole orders of an angle, whose size follows what `factor` says.
   void AreHarmonics(const Angle& angle, const EffectSettings& factor);
 

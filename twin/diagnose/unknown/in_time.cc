@@ -43,14 +43,14 @@ void AddWander(Collector& collect) {
         return model::InEach(model::CosineModes(share, g + 1, false).rightCols(1), stretches);
       },
       [](int g) { return fmt::format("slow drift, function of time, {} half periods per run", g + 1); });
-  collect.GoByTime();
+  collect.TakeAnyCourse();
   collect.Add("wander", modes(tuning::kWanderTogether, false), "slow drift, function of time");
-  collect.GoByTime();
+  collect.TakeAnyCourse();
   collect.Add(
       "wander",
       modes(std::max(tuning::kWanderTogether + 1, tuning::kWalkModes / static_cast<int>(stretches.cols())), true),
       "random walk, function of time");
-  collect.GoByTime();
+  collect.TakeAnyCourse();
   const Eigen::MatrixXd setups = model::Times(model::Indicators(d.course.setup), d.moved);
   if (stretches.cols() > 1 || setups.cols() < 2) return;
   collect.Add("wander", model::Times(setups, model::ElapsedShare(d.course)),
@@ -69,6 +69,7 @@ void AddTones(Collector& collect) {
       },
       &frequency,
       [design = collect.shared()](const Eigen::VectorXd& f_Hz) { return design->series.ToneAt(f_Hz[0]); });
+  collect.GoByTime();
   if (model::Indicators(series.stretch).cols() > 1) return;
   collect.Are([](const Eigen::VectorXd& f_Hz, int) {
     return WaveOf(SignalOf("tone", "", {{"frequency", f_Hz[0]}}));
@@ -83,6 +84,7 @@ void AddSteps(Collector& collect) {
   collect.Are([onsets = series.onsets](const Eigen::VectorXd&, int g) {
     return ColumnOf(SignalOf("step", "", {{"at_reading", onsets[static_cast<std::size_t>(g)]}}));
   });
+  collect.GoByTime();
 }
 
 /// A stretch of readings in which something touches, and over how many it fades away behind them.
@@ -186,7 +188,7 @@ void AddTouches(Collector& collect) {
                        numbers[static_cast<std::size_t>(touch.first)],
                        numbers[static_cast<std::size_t>(touch.end - 1)]);
   });
-  collect.GoByTime();
+  collect.TakeAnyCourse();
 }
 
 /// What dies out behind every mounting, or creeps on as a logarithm.
@@ -264,6 +266,7 @@ void AddTrends(Collector& collect) {
     signal.times = factor.times;
     return ColumnOf(signal);
   });
+  collect.GoByTime();
   if (!d.angles.empty() && d.angles.front().first_unfree > 0)
     collect.Add("trend", model::Unit(d.angles.front().rad),
                 "linear trend synchronous with " + d.angles.front().name + ", same in both directions");

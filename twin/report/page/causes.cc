@@ -84,7 +84,12 @@ std::vector<CauseGroup> GroupsOf(const json& diagnosis) {
   for (std::size_t k = 0; k < causes.size(); ++k) {
     const json& cause = causes[k];
     const double share = k < shares.size() ? shares[k] : kNaN;
-    const auto of = std::ranges::find_if(first, [&](std::size_t f) { return AreAlike(causes[f], cause) || AreAlike(cause, causes[f]); });
+    // Only one of a group is there: together they are no more probable than that.
+    const auto is_of = [&](std::size_t f) {
+      const double together = groups[static_cast<std::size_t>(std::ranges::find(first, f) - first.begin())].probability + ProbabilityOf(cause);
+      return together <= 1.000001 && (AreAlike(causes[f], cause) || AreAlike(cause, causes[f]));
+    };
+    const auto of = std::ranges::find_if(first, is_of);
     if (of == first.end()) {
       first.push_back(k);
       groups.push_back({NameOfCause(cause), ParametersOf(cause), TextAt(cause, "next_measurement"), ProbabilityOf(cause), share});

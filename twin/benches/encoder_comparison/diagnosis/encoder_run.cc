@@ -12,11 +12,14 @@
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/core/distributions.h"
 #include "twin/core/errors.h"
+#include "twin/core/reading_clock.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/noise_estimate.h"
+#include "twin/diagnose/engine/repeats.h"
 #include "twin/diagnose/mean_of_runs.h"
 #include "twin/diagnose/redundancy.h"
 #include "twin/model/course.h"
+#include "twin/model/motion.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -27,18 +30,6 @@ std::vector<Reading> Chosen(const std::vector<Reading>& readings, const std::vec
   std::vector<Reading> chosen;
   for (const int k : used) chosen.push_back(readings[static_cast<std::size_t>(k)]);
   return chosen;
-}
-
-/// Fills in velocities that were not recorded, from the readings before and behind of the same pass.
-void DeriveVelocities(Schedule& s) {
-  if (s.velocity_rad_s.array().isFinite().any()) return;
-  const int last = s.Readings() - 1;
-  for (int i = 0; i <= last; ++i) {
-    const int a = i > 0 && s.pass[i - 1] == s.pass[i] ? i - 1 : i;
-    const int b = i < last && s.pass[i + 1] == s.pass[i] ? i + 1 : i;
-    const double step_s = s.time_s[b] - s.time_s[a];
-    s.velocity_rad_s[i] = step_s > 0.0 ? (s.reference_rad[b] - s.reference_rad[a]) / step_s : 0.0;
-  }
 }
 
 /// Offsets of the set-ups: rows x set-ups.
@@ -86,6 +77,28 @@ Eigen::VectorXd RelativeNoise(const std::vector<Reading>& used) {
   return (usual / Eigen::Map<const Eigen::ArrayXd>(samples.data(), std::ssize(samples))).sqrt();
 }
 
+/// By how much readings scatter from one to the next, all counted.
+double Roughness_rad(const LinearRun& run) {
+  double sum = 0.0, count = 0.0;
+  for (Eigen::Index i = 2; i < run.residual.size(); ++i) {
+    if (run.schedule.pass[static_cast<std::size_t>(i)] != run.schedule.pass[static_cast<std::size_t>(i - 2)]) continue;
+    sum += std::pow(run.residual[i] - 2.0 * run.residual[i - 1] + run.residual[i - 2], 2) / 6.0;
+    count += 1.0;
+  }
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+/// Angles of the reference that are rounded make an error in steps, and its differences are zero more often than not:
+/// then their median says nothing.
+/// @return that error where it is what the readings scatter by; 0 otherwise.
+double RoundedReference_rad(const LinearRun& run, double noise_rad) {
+  constexpr double kNothing = 0.3, kAlike = 2.0;
+  const double roughness_rad = Roughness_rad(run);
+  const double rounded_rad = CommonStep(run.schedule.reference_rad) / std::sqrt(12.0);
+  const bool is_alike = rounded_rad > roughness_rad / kAlike && rounded_rad < roughness_rad * kAlike;
+  return noise_rad < kNothing * roughness_rad && is_alike ? rounded_rad : 0.0;
+}
+
 /// Readings that are rounded err by no less than that, and all by the arithmetic of many turns. Where one is the
 /// mean of several, only what rounding repeats in all of them is left of it.
 void SetNoise(LinearRun& run, const EncoderSettings& bench, const std::vector<Reading>& used) {
@@ -96,9 +109,10 @@ void SetNoise(LinearRun& run, const EncoderSettings& bench, const std::vector<Re
   run.sigma_stated = bench.device.noise_known && bench.device.noise_rad > 0.0;
   const Eigen::VectorXd relative = RelativeNoise(used);
   const double count = bench.encoder_procedure.ReadingsAtOnce();
-  const double noise_rad = run.sigma_stated
-                               ? DeviceOfMeans(bench).noise_rad
-                               : std::max(EstimateNoise_rad(run.schedule, run.residual, relative), kArithmetic_rad);
+  double noise_rad = run.sigma_stated
+                         ? DeviceOfMeans(bench).noise_rad
+                         : std::max(EstimateNoise_rad(run.schedule, run.residual, relative), kArithmetic_rad);
+  if (!run.sigma_stated) noise_rad = std::max(noise_rad, RoundedReference_rad(run, noise_rad));
   const RoundingInMean rounding_rad2 = RoundingOf(step_rad, std::sqrt(count) * noise_rad, count);
   run.rounding = std::sqrt(12.0 * rounding_rad2.repeated);
   const double rounded_rad = std::sqrt(rounding_rad2.all);
@@ -143,7 +157,9 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   run.bench = scenario.bench;
   const std::vector<Reading> used = Chosen(readings, comparison.used);
   run.schedule = model::CourseOf(used);
-  if (EncoderOf(scenario).encoder_procedure.kind == "sweep") DeriveVelocities(run.schedule);
+  const bool is_recorded = run.schedule.velocity_rad_s.array().isFinite().any();
+  if (EncoderOf(scenario).encoder_procedure.kind == "sweep" && !is_recorded)
+    run.schedule.velocity_rad_s = model::RateOfChange(run.schedule, run.schedule.reference_rad);
   run.channels = {"angle"};
   const benches::encoder::AxisUnit told_in = benches::encoder::CoarseUnit(EncoderOf(scenario).device);
   run.unit = told_in.name;
@@ -161,6 +177,8 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   run.residual -= SetUpMeans(encoder.setups, run.residual);
   encoder.context =
       ContextOf(run.schedule, run.schedule.reference_rad + encoder.offset_rad, EncoderOf(scenario).device);
+  encoder.context.has_clock = HasClock(used);
+  run.place = PlacesOf(encoder.context.device_rad, run.schedule.setup);
   SetNoise(run, EncoderOf(scenario), used);
   return encoder;
 }

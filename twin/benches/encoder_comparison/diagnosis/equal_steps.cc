@@ -109,10 +109,15 @@ void TellEqualSteps(DiagnosisRun& result) {
   std::ranges::sort(steps, {}, &Step::at_reading);
   const Count count = CountOf(steps);
   Accepted together = Together(result.accepted, steps, count, result.run);
+  double others = 0.0;
+  for (const Accepted& a : result.accepted) {
+    if (!IsSlip(a)) others += (a.columns * a.amplitudes).squaredNorm();
+  }
+  const bool is_most = (together.columns * together.amplitudes).squaredNorm() > others;
   std::erase_if(result.accepted, IsSlip);
   result.accepted.push_back(std::move(together));
   std::erase_if(d.causes, [](const Cause& cause) { return cause.effect == "slip"; });
-  d.verdict = Verdict::kUnknown;
+  if (is_most || d.causes.empty()) d.verdict = Verdict::kUnknown;
   d.unknown.probability = tuning::kListed;
   d.unknown.signature =
       Words(steps, count, result.run) + (d.unknown.signature.empty() ? "" : " | " + d.unknown.signature);

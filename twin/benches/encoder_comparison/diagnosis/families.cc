@@ -95,7 +95,9 @@ std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::s
   for (Family& family : families) {
     if (Has(doubled, family.effect)) family.listed = tuning::kListedDoubled;
   }
-  std::ranges::move(UnknownFamilies(encoder, series, plausible_rad), std::back_inserter(families));
+  std::vector<Family> unknown = UnknownFamilies(encoder, series, plausible_rad);
+  if (Has(excluded, "harmonic")) std::erase_if(unknown, [](const Family& family) { return family.effect == "harmonic"; });
+  std::ranges::move(unknown, std::back_inserter(families));
   return families;
 }
 

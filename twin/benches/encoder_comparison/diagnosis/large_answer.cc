@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 #include "twin/diagnose/tuning.h"
@@ -18,33 +19,47 @@ Accepted AcceptedOf(const LargeCause& cause) {
   return accepted;
 }
 
-/// Power of what has no name beside the large causes, in units of the noise that was thought of at first.
+/// Of what rows show beside their mean.
+double PowerOf(const Eigen::VectorXd& shown) {
+  return (shown.array() - shown.mean()).matrix().squaredNorm();
+}
+
+/// Power of what has no name beside the large causes, as it is fitted with them.
 double UnnamedOf(const LargeCauses& large) {
   const Searched& last = large.Last();
   double unnamed = 0.0;
   for (const Term& term : last.analysis.found.terms) {
     const Family& family = last.families[static_cast<std::size_t>(term.family)];
-    if (family.kind == Kind::kUnknown) unnamed += term.explained;
+    if (family.kind == Kind::kUnknown) unnamed += PowerOf(term.columns * term.amplitudes);
   }
-  const double sigma = last.encoder.run.sigma.mean() / large.first->encoder.run.sigma.mean();
-  return unnamed * sigma * sigma;
+  return unnamed;
 }
 
-/// What has no name beside the large causes is said; it makes an unknown of the whole only if it is no small part.
-/// A cause may be no more than a piece of it: it is as sure as it is large beside it.
+/// How sure a size is that it is one, beside all else and with the memory that the rest has; an onset may have been at
+/// any reading.
+double ChanceOf(const LargeCause& cause, double readings) {
+  const double deviations = Deviations(cause.effect);
+  const bool is_event = cause.effect.parameters.contains("at_reading");
+  const double log_odds = 0.5 * deviations * deviations - (is_event ? 1.0 : 0.5) * std::log(readings);
+  return 1.0 / (1.0 + std::exp(-log_odds));
+}
+
+/// What has no name beside the large causes is said; it makes an unknown of the whole only if it explains more than
+/// they do. Then a cause may be no more than a piece of it: it is as sure as it is large beside it.
 void WeighTheRest(const LargeCauses& large, Diagnosis& d, std::vector<Cause>& causes) {
   if (d.verdict != Verdict::kUnknown) return;
   const double unnamed = UnnamedOf(large);
-  double all = unnamed;
-  for (const LargeCause& cause : large.causes) all += cause.explained;
+  double named = 0.0;
+  for (const LargeCause& cause : large.causes) named += PowerOf(cause.shown);
+  if (unnamed <= named) {
+    d.verdict = Verdict::kNamed;
+    return;
+  }
   auto at = causes.begin();
   for (const LargeCause& cause : large.causes) {
     for (std::size_t k = 0; k < cause.causes.size(); ++k, ++at)
-      at->probability *= cause.explained / (cause.explained + unnamed);
+      at->probability *= PowerOf(cause.shown) / (PowerOf(cause.shown) + unnamed);
   }
-  if (unnamed > tuning::kSmallRest * all) return;
-  d.notes.push_back(fmt::format("beside these, significant but small: {}", d.unknown.signature));
-  d.verdict = Verdict::kNamed;
 }
 
 }  // namespace
@@ -57,6 +72,8 @@ void AddLargeCauses(const LargeCauses& large, DiagnosisRun& result) {
   std::vector<Accepted> accepted;
   for (const LargeCause& cause : large.causes) {
     causes.insert(causes.end(), cause.causes.begin(), cause.causes.end());
+    for (auto member = causes.end() - std::ssize(cause.causes); member != causes.end(); ++member)
+      member->probability *= ChanceOf(cause, large.first->encoder.run.Rows());
     accepted.push_back(AcceptedOf(cause));
   }
   WeighTheRest(large, d, causes);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/format.h"
@@ -22,6 +23,22 @@ void MakePositive(EffectSettings& effect) {
   if (amplitude->second < 0.0) phase->second += units::kPi;
   amplitude->second = std::abs(amplitude->second);
   phase->second -= units::turn * std::floor(phase->second / units::turn);
+}
+
+/// Effects that show in the same orders as one that is in the twin: they would be fitted against each other.
+std::vector<std::string> InItsPlace(const EffectSettings& effect, int signal_periods) {
+  using Names = std::vector<std::string>;
+  static const std::vector<Names> kOnce = {{"eccentricity", "signal_offset"},
+                                           {"ellipticity", "amplitude_mismatch", "quadrature_error"}};
+  // Signals that are cut off show in these orders of their period; beside one that is free the others are no more than
+  // two orders.
+  constexpr int kOrdersOfClipping = 4;
+  const auto order = effect.parameters.find("order");
+  const bool is_order = order != effect.parameters.end();
+  if (is_order && std::remainder(order->second, kOrdersOfClipping * signal_periods) == 0.0) return {"signal_clipping"};
+  if (signal_periods != 1) return {};
+  const auto with = std::ranges::find_if(kOnce, [&](const Names& names) { return std::ranges::count(names, effect.name) > 0; });
+  return with == kOnce.end() ? Names{} : *with;
 }
 
 }  // namespace
@@ -92,21 +109,26 @@ std::optional<LargeCause> LargestNamed(const Searched& searched) {
   return largest;
 }
 
-int NamedLikeUnnamed(const Searched& searched) {
-  constexpr double kNearly = 0.9;  // of what it explains
-  const Evidence& alone = searched.analysis.found.alone;
-  int best = -1;
-  double unnamed = kLarge * kLarge, named = 0.0;
-  for (int k = 0; k < std::ssize(searched.families); ++k) {
-    const double explained = alone.explained.size() > 0 ? alone.explained(k, 0) : 0.0;
-    if (searched.families[static_cast<std::size_t>(k)].kind == Kind::kUnknown) {
-      unnamed = std::max(unnamed, explained);
-    } else if (explained > named) {
-      named = explained;
-      best = k;
-    }
+std::vector<int> NamedLikeUnnamed(const Searched& searched) {
+  constexpr double kNearly = 0.9, kSame = 1e-6;  // of what it explains; rounding
+  const auto& families = searched.families;
+  const SearchResult& found = searched.analysis.found;
+  const auto is_named = [&](int k) { return families[static_cast<std::size_t>(k)].kind == Kind::kNamed; };
+  const auto is_large_unnamed = [&](const Term& term) {
+    return !is_named(term.family) && term.explained > kLarge * kLarge;
+  };
+  if (std::ranges::none_of(found.terms, is_large_unnamed)) return {};
+  const Eigen::VectorXd explained = found.alone.explained.col(0);
+  double unnamed = 0.0, named = 0.0;
+  for (int k = 0; k < std::ssize(families); ++k) {
+    double& most = is_named(k) ? named : unnamed;
+    most = std::max(most, explained[k]);
   }
-  return named > kNearly * unnamed ? best : -1;
+  std::vector<int> like;
+  for (int k = 0; k < std::ssize(families); ++k) {
+    if (is_named(k) && named > kNearly * unnamed && explained[k] >= (1.0 - kSame) * named) like.push_back(k);
+  }
+  return like;
 }
 
 std::vector<Movable> MovableOf(const std::vector<LargeCause>& causes) {
@@ -127,13 +149,14 @@ std::vector<EffectSettings> EffectsOf(const std::vector<LargeCause>& causes) {
   return effects;
 }
 
-std::vector<std::string> ThatAreOnce(const std::vector<LargeCause>& causes) {
+std::vector<std::string> ThatAreOnce(const std::vector<LargeCause>& causes, int signal_periods) {
   constexpr std::array kSeveral = {"periodic", "reference_fault", "slip", "interpolation"};
   std::vector<std::string> once;
   for (const LargeCause& cause : causes) {
     for (const Cause& c : cause.causes) {
       if (std::ranges::count(kSeveral, c.effect) == 0) once.push_back(c.effect);
     }
+    std::ranges::move(InItsPlace(cause.effect, signal_periods), std::back_inserter(once));
   }
   return once;
 }

@@ -48,9 +48,9 @@ LargeCause LedBy(std::vector<Cause> causes, std::size_t leader, const std::strin
 /// The largest of what has a name, the one that was fitted first.
 std::optional<LargeCause> LargestNamed(const Searched& searched);
 
-/// A large shape without a name may be a cause whose signature bends: the one that explains nearly as much alone.
-/// @return its number among the families; -1 if there is none.
-int NamedLikeUnnamed(const Searched& searched);
+/// A large shape without a name may be a cause whose signature bends: those that explain nearly as much alone.
+/// @return their numbers among the families, one that explains the same as the first behind it; empty if there is none.
+std::vector<int> NamedLikeUnnamed(const Searched& searched);
 
 /// What may be asked for other values: not a whole number, nor how stops were reached, which a longer crossing
 /// imitates.
@@ -59,7 +59,8 @@ std::vector<Movable> MovableOf(const std::vector<LargeCause>& causes);
 std::vector<EffectSettings> EffectsOf(const std::vector<LargeCause>& causes);
 
 /// Those of which a bench has no second one. What is not left when it is in the twin was never there twice.
-std::vector<std::string> ThatAreOnce(const std::vector<LargeCause>& causes);
+/// @param signal_periods  Of the device, a turn.
+std::vector<std::string> ThatAreOnce(const std::vector<LargeCause>& causes, int signal_periods);
 
 /// How many of its uncertainties the size of a cause is away from nothing: from zero, or from signals that are
 /// whole.

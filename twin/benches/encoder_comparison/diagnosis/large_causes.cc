@@ -1,7 +1,10 @@
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 
 #include <algorithm>
+#include <complex>
+#include <map>
 #include <optional>
+#include <string>
 
 #include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
@@ -19,6 +22,10 @@ constexpr std::size_t kMostLarge = 16;
 /// An angle device may well have an error of many orders. As long as something large is found, the first few are
 /// enough: what a large cause leaves to first order is explained by shapes that are gone once the twin has it.
 constexpr int kMostCauses = 8, kFewCauses = 3;
+/// What a cause has to explain beside the others, in units of noise: no chance.
+constexpr double kBetter = 25.0;
+/// Share of what a cause explains to which no device is as its formula: less does not tell one cause from another.
+constexpr double kAsExact = 1e-4;
 
 Scenario With(Scenario scenario, const std::vector<EffectSettings>& effects) {
   scenario.effects.insert(scenario.effects.end(), effects.begin(), effects.end());
@@ -72,9 +79,11 @@ class Search {
     Begin(known.empty() ? kFewCauses : 0);
     if (!TakeKnown(std::move(known))) TakeSignals();
     TakeAll();
+    LeaveToLarge();
     DropNeedless();
     EndTies();
     MoveBesideTheRest();
+    TryTheUnnamed();
     TellWhatEachShows();
     return std::move(large_);
   }
@@ -94,6 +103,7 @@ class Search {
   AnalysisOptions For(int most_causes) const {
     AnalysisOptions how = how_;
     how.most_causes = most_causes;
+    how.largest_only = most_causes < kMostCauses;
     return how;
   }
 
@@ -141,7 +151,6 @@ class Search {
     double power = PowerOf(asked.left);
     if (causes.empty() || causes.front().effect.name != "signal_clipping" || !(power < 0.5 * power_)) return;
     for (std::size_t k = 0; k < causes.size(); ++k) causes[k].explained = PowerWithout(k, asked) - power;
-    for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, false, causes, asked, power);
     Accept(asked, std::move(causes), kFewCauses);
   }
 
@@ -170,12 +179,11 @@ class Search {
     } while (SearchOn());
   }
 
-  /// For more causes, where the last search ended at a few, or took for noise what more of them would explain.
-  /// @return false if it did not.
+  /// For all that is left, where the last search ended at the first.
+  /// @return false if there was no need.
   bool SearchOn() {
     std::unique_ptr<Searched>& last = large_.last ? large_.last : large_.first;
-    const bool is_cut = std::ssize(last->analysis.found.terms) == most_searched_ || !last->analysis.repairs.empty();
-    if (!is_cut || most_searched_ == kMostCauses) return false;
+    if (most_searched_ == kMostCauses || last->analysis.found.terms.empty()) return false;
     last->analysis.scanner.reset();
     last = SearchIn(std::move(last->encoder), Excluded(large_.causes), For(kMostCauses));
     most_searched_ = kMostCauses;
@@ -183,7 +191,9 @@ class Search {
   }
 
   std::vector<std::string> Excluded(const std::vector<LargeCause>& causes) const {
-    std::vector<std::string> excluded = ThatAreOnce(causes);
+    // A name that is given away leaves its orders to no shape without one.
+    std::vector<std::string> excluded = ThatAreOnce(causes, EncoderOf(scenario_).device.signal_periods);
+    if (!excluded.empty() && !IsExcluded(options_, "periodic")) excluded.push_back("harmonic");
     excluded.insert(excluded.end(), options_.excluded.begin(), options_.excluded.end());
     return excluded;
   }
@@ -225,17 +235,20 @@ class Search {
   bool TakeNext() {
     const std::optional<LargeCause> next = LargestNamed(large_.Last());
     if (next && Take(*next)) return true;
-    const int like = NamedLikeUnnamed(large_.Last());
-    if (like < 0) return false;
     const Searched& last = large_.Last();
-    const Cause cause =
-        CauseFrom(last.families[static_cast<std::size_t>(like)], last.analysis.found.alone.grid_point(like, 0),
-                  last.encoder.run.residual, large_.first->encoder.run.sigma, *projector_);
-    return Take(LedBy({cause}, 0, last.encoder.run.bench));
+    std::vector<Cause> like;
+    for (const int k : NamedLikeUnnamed(last)) {
+      like.push_back(CauseFrom(last.families[static_cast<std::size_t>(k)], last.analysis.found.alone.grid_point(k, 0),
+                               last.encoder.run.residual, large_.first->encoder.run.sigma, *projector_));
+    }
+    for (Cause& cause : like) cause.probability /= static_cast<double>(like.size());
+    return !like.empty() && Take(LedBy(std::move(like), 0, last.encoder.run.bench));
   }
 
   bool Take(const LargeCause& next) {
     std::vector<LargeCause> causes = large_.causes;
+    const auto same = std::ranges::find_if(causes, [&](const LargeCause& cause) { return IsOneWave(cause, next); });
+    if (same != causes.end()) return TakeSum(static_cast<std::size_t>(same - causes.begin()), next);
     causes.push_back(next);
     // Of a cause whose size is not known there is nothing to be asked.
     if (MovableOf({next}).empty()) return false;
@@ -243,36 +256,57 @@ class Search {
     double power = PowerOf(asked.left);
     if (!(power < power_) || !IsHeld(asked.effects.back())) return false;
     causes.back().explained = power_ - power;
-    for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, false, causes, asked, power);
     Accept(asked, std::move(causes), kFewCauses);
     return true;
   }
 
-  /// Causes that are one to first order are not beside large ones: the one that leaves least is in the twin.
-  /// @param at_end  All causes are there: what leaves more than another is no tie any more.
-  void TryOthers(std::size_t k, bool at_end, std::vector<LargeCause>& causes, AskedAgain& asked,
-                 double& power) const {
-    if (causes.size() < 2) return;
-    std::vector<Cause> as_likely = {causes[k].causes.front()};
-    for (std::size_t j = 1; j < causes[k].causes.size(); ++j) {
-      as_likely.push_back(causes[k].causes[j]);
-      std::vector<LargeCause> changed = causes;
-      if (!LetLead(k, j, asked, changed)) continue;
-      AskedAgain again = Ask(changed);
-      const double left = PowerOf(again.left);
-      constexpr double kBetter = 25.0;  // power, so many units of noise: no chance
-      const double noise = std::max(1.0, std::min(left, power) / projector_->DegreesOfFreedom());
-      if (left > power + kBetter * noise) as_likely.pop_back();
-      if (!(left < power - kBetter * noise)) continue;
-      causes = std::move(changed);
-      asked = std::move(again);
-      power = left;
-      as_likely = {causes[k].causes.front()};
-      if (!at_end) return;
-    }
-    if (!at_end) return;
-    if (as_likely.size() == 1 && causes[k].causes.size() > 1) as_likely.front().probability = tuning::kListed;
-    causes[k].causes = std::move(as_likely);
+  static bool IsOneWave(const LargeCause& a, const LargeCause& b) {
+    const auto order_a = a.effect.parameters.find("order"), order_b = b.effect.parameters.find("order");
+    return a.effect.name == b.effect.name && a.effect.where == b.effect.where &&
+           order_a != a.effect.parameters.end() && order_b != b.effect.parameters.end() &&
+           order_a->second == order_b->second && a.effect.parameters.contains("phase");
+  }
+
+  /// A second wave of the k-th one's order is what that lacks: it was fitted before all was there.
+  /// @return false if that does not explain it.
+  bool TakeSum(std::size_t k, const LargeCause& more) {
+    std::vector<LargeCause> causes = large_.causes;
+    std::map<std::string, double>& wave = causes[k].effect.parameters;
+    const std::complex<double> sum =
+        std::polar(wave.at("amplitude"), wave.at("phase")) +
+        std::polar(more.effect.parameters.at("amplitude"), more.effect.parameters.at("phase"));
+    wave["amplitude"] = std::abs(sum);
+    wave["phase"] = std::arg(sum);
+    const AskedAgain asked = Ask(causes);
+    const double power = PowerOf(asked.left);
+    if (!(power < power_)) return false;
+    causes[k].explained += power_ - power;
+    Accept(asked, std::move(causes), kFewCauses);
+    return true;
+  }
+
+  /// Causes with their sizes as fitted, and what they leave.
+  struct Fitted {
+    std::vector<LargeCause> causes;
+    AskedAgain asked;
+    double power = 0.0;
+
+    double Costs(double noise) const { return power / noise + kBetter * static_cast<double>(causes.size()); }
+  };
+
+  /// @param causes  Those that the fit makes needless are dropped.
+  Fitted FittedWith(std::vector<LargeCause> causes) const {
+    AskedAgain asked = Ask(causes);
+    while (DropNotHeld(asked, causes)) asked = Ask(causes);
+    const double power = PowerOf(asked.left);
+    return {std::move(causes), std::move(asked), power};
+  }
+
+  /// With the j-th member of the k-th tie in the twin.
+  std::optional<Fitted> FittedLedBy(std::size_t k, std::size_t j, const Fitted& now) const {
+    std::vector<LargeCause> causes = now.causes;
+    if (!LetLead(k, j, now.asked, causes)) return {};
+    return FittedWith(std::move(causes));
   }
 
   /// Puts the j-th member of the k-th tie into the twin instead of the first, with the size that the others leave
@@ -297,23 +331,87 @@ class Search {
     return !MovableOf({causes[k]}).empty();
   }
 
-  void EndTies() {
-    std::vector<LargeCause> causes = large_.causes;
-    AskedAgain asked;
-    asked.effects = EffectsOf(causes);
-    double power = power_;
-    for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, true, causes, asked, power);
-    if (power < power_) {
-      Accept(asked, std::move(causes), kMostCauses);
-    } else {
-      large_.causes = std::move(causes);
+  /// How many readings say as much as one would of white noise: what no cause explains goes on from one to the next.
+  double Memory(const Eigen::VectorXd& left) const {
+    const std::vector<int>& pass = large_.first->encoder.run.schedule.pass;
+    double products = 0.0, squares = 0.0;
+    for (Eigen::Index i = 1; i < left.size(); ++i) {
+      if (pass[static_cast<std::size_t>(i)] != pass[static_cast<std::size_t>(i - 1)]) continue;
+      products += left[i] * left[i - 1];
+      squares += 0.5 * (left[i] * left[i] + left[i - 1] * left[i - 1]);
     }
+    constexpr double kMost = 0.999;
+    const double rho = squares > 0.0 ? std::clamp(products / squares, 0.0, kMost) : 0.0;
+    if (rho < 3.0 / std::sqrt(static_cast<double>(left.size()))) return 1.0;  // by chance
+    return (1.0 + rho) / (1.0 - rho);
+  }
+
+  /// @param ties  By cause, the members that explain as much as the one that leads it now.
+  /// @return the first that is clearly better led by another one.
+  std::optional<Fitted> BetterLed(const Fitted& now, std::vector<std::vector<Cause>>& ties) const {
+    ties.clear();
+    for (std::size_t k = 0; k < now.causes.size(); ++k) {
+      ties.push_back({now.causes[k].causes.front()});
+      for (std::size_t j = 1; j < now.causes[k].causes.size(); ++j) {
+        std::optional<Fitted> other = FittedLedBy(k, j, now);
+        if (!other) continue;
+        const double noise = std::max(Memory(now.asked.left) * std::max(1.0, std::min(other->power, now.power) / projector_->DegreesOfFreedom()),
+                                      kAsExact * now.causes[k].explained / kBetter);
+        const double more = other->Costs(noise) - now.Costs(noise);
+        if (more < -0.5 * kBetter) return other;
+        if (more <= kBetter) ties.back().push_back(now.causes[k].causes[j]);
+      }
+    }
+    return {};
+  }
+
+  /// Causes that are one to first order are not when they are large, or beside large ones. Which of them is in the twin
+  /// is settled with all causes there: what one lacks would be taken for another cause before. Plain waves are, unless
+  /// another member leaves less or makes a cause needless.
+  void EndTies() {
+    if (large_.causes.empty()) return;
+    Fitted now = FittedWith(large_.causes);
+    std::vector<std::vector<Cause>> ties;
+    bool is_changed = false;
+    while (std::optional<Fitted> better = BetterLed(now, ties)) {
+      now = *std::move(better);
+      is_changed = true;
+    }
+    for (std::size_t k = 0; k < now.causes.size(); ++k) {
+      if (ties[k].size() == 1 && now.causes[k].causes.size() > 1) ties[k].front().probability = tuning::kListed;
+      now.causes[k].causes = std::move(ties[k]);
+    }
+    if (is_changed) {
+      Accept(now.asked, std::move(now.causes), kMostCauses);
+    } else {
+      large_.causes = std::move(now.causes);
+    }
+  }
+
+  /// A wave of an order that a large cause has is what that lacks beside the others that the last search found; what is
+  /// less than a device is as exact as its formula is no cause.
+  void LeaveToLarge() {
+    if (!large_.last) return;
+    double explained = 0.0;
+    for (const LargeCause& cause : large_.causes) explained += cause.explained;
+    const auto is_of_large = [this](const Term& term) {
+      const Family& family = large_.last->families[static_cast<std::size_t>(term.family)];
+      return std::ranges::any_of(large_.causes, [&](const LargeCause& cause) {
+        const auto order = cause.effect.parameters.find("order");
+        return order != cause.effect.parameters.end() && cause.effect.name == family.effect && term.shape.size() == 1 &&
+               order->second == term.shape[0];
+      });
+    };
+    std::erase_if(large_.last->analysis.found.terms,
+                  [&](const Term& term) { return term.explained < kAsExact * explained || is_of_large(term); });
   }
 
   /// What stood for something that was found later is not kept.
   void DropNeedless() {
+    if (large_.causes.empty()) return;
+    const double deviations = tuning::kHeadline * std::sqrt(Memory(AskOf(Beside(), large_.causes).left));
     std::vector<LargeCause> kept = large_.causes;
-    std::erase_if(kept, [](const LargeCause& cause) { return !IsHeld(cause.effect); });
+    std::erase_if(kept, [&](const LargeCause& cause) { return !(Deviations(cause.effect) > deviations); });
     if (kept.empty() || kept.size() == large_.causes.size()) return;
     const AskedAgain asked = Ask(kept);
     Accept(asked, std::move(kept), kMostCauses);
@@ -331,11 +429,44 @@ class Search {
   /// What is small was found with the parameters of the large causes free: these go to where they are best beside
   /// it.
   void MoveBesideTheRest() {
-    const std::vector<Term>& terms = large_.Last().analysis.found.terms;
-    if (large_.causes.empty() || terms.empty()) return;
+    if (large_.causes.empty()) return;
+    AskedAgain asked = AskOf(Beside(), large_.causes);
+    const double more = std::sqrt(Memory(asked.left));
+    for (EffectSettings& effect : asked.effects) {
+      for (auto& [parameter, u] : effect.finding.u) u *= more;
+    }
+    TakeOver(asked, large_.causes);
+  }
+
+  /// Where a shape with a form and no name stands beside large causes, these may be pieces of it: all is searched at once
+  /// as well.
+  void TryTheUnnamed() {
+    const Searched& last = large_.Last();
+    const auto has_form = [&](const Term& term) {
+      const Family& family = last.families[static_cast<std::size_t>(term.family)];
+      return family.kind == Kind::kUnknown && !family.takes_any_course;
+    };
+    if (large_.causes.empty() || std::ranges::none_of(last.analysis.found.terms, has_form)) return;
+    EncoderRun plain = BuildRun(readings_, scenario_, follow_);
+    LeaveFree(large_.targets, plain.run.nuisance);
+    auto searched = SearchIn(std::move(plain), options_.excluded, For(kMostCauses));
+    const std::vector<Term>& terms = searched->analysis.found.terms;
+    Eigen::VectorXd left = searched->encoder.run.residual;
+    for (const Term& term : terms) left -= term.columns * term.amplitudes;
+    const double with = PowerOf(left), without = PowerOf(AskOf(Beside(), large_.causes).left);
+    const double noise = std::max(1.0, std::min(with, without) / projector_->DegreesOfFreedom());
+    const auto fewer = static_cast<double>(std::ssize(large_.causes) + std::ssize(large_.Last().analysis.found.terms) - std::ssize(terms));
+    if (without - with + kBetter * noise * fewer < 0.5 * kBetter * noise) return;
+    large_.causes.clear();
+    large_.last.reset();
+    large_.first = std::move(searched);
+  }
+
+  /// What is left for the large causes once the last search has explained the rest.
+  Eigen::VectorXd Beside() const {
     Eigen::VectorXd rows = large_.first->encoder.run.residual;
-    for (const Term& term : terms) rows -= term.columns * term.amplitudes;
-    TakeOver(AskOf(rows, large_.causes), large_.causes);
+    for (const Term& term : large_.Last().analysis.found.terms) rows -= term.columns * term.amplitudes;
+    return rows;
   }
 
   void TellWhatEachShows() {

@@ -191,6 +191,7 @@ void AddBacklashAtOnce(const Context& context, double finest_rad, Candidates& na
 /// Play with its state; a gap may be crossed over more than one reading.
 void AddBacklash(const Context& context, Candidates& named) {
   const double finest_rad = FinestSpacing_rad(*context), widest_rad = 0.5 * Range_rad(context->reference_rad);
+  if (finest_rad == 0.0 && !context->Moves()) AddBacklashAtOnce(context, RunUp_rad(*context), named);
   if (!(finest_rad > 0.0) || widest_rad < finest_rad) return;
   AddBacklashAtOnce(context, finest_rad, named);
   const double run_up_rad = RunUp_rad(*context);
@@ -250,6 +251,12 @@ void AddMotion(const Context& context, Candidates& named) {
   }
   AddSettling(context, named);
   named.Add(Shown("scale"), {"ratio"}, c.reference_rad);
+  // Over a whole turn a scale closes: what bends there is its orders.
+  constexpr double kNearlyATurn = 0.9;
+  if (!(c.device.turn_m > 0.0) && Range_rad(c.reference_rad) > kNearlyATurn * units::turn) return;
+  Eigen::MatrixXd bent(c.Readings(), 2);
+  bent << c.reference_rad, c.reference_rad.cwiseAbs2() / units::turn;
+  named.AddBent(Shown("scale"), "ratio", bent);
 }
 
 /// A zero that warms up: it goes over to its final value exponentially with the time.
@@ -285,8 +292,10 @@ std::vector<Family> NamedFamilies(const Context& context, const TimeSeries& seri
   AddPeriodic(*context, named);
   AddSignals(context, plausible_rad, named);
   AddMotion(context, named);
-  named.AddDrift(Shown("drift"), "rate", context->since_start_s);
-  AddWarmUp(context, named);
+  if (context->has_clock) {
+    named.AddDrift(Shown("drift"), "rate", context->since_start_s);
+    AddWarmUp(context, named);
+  }
   named.AddStep(Shown("slip"), "step", series);
   std::vector<Family> families = named.Take();
   for (Family& family : families) SetSizes(plausible_rad, family);

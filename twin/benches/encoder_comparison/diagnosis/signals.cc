@@ -78,7 +78,10 @@ double RunUp_rad(const SignalContext& context) {
     const double step_rad = std::abs(context.reference_rad[i] - context.reference_rad[i - 1]);
     if (context.pass[i] == context.pass[i - 1] && step_rad > 0.0) steps_rad.push_back(step_rad);
   }
-  return steps_rad.empty() ? 0.0 : 0.5 * Median(std::move(steps_rad));
+  if (!steps_rad.empty()) return 0.5 * Median(std::move(steps_rad));
+  // At one place from both sides: from farther away than any gap is wide.
+  const auto& d = context.direction;
+  return std::ranges::count(d, 1) > 0 && std::ranges::count(d, -1) > 0 ? 0.5 * units::turn : 0.0;
 }
 
 Eigen::VectorXd Standing_s(const SignalContext& c) {

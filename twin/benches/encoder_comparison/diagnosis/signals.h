@@ -21,6 +21,7 @@ struct SignalContext {
   Eigen::VectorXd device_rad;      // angle of the device's scale, without its errors
   Eigen::VectorXd velocity_rad_s;  // zero where it was not recorded
   DeviceSettings device;
+  bool has_clock = true;  // false: times count the rows
 
   Eigen::Index Readings() const { return reference_rad.size(); }
   bool Moves() const { return velocity_rad_s.cwiseAbs().maxCoeff() > 0.0; }
@@ -62,7 +63,8 @@ Eigen::VectorXd Standing_s(const SignalContext& context);
 /// begins, -1 behind to 1 before; the way between readings is as in Relaxation.
 Eigen::VectorXd Play(const SignalContext& context, double crossed_over_rad, double start, double run_up_rad);
 
-/// Half the usual distance of neighbouring stops, 0 if the shaft moved while it was read.
+/// Half the usual distance of neighbouring stops, half a turn at one place that was reached from both sides, 0 if the
+/// shaft moved while it was read.
 double RunUp_rad(const SignalContext& context);
 
 /// Sine and cosine of phase p as they are: (1 + ratio) sin(p + quadrature) + offset_sin and cos p + offset_cos,

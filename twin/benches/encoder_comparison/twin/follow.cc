@@ -5,6 +5,7 @@
 
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/encoder_comparison/twin/twin.h"
+#include "twin/core/units.h"
 #include "twin/model/signals.h"
 #include "twin/sim/pointwise_follow.h"
 
@@ -30,12 +31,16 @@ Scenario WithoutGraduation(Scenario scenario) {
   return scenario;
 }
 
-/// Half the usual way between the stops that were recorded; none if the shaft moved while it was read.
+/// Half the usual way between the stops that were recorded, from far away to a place that was reached again and again
+/// from both sides; none if the shaft moved while it was read.
 double RunUp_rad(const std::vector<Reading>& record, const Scenario& scenario) {
   const auto moves = [](const Reading& r) { return std::isfinite(r.velocity_rad_s) && r.velocity_rad_s != 0.0; };
   if (EncoderOf(scenario).encoder_procedure.kind != "stops" || std::ranges::any_of(record, moves)) return 0.0;
   const model::Course course = model::CourseOf(record);
-  return 0.5 * model::TypicalStep_rad(course, course.reference_rad);
+  const double step_rad = model::TypicalStep_rad(course, course.reference_rad);
+  const auto is_in = [&course](int direction) { return std::ranges::count(course.direction, direction) > 0; };
+  const bool is_one_place = step_rad == 0.0 && is_in(1) && is_in(-1);
+  return 0.5 * (is_one_place ? units::turn : step_rad);
 }
 
 class EncoderFollow : public PointwiseFollow<AngleExtra> {
