@@ -1,0 +1,178 @@
+#include "twin/import/make_readings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/core/errors.h"
+#include "twin/core/reading_clock.h"
+#include "twin/core/units.h"
+#include "twin/import/one_to_one.h"
+#include "twin/import/said.h"
+#include "twin/import/whole_rows.h"
+
+namespace twinbench::imports {
+namespace {
+
+double MeanOf(const std::vector<double>& values, const Block& block) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = block.begin; i < block.end; ++i) {
+    if (!std::isfinite(values[i])) continue;
+    sum += values[i];
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : std::nan("");
+}
+
+/// Every change of the side begins a pass.
+void NumberApproaches(const std::vector<double>& direction, Course& course) {
+  for (std::size_t i = 1; i < direction.size(); ++i) {
+    const bool turned = direction[i] != direction[i - 1];
+    course.reversals += turned ? 1 : 0;
+    course.pass[i] = course.pass[i - 1] + (turned ? 1 : 0);
+  }
+}
+
+}  // namespace
+
+void Maker::Take(const Session& session, std::size_t most, Imported& imported) {
+  if (session.Rows() < 2) return;
+  const std::string& by = CourseColumn(session);
+  const std::vector<double>& reference = session.value.at(by);
+  const double wrap = FindWrap(reference, map_.course, linear_);
+  const std::vector<double> no_clock;
+  const bool one_place = bench_.compared && IsOnePlace(session);
+  Course course = CourseOf(reference, session.has_clock && !one_place ? session.time_s : no_clock, map_.course, wrap);
+  if (one_place) NumberApproaches(session.value.at("direction"), course);
+  if (bench_.compared) RequireOneToOne(session, course.reference, one_place, bench_, map_);
+  const Blocks cut = CutIntoBlocks(course, session.time_s, most, RestsIn(session, course));
+  Count(session, course, cut);
+  if (course.stop_and_go) {
+    TakeStops(session, course, cut, imported);
+  } else {
+    for (const Block& block : cut.blocks)
+      Append(session, course, block, {block.begin, MeanOf(course.reference, block)}, imported);
+  }
+  ++setup_;
+  first_pass_ = last_pass_ + 1;
+}
+
+/// Of a drive from stop to stop; empty: of another.
+std::vector<Rest> Maker::RestsIn(const Session& session, const Course& course) const {
+  if (!course.stop_and_go) return {};
+  const std::vector<double> none;
+  const std::vector<Rest> rests =
+      RestsOf(course, bench_.compared ? session.value.at(bench_.compared->shown) : none, linear_ ? 0.0 : units::turn);
+  const auto arrived = std::ranges::count(rests, true, &Rest::arrives);
+  if (bench_.compared && arrived < static_cast<std::ptrdiff_t>(kFewestCompared))
+    throw InputError(NameOf(map_, bench_.compared->shown),
+                     fmt::format("the device arrives in {} of the {} rests of {} only", arrived, rests.size(), bench_.compared->reference),
+                     "longer rests; or [course] kind = \"sweep\" in a map, to take it as motion");
+  return rests;
+}
+
+/// By what the course is told: the reference of a bench that compares, else the first column there is.
+std::string Maker::CourseColumn(const Session& session) const {
+  if (bench_.compared) return bench_.compared->reference;
+  for (const ReadingColumn& column : bench_.columns) {
+    if (column.role == ColumnRole::kRequired && session.value.contains(column.name) && UnitAtEnd(column.name))
+      return column.name;
+  }
+  return session.value.begin()->first;
+}
+
+/// The reference stands still, and every row says from which side the axis came to it.
+bool Maker::IsOnePlace(const Session& session) const {
+  const auto [low, high] = std::ranges::minmax(session.value.at(bench_.compared->reference));
+  const auto direction = session.value.find("direction");
+  if (low != high || direction == session.value.end()) return false;
+  const auto comes = [&direction](double from) { return std::ranges::find(direction->second, from) != direction->second.end(); };
+  return comes(1.0) && comes(-1.0);
+}
+
+void Maker::Count(const Session& session, const Course& course, const Blocks& cut) {
+  tally.rows += session.Rows();
+  tally.wraps += course.wraps;
+  tally.reversals += course.reversals;
+  tally.rests += course.rests;
+  tally.fly_backs += course.fly_backs;
+  tally.low = std::min(tally.low, std::ranges::min(course.reference));
+  tally.high = std::max(tally.high, std::ranges::max(course.reference));
+  tally.fastest = std::max(tally.fastest, course.fastest);
+  tally.rest_share = std::max(tally.rest_share, course.rest_share);
+  tally.widest = std::max(tally.widest, cut.widest);
+  tally.usual_rows = std::max(tally.usual_rows, cut.usual_rows);
+  tally.stops = tally.stops && (course.stops || course.stop_and_go);
+  if (cut.left_out > 0) tally.left_out.push_back({cut.left_out, "rows on the way between measuring positions"});
+  std::size_t settling = 0;
+  for (std::size_t k = 0; course.stop_and_go && k < cut.blocks.size(); ++k)
+    settling += k > 0 && cut.blocks[k].rest == cut.blocks[k - 1].rest ? 0 : cut.blocks[k].begin - cut.blocks[k].rest;
+  if (settling > 0) tally.left_out.push_back({settling, "rows at the beginning of rests, before the device stood"});
+  if (cut.moving > 0)
+    tally.left_out.push_back({cut.moving, fmt::format("rows of {} rests of the command at whose end the device was still on its way", cut.moving_rests)});
+}
+
+/// Every rest is a reading; the senses are those from rest to rest.
+void Maker::TakeStops(const Session& session, const Course& course, const Blocks& cut, Imported& imported) {
+  std::vector<double> places;
+  for (const Block& block : cut.blocks) places.push_back(MeanOf(course.reference, block));
+  CourseSettings stops;
+  stops.kind = "stops";
+  const Course from_stop_to_stop = CourseOf(places, {}, stops, 0.0);
+  for (std::size_t k = 0; k < cut.blocks.size(); ++k) {
+    Reading& reading = Append(session, from_stop_to_stop, cut.blocks[k], {k, places[k]}, imported);
+    if (ColumnOf(bench_, "dwell_s"))
+      reading.dwell_s = session.time_s[cut.blocks[k].begin] - session.time_s[cut.blocks[k].rest];
+  }
+}
+
+Reading& Maker::Append(const Session& session, const Course& course, const Block& block, const Place& place,
+                         Imported& imported) {
+  Reading reading;
+  const std::size_t at = place.at;
+  reading.reading = static_cast<int>(imported.readings.size());
+  reading.time = Time(FromSeconds(MeanOf(session.time_s, block)));
+  reading.setup = setup_;
+  reading.pass = first_pass_ + course.pass[at];
+  reading.direction = course.direction[at];
+  if (reading.pass != last_pass_) position_ = 0;
+  last_pass_ = reading.pass;
+  reading.position = position_++;
+  if (block.end - block.begin > 1) reading.n_samples = static_cast<int>(block.end - block.begin);
+  for (const auto& [name, values] : session.value) Fill(name, values, block, reading);
+  if (bench_.compared) ColumnOf(bench_, bench_.compared->reference)->number(reading) = place.reference;
+  if (bench_.compared && !course.stops && std::isfinite(course.velocity[at]))
+    ColumnOf(bench_, bench_.compared->velocity)->number(reading) = MeanOf(course.velocity, block);
+  reading.extra["motion"] = MotionName(course.motion[at]);
+  if (!session.has_clock) reading.extra[kClockColumn] = kNoClock;
+  imported.readings.push_back(std::move(reading));
+  return imported.readings.back();
+}
+
+/// Numbers are means, labels are the first row's.
+void Maker::Fill(const std::string& name, const std::vector<double>& values, const Block& block,
+          Reading& reading) const {
+  const ReadingColumn* column = ColumnOf(bench_, name);
+  if (column && column->number) {
+    column->number(reading) = MeanAngle(name, values, block);
+    return;
+  }
+  const double value = values[block.begin];
+  if (!std::isfinite(value)) return;
+  const std::string text = fmt::format("{}", std::lround(value));
+  if (column && !column->parse(reading, text))
+    throw InputError(NameOf(map_, name), fmt::format("{} is {}", name, text), column->expected);
+}
+
+/// Of a device that starts again at a turn: rows of a block are taken together by the nearest way.
+double Maker::MeanAngle(const std::string& name, const std::vector<double>& values, const Block& block) const {
+  if (!bench_.compared || name != bench_.compared->shown || linear_) return MeanOf(values, block);
+  const double first = values[block.begin];
+  double sum = 0.0;
+  for (std::size_t i = block.begin; i < block.end; ++i) sum += std::remainder(values[i] - first, units::turn);
+  return first + sum / static_cast<double>(block.end - block.begin);
+}
+
+}  // namespace twinbench::imports

@@ -1,0 +1,60 @@
+#include "twin/import/story.h"
+
+#include <fmt/format.h>
+
+#include "twin/core/reading_clock.h"
+#include "twin/core/units.h"
+#include "twin/import/blocks.h"
+#include "twin/import/source.h"
+
+namespace twinbench::imports {
+namespace {
+
+std::string InUnit(double rad, bool linear, double turn_m) {
+  if (linear) return fmt::format("{:.6g} mm", rad / units::turn * turn_m / units::mm);
+  return fmt::format("{:.6g} deg", rad / units::deg);
+}
+
+}  // namespace
+
+std::string StoryOf(const std::vector<Recording>& recordings, const Joined& joined, const Tally& tally,
+                    const std::vector<std::string>& guessed, const Map& map, const Imported& imported) {
+  std::string text;
+  for (const Recording& recording : recordings)
+    text += fmt::format("{}: {}\n", recording.file, recording.layout) + RemarksOn(recording);
+  for (const MappedColumn& column : map.columns) {
+    const std::string& unit = joined.unit.at(column.column);
+    text += fmt::format("  {} <- {}{}\n", BaseOf(column.column), column.expression,
+                        unit.empty() ? "" : " [" + unit + "]");
+  }
+  const auto unit = [&](double rad) { return InUnit(rad, joined.linear, joined.turn_m); };
+  text += tally.low == tally.high
+              ? fmt::format("the reference stands at {}, reached from both sides", unit(tally.low))
+              : fmt::format("the reference goes from {} to {} ({:.4g} turns)", unit(tally.low), unit(tally.high),
+                            (tally.high - tally.low) / units::turn);
+  text += fmt::format(", {} reversals, {} fly-backs, {} rests", tally.reversals, tally.fly_backs, tally.rests);
+  if (tally.fastest > 0.0)
+    text += fmt::format(", usual top speed {}/s, at rest {:.1f} % of the rows", unit(tally.fastest),
+                        100.0 * tally.rest_share);
+  text += "\n";
+  if (tally.wraps > 0) text += fmt::format("the reference starts again {} times: it was unwrapped\n", tally.wraps);
+  text += tally.stops ? "taken as stops: every row, or every rest, is a reading at rest (course.kind)\n"
+                      : "taken as motion that is read while it goes on (course.kind)\n";
+  text += HasClock(imported.readings) ? ClockText(recordings[0].tracks[0]) + "\n"
+                                      : "no clock: the rows are in order, and no duration or rate is known\n";
+  if (tally.widest > 0.0)
+    text += fmt::format(
+        "averaged in blocks of up to {} rows, never across a reversal, a rest or a gap: orders up to {} keep 99 "
+        "%, largest and smallest values of single rows are lost\n",
+        tally.usual_rows, HighestOrderKept(tally.widest));
+  for (const auto* list : {&joined.left_out, &tally.left_out}) {
+    for (const LeftOut& left_out : *list) text += fmt::format("left out: {} {}\n", left_out.count, left_out.why);
+  }
+  for (const auto* list : {&guessed, &joined.remarks}) {
+    for (const std::string& remark : *list) text += "note: " + remark + "\n";
+  }
+  return text + fmt::format("{} readings of {} rows, {} mounting{}, bench {}\n", imported.readings.size(), tally.rows, joined.sessions.size(),
+                            joined.sessions.size() == 1 ? "" : "s", imported.bench);
+}
+
+}  // namespace twinbench::imports

@@ -1,0 +1,65 @@
+#include "twin/import/whole_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace twinbench::imports {
+namespace {
+
+class Rows {
+ public:
+  Rows(const Session& session, const BenchFormat& bench) : session_(session), bench_(bench) {}
+
+  Session Whole(std::vector<LeftOut>& left_out) const {
+    std::vector<std::size_t> kept;
+    std::size_t without = 0, back = 0;
+    double last_s = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < session_.Rows(); ++i) {
+      if (!HasAll(i)) {
+        ++without;
+      } else if (!(session_.time_s[i] > last_s || (session_.time_s[i] == last_s && !session_.has_clock))) {
+        ++back;
+      } else {
+        kept.push_back(i);
+        last_s = session_.time_s[i];
+      }
+    }
+    if (without > 0) left_out.push_back({without, "rows without a time or a value that is needed"});
+    if (back > 0) left_out.push_back({back, "rows whose time does not go on"});
+    return Choose(kept);
+  }
+
+ private:
+  bool HasAll(std::size_t i) const {
+    if (!std::isfinite(session_.time_s[i])) return false;
+    return std::ranges::all_of(session_.value, [&](const auto& entry) {
+      const ReadingColumn* column = ColumnOf(bench_, entry.first);
+      return !column || !column->MustBeThere() || std::isfinite(entry.second[i]);
+    });
+  }
+  Session Choose(const std::vector<std::size_t>& kept) const {
+    Session whole{session_.name, session_.has_clock, {}, {}};
+    for (const std::size_t i : kept) whole.time_s.push_back(session_.time_s[i]);
+    for (const auto& [name, values] : session_.value) {
+      for (const std::size_t i : kept) whole.value[name].push_back(values[i]);
+    }
+    return whole;
+  }
+
+  const Session& session_;
+  const BenchFormat& bench_;
+};
+
+}  // namespace
+
+const ReadingColumn* ColumnOf(const BenchFormat& bench, const std::string& name) {
+  const auto found = std::ranges::find(bench.columns, name, &ReadingColumn::name);
+  return found == bench.columns.end() ? nullptr : &*found;
+}
+
+Session WholeRows(const Session& session, const BenchFormat& bench, std::vector<LeftOut>& left_out) {
+  return Rows(session, bench).Whole(left_out);
+}
+
+}  // namespace twinbench::imports

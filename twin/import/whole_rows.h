@@ -1,0 +1,14 @@
+#pragma once
+
+#include "twin/core/bench_format.h"
+#include "twin/import/join.h"
+
+namespace twinbench::imports {
+
+/// A session without the rows that lack a needed value or a time, or whose time goes back.
+Session WholeRows(const Session& session, const BenchFormat& bench, std::vector<LeftOut>& left_out);
+
+/// Null if the bench has no such column.
+const ReadingColumn* ColumnOf(const BenchFormat& bench, const std::string& name);
+
+}  // namespace twinbench::imports
