@@ -14,6 +14,7 @@
 #include "twin/import/story.h"
 #include "twin/import/unnamed_clock.h"
 #include "twin/import/whole_rows.h"
+#include "twin/import/wrap_gaps.h"
 
 namespace twinbench::imports {
 namespace {
@@ -69,6 +70,13 @@ std::size_t MostReadings(const BenchFormat& bench, const Map& map) {
   return bench.compared ? kCompared : std::numeric_limits<std::size_t>::max();
 }
 
+/// Lengths start again nowhere, unless the map says where.
+Session WithoutGaps(const Session& session, const BenchFormat& bench, const Map& map, const Joined& joined, std::vector<LeftOut>& left_out) {
+  const bool wraps = bench.compared && (!joined.linear || map.course.wrap_rad > 0.0);
+  if (!wraps || session.Rows() < 2) return session;
+  return WithoutWrapGaps(session, ComparedColumns(bench), map.course.wrap_rad > 0.0 ? map.course.wrap_rad : units::turn, left_out);
+}
+
 Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
   std::vector<std::string> guessed;
   TakeReadyMapOfList(recordings, map, guessed);
@@ -81,7 +89,7 @@ Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
   Maker maker(bench, map, joined.linear);
   const std::size_t most = MostReadings(bench, map) / joined.sessions.size();
   for (const Session& session : joined.sessions) {
-    const Session whole = WholeRows(session, bench, maker.tally.left_out);
+    const Session whole = WithoutGaps(WholeRows(session, bench, maker.tally.left_out), bench, map, joined, maker.tally.left_out);
     maker.Take(whole, std::max<std::size_t>(most, kFewest), imported);
   }
   const std::size_t fewest = bench.compared ? kFewestCompared : kFewest;

@@ -27,7 +27,7 @@ class Rows {
     }
     if (without > 0) left_out.push_back({without, "rows without a time or a value that is needed"});
     if (back > 0) left_out.push_back({back, "rows whose time does not go on"});
-    return Choose(kept);
+    return Chosen(session_, kept);
   }
 
  private:
@@ -37,14 +37,6 @@ class Rows {
       const ReadingColumn* column = ColumnOf(bench_, entry.first);
       return !column || !column->MustBeThere() || std::isfinite(entry.second[i]);
     });
-  }
-  Session Choose(const std::vector<std::size_t>& kept) const {
-    Session whole{session_.name, session_.has_clock, {}, {}};
-    for (const std::size_t i : kept) whole.time_s.push_back(session_.time_s[i]);
-    for (const auto& [name, values] : session_.value) {
-      for (const std::size_t i : kept) whole.value[name].push_back(values[i]);
-    }
-    return whole;
   }
 
   const Session& session_;
@@ -56,6 +48,15 @@ class Rows {
 const ReadingColumn* ColumnOf(const BenchFormat& bench, const std::string& name) {
   const auto found = std::ranges::find(bench.columns, name, &ReadingColumn::name);
   return found == bench.columns.end() ? nullptr : &*found;
+}
+
+Session Chosen(const Session& session, const std::vector<std::size_t>& rows) {
+  Session chosen{session.name, session.has_clock, {}, {}};
+  for (const std::size_t i : rows) chosen.time_s.push_back(session.time_s[i]);
+  for (const auto& [name, values] : session.value) {
+    for (const std::size_t i : rows) chosen.value[name].push_back(values[i]);
+  }
+  return chosen;
 }
 
 Session WholeRows(const Session& session, const BenchFormat& bench, std::vector<LeftOut>& left_out) {

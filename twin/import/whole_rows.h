@@ -8,6 +8,9 @@ namespace twinbench::imports {
 /// A session without the rows that lack a needed value or a time, or whose time goes back.
 Session WholeRows(const Session& session, const BenchFormat& bench, std::vector<LeftOut>& left_out);
 
+/// These rows of a session.
+Session Chosen(const Session& session, const std::vector<std::size_t>& rows);
+
 /// Null if the bench has no such column.
 const ReadingColumn* ColumnOf(const BenchFormat& bench, const std::string& name);
 
