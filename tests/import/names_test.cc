@@ -121,6 +121,37 @@ TEST_F(Importing, AddsAColumnOfErrorsToTheAngleBesideIt) {
   EXPECT_THAT(imported.story, HasSubstr("less the reference"));
 }
 
+/// "angle [deg]" at 5 deg a row, and beside it a wave of half a degree, in rad, under the name given.
+std::string AngleAnd(const char* name, const char* before = "", const char* cell = "") {
+  std::string text = fmt::format("{}angle [deg],{} [rad]\n", before, name);
+  for (int i = 0; i < 72; ++i) text += fmt::format("{}{},{:.8f}\n", fmt::format(fmt::runtime(cell), i), 5 * i, 0.5 * std::sin(5.0 * i * units::deg) * units::deg);
+  return text;
+}
+
+TEST_F(Importing, TakesOffsetsCorrectionsAndResidualsByTheirSense) {
+  for (const char* name : {"offset", "error", "deviation", "residual", "Abweichung"}) {
+    const Imported imported = Take(AngleAnd(name));
+    const Reading& r = imported.readings.at(18);
+    EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::deg, 0.5, 1e-6) << name << "\n" << imported.story;
+  }
+  const Imported corrected = Take(AngleAnd("correction"));
+  const Reading& r = corrected.readings.at(18);
+  EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::deg, -0.5, 1e-6) << "a correction has the other sign";
+  EXPECT_KEPT(Take(AngleAnd("offset")).story);
+  EXPECT_KEPT(corrected.story);
+}
+
+/// A time, a row's number and a direction are neither the angle nor the device.
+TEST_F(Importing, FindsAnAngleAndItsOffsetAmongOtherColumns) {
+  for (const auto& [before, cell] : std::vector<std::pair<const char*, const char*>>{{"index,", "{},"}, {"time [s],", "{},"}, {"direction,", "1,"}}) {
+    const Reading r = Take(AngleAnd("offset", before, cell)).readings.at(18);
+    EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::deg, 0.5, 1e-6) << before;
+  }
+  std::string text = "angle,error\n";
+  for (int i = 0; i < 72; ++i) text += fmt::format("{},0.{}\n", i, i % 3);
+  EXPECT_NEAR(Last_deg(Take(text)), 71.0, 1e-9) << "1 deg a row beside an error is no row's number";
+}
+
 /// Random angles beside large steps: their difference, unwrapped, would go wherever the steps go.
 TEST_F(Importing, RefusesAColumnThatHasNothingToDoWithItsReference) {
   std::mt19937_64 random(5);

@@ -61,6 +61,11 @@ bool IsGiven(const Map& map, const std::string& column) {
   return std::ranges::any_of(map.columns, [&column](const MappedColumn& c) { return c.column == column; });
 }
 
+std::string GivenExpression(const Map& map, const std::string& column) {
+  const auto found = std::ranges::find(map.columns, column, &MappedColumn::column);
+  return found == map.columns.end() ? "" : found->expression;
+}
+
 std::string UnitFor(const Column& column, const std::string& target) {
   const auto wanted = UnitAtEnd(target);
   const auto has = UnitNamed(column.unit);

@@ -25,6 +25,9 @@ bool Changes(const Choice& choice);
 
 bool IsGiven(const Map& map, const std::string& column);
 
+/// What the map takes a column of the bench from; empty if nothing.
+std::string GivenExpression(const Map& map, const std::string& column);
+
 /// Columns that the map takes already.
 std::set<std::string> Taken(const Map& map);
 

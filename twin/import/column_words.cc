@@ -92,7 +92,12 @@ int Clearness(const std::string& name, Speaks of) {
 
 bool IsCalledError(const std::string& name) {
   return HasAny(name, std::array{"error", "err", "errors", "deviation", "dev", "abweichung", "fehler", "residual", "diff",
-                                 "difference", "erreur", "écart", "desviación"});
+                                 "difference", "erreur", "écart", "desviación", "offset", "offsets", "residuum", "residuals"}) ||
+         IsCalledCorrection(name);
+}
+
+bool IsCalledCorrection(const std::string& name) {
+  return HasAny(name, std::array{"correction", "corrections", "corr", "korrektur", "compensation", "kompensation", "corrección"});
 }
 
 bool IsCalledDirection(const std::string& name) {

@@ -14,8 +14,11 @@ enum class Speaks { kReference, kDevice };
 /// not at all.
 int Clearness(const std::string& name, Speaks of);
 
-/// "error", "deviation", "Abweichung": what the device shows too much, not where it stands.
+/// "error", "deviation", "offset", "Abweichung", "correction": not where the device stands, but by how much it is off.
 bool IsCalledError(const std::string& name);
+
+/// "correction": what has to be added to what the device shows, the error with the other sign.
+bool IsCalledCorrection(const std::string& name);
 
 /// "direction", "approach", "Richtung", "side".
 bool IsCalledDirection(const std::string& name);

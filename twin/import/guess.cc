@@ -7,6 +7,7 @@
 #include <set>
 
 #include "twin/core/errors.h"
+#include "twin/import/angle_and_error.h"
 #include "twin/import/choices.h"
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
@@ -101,24 +102,6 @@ void TakeReferenceByName(const std::vector<Choice>& columns, const std::vector<s
   if (found) Put(compared[0], *found, "by its name", map, remarks);
 }
 
-/// "angle, error": what the device shows is the sum.
-bool TakeAngleAndError(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
-                       std::vector<std::string>& remarks) {
-  if (compared.size() != 2 || columns.size() != 2 || IsGiven(map, compared[1])) return false;
-  const bool first = IsCalledError(columns[0].name);
-  if (first == IsCalledError(columns[1].name)) return false;
-  const Choice &error = columns[first ? 0 : 1], &angle = columns[first ? 1 : 0];
-  if (!IsGiven(map, compared[0])) Put(compared[0], angle, "the column beside the errors", map, remarks);
-  const std::string& unit = map.columns.back().column == compared[0] ? map.columns.back().unit : "";
-  const auto own = UnitNamed(error.column->unit), sum = UnitNamed(unit);
-  if (!sum || (own && own->dimension != sum->dimension) || map.columns.back().expression != angle.name) return false;
-  const double factor = own ? own->to_SI / sum->to_SI : 1.0;
-  map.columns.push_back({compared[1], fmt::format("[{}] + [{}] * {:.17g}", angle.name, error.name, factor), unit, ""});
-  remarks.push_back(fmt::format("\"{}\" is taken as the device less the reference [{}]: {} is the sum", error.name,
-                                own ? own->name : sum->name, compared[1]));
-  return true;
-}
-
 /// How many letters two names end alike: "target pos (3)" and "pos (3)" are of one axis.
 std::size_t EndsAlike(const std::string& a, const std::string& b) {
   const auto [end, other] = std::mismatch(a.rbegin(), a.rend(), b.rbegin(), b.rend());
@@ -142,11 +125,6 @@ void PutDevice(const std::string& target, const std::vector<const Choice*>& tied
   Put(target, **best, tied.size() > 1 ? fmt::format("by its name, one of {} such", tied.size()) : "by its name", map, remarks);
 }
 
-std::string ReferenceOf(const std::string& reference, const Map& map) {
-  const auto found = std::ranges::find(map.columns, reference, &MappedColumn::column);
-  return found == map.columns.end() ? "" : found->expression;
-}
-
 void TakeByName(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
                 std::vector<std::string>& remarks) {
   for (std::size_t k = 0; k < compared.size(); ++k) {
@@ -157,7 +135,7 @@ void TakeByName(const std::vector<Choice>& columns, const std::vector<std::strin
     if (k == 0) {
       Put(compared[k], *found, "by its name", map, remarks);
     } else {
-      PutDevice(compared[k], AsClear(columns, *found, taken), ReferenceOf(compared[0], map), map, remarks);
+      PutDevice(compared[k], AsClear(columns, *found, taken), GivenExpression(map, compared[0]), map, remarks);
     }
   }
 }
