@@ -12,7 +12,7 @@
 namespace twinbench::plausible {
 namespace {
 
-using testing::HasSubstr, testing::IsEmpty;
+using testing::HasSubstr, testing::IsEmpty, testing::Not;
 
 /// A device beside its reference, half a turn forth and back.
 std::vector<Reading> Readings(int count = 200) {
@@ -91,6 +91,24 @@ std::vector<Reading> Voltages() {
     readings.push_back(r);
   }
   return readings;
+}
+
+/// A servo that is 20 readings behind its command is late, and its readings are in order.
+TEST(Plausible, DoubtsADeviceThatComesLaterAndRefusesOneThatNeverComes) {
+  std::vector<Reading> late = Readings(), other = Readings();
+  const auto wave = [](int i) { return std::sin(2.0 * units::kPi * i / 80.0); };
+  for (int i = 0; i < 200; ++i) {
+    Reading &servo = late[static_cast<std::size_t>(i)], &stranger = other[static_cast<std::size_t>(i)];
+    servo.reference_rad = stranger.reference_rad = wave(i);
+    servo.measured_rad = wave(i - 20) + 1e-4 * std::sin(17.0 * i);
+    stranger.measured_rad = std::sin(2.9 * i * i);
+  }
+  const auto lines = [](const std::vector<Reading>& readings) {
+    return InLines(Check(readings, Angles(), {{.column = "measured_deg", .nominal = [](const Reading& r) { return r.reference_rad; }, .is_angle = true}}));
+  };
+  EXPECT_THAT(lines(late), HasSubstr("doubtful: measured_deg goes with the angles or places of its readings about 20 readings later"));
+  EXPECT_THAT(lines(late), Not(HasSubstr("cannot be")));
+  EXPECT_THAT(lines(other), HasSubstr("cannot be: measured_deg does not go with"));
 }
 
 TEST(Plausible, RefusesVoltsThatTheCardCannotGive) {

@@ -206,10 +206,18 @@ bool IsOneReadingAStop(const Course& swept, const std::vector<double>& time_s) {
          MeetsTheSameAngles(swept);
 }
 
+/// A few steps of a command, from one row to the next: nobody reads it while it moves.
+bool Jumps(const Course& swept) {
+  constexpr int kFewestRests = 3, kMostRowsBetween = 2;
+  const auto moving = std::ranges::count_if(swept.direction, [](int d) { return d != 0; });
+  return swept.rests >= kFewestRests && moving <= kMostRowsBetween * (swept.rests - 1);
+}
+
 /// At rest for much of the time, at many places; or nearly always, as a command is that jumps from place to place.
 bool GoesFromRestToRest(const Course& swept) {
   constexpr int kFewestRests = 6;
   constexpr double kRestShare = 0.4, kNearlyAlways = 0.9;
+  if (swept.rest_share > kNearlyAlways && Jumps(swept)) return true;
   if (swept.rests < kFewestRests || swept.rest_share < kRestShare) return false;
   if (swept.rest_share > kNearlyAlways) return true;
   const auto [low, high] = std::ranges::minmax(swept.reference);

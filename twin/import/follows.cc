@@ -1,9 +1,12 @@
 #include "twin/import/follows.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
+#include "twin/core/lag.h"
 #include "twin/core/units.h"
 #include "twin/import/common.h"
 #include "twin/import/course.h"
@@ -29,22 +32,17 @@ constexpr std::array kRatios = std::to_array<KnownRatio>({
     {25.4, "one of the two is in inches, the other in mm"},
 });
 
-Following LeastSquares(const std::vector<double>& x, const std::vector<double>& y) {
-  const auto n = static_cast<double>(x.size());
-  double sx = 0.0, sy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    sx += x[i];
-    sy += y[i];
-  }
-  double xx = 0.0, xy = 0.0, yy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double dx = x[i] - sx / n, dy = y[i] - sy / n;
-    xx += dx * dx;
-    xy += dx * dy;
-    yy += dy * dy;
-  }
-  if (xx == 0.0 || yy == 0.0) return {};
-  return {xy / xx, xy / std::sqrt(xx * yy)};
+constexpr double kLine = 0.995;  // correlation: what is left of a line is a tenth of the way at most
+
+/// Two places alone lie on a line whatever the device does.
+bool HasThreePlaces(std::span<const double> x) {
+  const auto second = std::ranges::find_if(x, [&x](double one) { return one != x.front(); });
+  return std::any_of(second, x.end(), [&](double one) { return one != x.front() && one != *second; });
+}
+
+Following LeastSquares(std::span<const double> x, std::span<const double> y) {
+  const StraightLine line = LineThrough(x, y);
+  return {line.slope, line.correlation, 0, std::abs(line.correlation) > kLine && HasThreePlaces(x)};
 }
 
 /// The rows just before a command that waits goes on: a servo is on its way in the others.
@@ -99,6 +97,16 @@ Following FollowingOf(const std::vector<double>& reference, const std::vector<do
   for (std::size_t i = 0; i < shown.size(); ++i) difference[i] += reference[i];
   const Following other = LeastSquares(reference, difference);
   return std::abs(other.gain - 1.0) < 0.2 ? Better(best, other) : best;
+}
+
+Following FollowingLater(const std::vector<double>& reference, const std::vector<double>& shown) {
+  std::vector<double> device = shown;
+  if (GoesSmoothly(shown)) Unwrap(units::turn, device);
+  const auto lag = LagOf(reference, device);
+  if (!lag) return {};
+  Following following = LeastSquares(std::span(reference).first(reference.size() - *lag), std::span(device).subspan(*lag));
+  following.rows_later = *lag;
+  return following;
 }
 
 std::string MeaningOfGain(double gain) {

@@ -46,7 +46,10 @@ void Maker::Take(const Session& session, std::size_t most, Imported& imported) {
   const bool one_place = bench_.compared && IsOnePlace(session);
   Course course = CourseOf(reference, session.has_clock && !one_place ? session.time_s : no_clock, map_.course, wrap);
   if (one_place) NumberApproaches(session.value.at("direction"), course);
-  if (bench_.compared) RequireOneToOne(session, course.reference, one_place, bench_, map_);
+  if (bench_.compared) {
+    const std::string remark = RequireOneToOne(session, course.reference, one_place, bench_, map_);
+    if (!remark.empty()) tally.remarks.push_back(remark);
+  }
   const Blocks cut = CutIntoBlocks(course, session.time_s, most, RestsIn(session, course));
   Count(session, course, cut);
   if (course.stop_and_go) {
@@ -114,15 +117,20 @@ void Maker::Count(const Session& session, const Course& course, const Blocks& cu
     tally.left_out.push_back({cut.moving, fmt::format("rows of {} rests of the command at whose end the device was still on its way", cut.moving_rests)});
 }
 
-/// Every rest is a reading; the senses are those from rest to rest.
+/// Every rest is a reading, or several pieces of which each has the sense in which the axis came to the rest.
 void Maker::TakeStops(const Session& session, const Course& course, const Blocks& cut, Imported& imported) {
   std::vector<double> places;
-  for (const Block& block : cut.blocks) places.push_back(MeanOf(course.reference, block));
+  std::vector<std::size_t> rest_of;  // by block
+  for (std::size_t k = 0; k < cut.blocks.size(); ++k) {
+    const bool is_piece = k > 0 && cut.blocks[k].rest == cut.blocks[k - 1].rest;
+    if (!is_piece) places.push_back(MeanOf(course.reference, cut.blocks[k]));
+    rest_of.push_back(places.size() - 1);
+  }
   CourseSettings stops;
   stops.kind = "stops";
   const Course from_stop_to_stop = CourseOf(places, {}, stops, 0.0);
   for (std::size_t k = 0; k < cut.blocks.size(); ++k) {
-    Reading& reading = Append(session, from_stop_to_stop, cut.blocks[k], {k, places[k]}, imported);
+    Reading& reading = Append(session, from_stop_to_stop, cut.blocks[k], {rest_of[k], places[rest_of[k]]}, imported);
     if (ColumnOf(bench_, "dwell_s"))
       reading.dwell_s = session.time_s[cut.blocks[k].begin] - session.time_s[cut.blocks[k].rest];
   }

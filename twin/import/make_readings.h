@@ -16,6 +16,7 @@ inline constexpr std::size_t kFewestCompared = 3;  // readings, or rests, that a
 /// What is said of a whole run at the end.
 struct Tally {
   std::vector<LeftOut> left_out;
+  std::vector<std::string> remarks;
   int wraps = 0, reversals = 0, rests = 0, fly_backs = 0;
   std::size_t rows = 0;
   double low = std::numeric_limits<double>::infinity(), high = -low, fastest = 0.0, rest_share = 0.0, widest = 0.0;

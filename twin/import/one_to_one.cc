@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "twin/core/errors.h"
+#include "twin/import/common.h"
 #include "twin/import/follows.h"
 #include "twin/import/said.h"
 #include "twin/import/unit_names.h"
@@ -15,6 +16,8 @@ namespace {
 
 constexpr double kLikeOne = 0.2;  // a gain further from 1 is no error of a scale but another quantity
 constexpr double kFollows = 0.5;  // correlation below which a device does not follow at all
+constexpr double kFollowsLater = 0.75;  // the same at the best of many lags, where chance has more to offer
+constexpr double kLeastGain = 1.0 / 3.0, kLargestGain = 3.0;  // that play, stiction or a slow servo may leave
 
 std::string SumFor(const std::string& shown) {
   return fmt::format("{} = \"[reference column] + [error column]\"", shown);
@@ -24,39 +27,71 @@ std::string KeysOf(const std::string& column) {
   return BaseOf(column) + "_rad, " + BaseOf(column) + "_arcsec or " + BaseOf(column) + "_mm";
 }
 
-}  // namespace
-
-void RequireOneToOne(const Session& session, const std::vector<double>& reference, bool one_place, const BenchFormat& bench,
-                     const Map& map) {
-  const std::string& name = bench.compared->shown;
-  const std::vector<double>& shown = session.value.at(name);
-  const auto [low, high] = std::ranges::minmax(shown);
-  const std::string source = NameOf(map, name);
-  if (low == high)
-    throw InputError(source, fmt::format("{} is {:g} in all {} rows: the channel is dead", name, low / UnitAtEnd(name)->to_SI, shown.size()),
-                     "another column");
-  if (one_place) return;
+void RequireMotion(const BenchFormat& bench, const Map& map, const std::vector<double>& reference) {
   const auto [first, last] = std::ranges::minmax(reference);
   if (first == last)
     throw InputError(NameOf(map, bench.compared->reference), "the reference never moves",
                      "another column; for one place from both sides a column \"direction\" of 1 and -1");
-  const Following following = FollowingOf(reference, shown);
-  const bool one_to_one = std::abs(following.gain - 1.0) <= kLikeOne;
-  if (one_to_one && following.correlation > kFollows) return;
-  if (std::abs(following.correlation) < kFollows)
-    throw InputError(source,
-                     fmt::format("{} does not follow {} (correlation {:.2f})", name, bench.compared->reference,
-                                 following.correlation),
-                     "columns of the same axis; of an error use " + SumFor(name));
-  const std::string meaning = MeaningOfGain(following.gain);
+}
+
+void RequireLife(const std::string& name, const std::string& source, const std::vector<double>& shown) {
+  const auto [low, high] = std::ranges::minmax(shown);
+  if (low == high)
+    throw InputError(source, fmt::format("{} is {:g} in all {} rows: the channel is dead", name, low / UnitAtEnd(name)->to_SI, shown.size()),
+                     "another column");
+}
+
+/// Another unit and a gear leave a line; what does not is the device's own.
+bool IsOwnGain(const Following& following) {
+  const bool is_like_one = std::abs(following.gain - 1.0) <= kLikeOne;
+  return is_like_one || (following.gain > kLeastGain && following.gain < kLargestGain && !following.is_line);
+}
+
+bool FollowsLater(const Following& now, const Following& later) {
+  constexpr double kClearly = 0.1;
+  return now.correlation > -kFollows && later.rows_later > 0 && later.correlation > std::max(kFollowsLater, now.correlation + kClearly) &&
+         IsOwnGain(later);
+}
+
+std::string GainText(double gain) {
+  return std::abs(gain - 1.0) <= kLikeOne ? "" : fmt::format("; it goes {:.3g} times as far, on no line: play, stiction or a speed that it does not reach", gain);
+}
+
+std::string LagText(const std::string& name, const std::string& reference, const Session& session, const Following& later) {
+  const double later_s = static_cast<double>(later.rows_later) * MedianOf(StepsOf(session.time_s));
+  return fmt::format("{} follows {} about {} rows{} later{}", name, reference, later.rows_later,
+                     session.has_clock ? fmt::format(" ({:.3g} s)", later_s) : "", GainText(later.gain));
+}
+
+[[noreturn]] void RefuseGain(const std::string& name, const std::string& reference, double gain, const Map& map) {
+  const std::string meaning = MeaningOfGain(gain);
   throw InputError(
-      source,
-      fmt::format("{} follows {} times {:.6g}{}", name, bench.compared->reference, following.gain,
-                  meaning.empty() ? "" : ": " + meaning),
-      std::abs(following.gain + 1.0) <= kLikeOne
+      NameOf(map, name), fmt::format("{} follows {} times {:.6g}{}", name, reference, gain, meaning.empty() ? "" : ": " + meaning),
+      std::abs(gain + 1.0) <= kLikeOne
           ? fmt::format("the same sense: {} = \"-{}\"", KeyOf(map, name), ExpressionOf(map, name))
-          : fmt::format("the same unit and sense: {} = \"...\" in the unit it has, or {} = \"{} / {:.6g}\"",
-                        KeysOf(name), KeyOf(map, name), ExpressionOf(map, name), following.gain));
+          : fmt::format("the same unit and sense: {} = \"...\" in the unit it has, or {} = \"{} / {:.6g}\"", KeysOf(name), KeyOf(map, name),
+                        ExpressionOf(map, name), gain));
+}
+
+}  // namespace
+
+std::string RequireOneToOne(const Session& session, const std::vector<double>& reference, bool one_place, const BenchFormat& bench,
+                            const Map& map) {
+  const std::string &name = bench.compared->shown, &by = bench.compared->reference;
+  const std::vector<double>& shown = session.value.at(name);
+  RequireLife(name, NameOf(map, name), shown);
+  if (one_place) return "";
+  RequireMotion(bench, map, reference);
+  const Following now = FollowingOf(reference, shown);
+  if (std::abs(now.gain - 1.0) <= kLikeOne && now.correlation > kFollows) return "";
+  const Following later = FollowingLater(reference, shown);
+  if (FollowsLater(now, later)) return LagText(name, by, session, later);
+  if (std::abs(now.correlation) < kFollows)
+    throw InputError(NameOf(map, name), fmt::format("{} does not follow {} (correlation {:.2f}, and at no lag more than {:.2f})", name, by, now.correlation,
+                                                    std::max(now.correlation, later.correlation)),
+                     "columns of the same axis; of an error use " + SumFor(name));
+  if (!IsOwnGain(now)) RefuseGain(name, by, now.gain, map);
+  return fmt::format("{} follows {}{}", name, by, GainText(now.gain));
 }
 
 }  // namespace twinbench::imports

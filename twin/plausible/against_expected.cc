@@ -7,23 +7,15 @@
 #include <map>
 
 #include "twin/core/units.h"
+#include "twin/plausible/goes_with.h"
 
 namespace twinbench::plausible {
 namespace {
 
-constexpr double kTimes = 20.0;       // smaller or larger than claimed: no figure of a data sheet is so far off
-constexpr double kMuch = 20.0;        // of the noise: what differs by more is no noise
 constexpr double kNoNoise = 100.0;    // of the noise: nor one that was stated wrong
-constexpr double kSameWay = 0.5;      // of the way that a channel should go, by which it may be off
-constexpr double kAnotherSize = 3.0;  // times, either way
 constexpr double kAsAtRandom = 0.6;   // of what readings taken at random differ by
 constexpr double kAlone = 50.0;       // times its scatter: no noise has such tails
-constexpr std::size_t kFewestPairs = 20, kMostPairs = 2000, kFarthest = 2000;
-
-std::vector<double> Sizes(std::vector<double> x) {
-  for (double& one : x) one = std::abs(one);
-  return x;
-}
+constexpr std::size_t kFewestPairs = 20;
 
 /// What a channel leaves of what it should show; itself where nothing is known.
 std::vector<double> LeftOf(const Channel& channel, const Expected& expected) {
@@ -35,36 +27,6 @@ std::vector<double> LeftOf(const Channel& channel, const Expected& expected) {
     left[i] = expected.is_angle ? std::remainder(left[i] - nominal, units::turn) : left[i] - nominal;
   }
   return left;
-}
-
-/// Indices of the channel's values by set-up, where its nominal value is known.
-std::map<int, std::vector<std::size_t>> BySetup(const Channel& channel, const std::vector<double>& nominal) {
-  std::map<int, std::vector<std::size_t>> rows;
-  for (std::size_t i = 0; i < channel.size(); ++i) {
-    if (std::isfinite(nominal[i])) rows[channel.reading[i]->setup].push_back(i);
-  }
-  return rows;
-}
-
-/// Pairs of a set-up between which the nominal value goes half as far as it ever does; an angle an eighth of a turn at most,
-/// so that one that goes backwards is told.
-void AddFarPairs(const std::vector<std::size_t>& rows, const std::vector<double>& nominal, double least, bool is_angle,
-                 std::vector<Pair>& pairs) {
-  double low = INFINITY, high = -INFINITY;
-  for (const std::size_t i : rows) {
-    low = std::min(low, nominal[i]);
-    high = std::max(high, nominal[i]);
-  }
-  const double far = is_angle ? std::min((high - low) / 2.0, units::turn / 8.0) : (high - low) / 2.0;
-  if (!(far > least)) return;
-  const std::size_t stride = 1 + rows.size() / kMostPairs;
-  for (std::size_t a = 0; a < rows.size(); a += stride) {
-    for (std::size_t b = a + 1; b < std::min(rows.size(), a + kFarthest); ++b) {
-      if (std::abs(nominal[rows[b]] - nominal[rows[a]]) < far) continue;
-      pairs.emplace_back(rows[a], rows[b]);
-      break;
-    }
-  }
 }
 
 /// Upper bound of the white noise: the course of a channel and what repeats differ by are in it.
@@ -103,42 +65,6 @@ Spread SpreadOf(const Channel& channel, const Expected& expected) {
     spread.expected += std::pow(wanted[setup], 2) * static_cast<double>(of_setup.size());
   }
   return {std::sqrt(spread.shown), std::sqrt(spread.expected)};
-}
-
-void CheckFollows(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
-  if (!expected.nominal) return;
-  std::vector<double> nominal;
-  for (const Reading* reading : channel.reading) nominal.push_back(expected.nominal(*reading));
-  const double least = std::max(kMuch * expected.noise, expected.is_angle ? 0.1 * units::deg : 0.0);
-  std::vector<Pair> pairs;
-  for (const auto& [setup, rows] : BySetup(channel, nominal)) AddFarPairs(rows, nominal, least, expected.is_angle, pairs);
-  if (pairs.size() < kFewestToJudge) return;
-  const std::vector<double> should = Between(pairs, nominal), does = Between(pairs, channel.value);
-  std::vector<double> times;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const double way = expected.is_angle ? std::remainder(should[k], units::turn) : should[k];
-    if (std::abs(way) < 0.5 * least) continue;
-    const double off = expected.is_angle ? std::remainder(does[k] - should[k], units::turn) : does[k] - should[k];
-    times.push_back(1.0 + off / way);
-  }
-  const double usual = MiddleOf(times);
-  std::vector<double> off = times;
-  for (double& one : off) one = std::abs(one - usual);
-  const bool of_one_size = MiddleOf(std::move(off)) < kSameWay * std::abs(usual);
-  const std::string& name = channel.column->name;
-  const bool is_aliased = expected.is_angle && std::abs(usual) > 2.0;  // whole turns are lost
-  if (!of_one_size || is_aliased) {
-    findings.push_back({!expected.is_loose, fmt::format("{} does not go with the angles or places of its readings: are they in "
-                                                        "another order or unit?",
-                                                        name)});
-  } else if (std::abs(usual) < 1.0 / kAnotherSize || std::abs(usual) > kAnotherSize) {
-    const bool is_far = std::abs(usual) < 1.0 / kTimes || std::abs(usual) > kTimes;
-    findings.push_back(
-        {!expected.is_loose || is_far,
-         fmt::format("{} goes {:.3g} times as far as its readings' angles or places say: is it in another unit?", name, usual)});
-  } else if (usual < 0.0) {
-    findings.push_back({!expected.is_loose, fmt::format("{} goes the other way than its readings' angles or places", name)});
-  }
 }
 
 void CheckSize(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
@@ -215,7 +141,7 @@ void CheckSingleValues(const Channel& channel, const Expected& expected, std::ve
 }  // namespace
 
 void CheckAgainst(const Expected& expected, const Channel& channel, std::vector<Finding>& findings) {
-  CheckFollows(channel, expected, findings);
+  CheckGoesWith(channel, expected, findings);
   CheckSize(channel, expected, findings);
   CheckOrdered(channel, expected, findings);
   CheckSingleValues(channel, expected, findings);

@@ -59,6 +59,11 @@ double StepOf(const Channel& channel) {
   return 100 * off <= std::ssize(different) ? step : 0.0;
 }
 
+std::vector<double> Sizes(std::vector<double> x) {
+  for (double& one : x) one = std::abs(one);
+  return x;
+}
+
 double MiddleOf(std::vector<double> x) {
   return x.empty() ? 0.0 : Median(std::move(x));
 }

@@ -35,6 +35,9 @@ double StepOf(const Channel& channel);
 /// Standard deviation of white noise on a smooth course, from second differences.
 double ScatterOf(const std::vector<double>& x);
 
+/// Without their signs.
+std::vector<double> Sizes(std::vector<double> x);
+
 /// The middle one; 0 of none.
 double MiddleOf(std::vector<double> x);
 

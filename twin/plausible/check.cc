@@ -136,7 +136,8 @@ std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario&
   }
   for (const Channel& channel : channels) {
     const auto found = std::ranges::find(expected, channel.column->name, &Expected::column);
-    const Expected claim = found == expected.end() || scenario.noise_free ? Expected{} : *found;
+    Expected claim = found == expected.end() || scenario.noise_free ? Expected{} : *found;
+    claim.may_lag = bench.compared && channel.column->name == bench.compared->shown;
     CheckAlive(channel, !scenario.noise_free && (others_move || claim.noise > 0.0), bench, claim, findings);
     CheckSteps(channel, Beside(channel, readings, bench), findings);
     if (!claim.column.empty() && Moves(channel)) CheckAgainst(claim, channel, findings);

@@ -8,6 +8,9 @@
 
 namespace twinbench::plausible {
 
+inline constexpr double kTimes = 20.0;  // smaller or larger than claimed: no figure of a data sheet is so far off
+inline constexpr double kMuch = 20.0;   // of the noise: what differs by more is no noise
+
 /// What a scenario claims of a column that is shown, before anything is known of what is measured.
 struct Expected {
   std::string column;
@@ -18,6 +21,7 @@ struct Expected {
   /// What it shows by the angles and places of the reading, but for a constant of each set-up [SI]; NaN: not known.
   std::function<double(const Reading&)> nominal = {};
   bool is_angle = false;  // nominal: whole turns apart
+  bool may_lag = false;   // nominal: a servo that comes later is no wrong order of readings
   bool is_loose =
       false;  // nominal: changed wires that a diagnosis names, or a mounting that nobody knows so well, are no reason to refuse
 };
