@@ -76,5 +76,10 @@ TEST_F(Importing, GivesThePiecesOfARestTheSenseInWhichItWasReached) {
   }
 }
 
+TEST_F(Importing, SaysWhatARecordingOfOneStepLacks) {
+  const Wave step = [](int i) { return i < 40 ? 0.0 : 20.0; }, servo = [](int i) { return i < 40 ? 0.0 : 20.0 - 15.0 * std::exp(-0.2 * (i - 40)); };
+  EXPECT_KEPT(MessageOf([&] { Take(Beside("time [s];goal [deg];position [deg]", 200, step, servo)); }));
+}
+
 }  // namespace
 }  // namespace twinbench::imports

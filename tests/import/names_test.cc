@@ -83,6 +83,24 @@ TEST_F(Importing, TakesCountsByWhatIsStatedOrByThePowerOfTwoAtWhichTheyFollow) {
   EXPECT_KEPT(MessageOf([&] { Take(neither); }));
 }
 
+TEST_F(Importing, FindsCountsPerTurnInNamesAndInSentences) {
+  for (const char* head : {"reference [deg],encoder [4000 counts/rev]\n", "reference [deg],encoder_4000cpr\n",
+                           "# an encoder of 4000 counts per revolution, on the shaft\nreference [deg],encoder [counts]\n",
+                           "% 4000 ticks/turn\nreference [deg],encoder ticks\n"}) {
+    std::string text = head;
+    for (int i = 0; i < 72; ++i) text += fmt::format("{},{}\n", 5 * i, std::lround(4000.0 * i / 72.0));
+    EXPECT_LT(Worst_deg(Take(text).readings), 360.0 / 4000.0) << head;
+  }
+}
+
+/// A count is no degree, whatever else is not said.
+TEST_F(Importing, AsksHowManyCountsMakeATurn) {
+  EXPECT_KEPT(MessageOf([&] { Take(Scaled("TargetCounts [count],EncoderPosition [count]")); }));
+  std::string text = "Time,TargetCounts,EncoderPosition\n";
+  for (int i = 0; i < 72; ++i) text += fmt::format("{},{},{}\n", 0.1 * i, 5 * i, 5 * i + i % 3);
+  EXPECT_THAT(MessageOf([&] { Take(text); }), HasSubstr("\"TargetCounts\" is in counts, and nothing says how many of them make a turn"));
+}
+
 TEST_F(Importing, TakesWholeNumbersOfAServoForCountsAndSaysIt) {
   std::string text = "time [s],goal_position,present_position\n";
   for (int i = 0; i < 200; ++i) text += fmt::format("{:.2f},{},{}\n", 0.02 * i, 2048 + 10 * (i % 100), 2048 + 10 * (i % 100) + i % 3);

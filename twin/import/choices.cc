@@ -28,6 +28,7 @@ std::string UsualUnit(const Choice& from, const std::string& target, const Map& 
 }
 
 [[noreturn]] void RefuseUnit(const Choice& from, const std::string& target) {
+  if (IsCalledCounts(*from.column)) RefuseCounts(target, from.name, from.recording->file);
   std::string known;
   for (const Dimension dimension : {Dimension::kAngle, Dimension::kLength}) {
     for (const NamedUnit& unit : UnitsOf(dimension)) known += (known.empty() ? "" : ", ") + std::string(unit.name);

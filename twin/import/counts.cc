@@ -7,9 +7,11 @@
 #include <cmath>
 #include <optional>
 
+#include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/import/common.h"
 #include "twin/import/follows.h"
+#include "twin/import/table.h"
 #include "twin/import/unit_names.h"
 
 namespace twinbench::imports {
@@ -20,21 +22,18 @@ bool SpeaksOf(const std::string& text, const std::vector<const char*>& words) {
   return std::ranges::any_of(words, [&small](const char* word) { return small.find(word) != std::string::npos; });
 }
 
-bool IsCalledCounts(const Column& column) {
-  const std::vector<const char*> words = {"count", "cts", "tick", "pulse", "incr", "lsb", "digit"};
-  return SpeaksOf(column.unit, words) || (column.unit.empty() && SpeaksOf(column.name, words));
-}
-
 bool AreWhole(const Column& column) {
   return std::ranges::all_of(column.value, [](double x) { return std::isnan(x) || x == std::round(x); });
 }
 
-std::optional<double> StatedPerTurn(const Track& track) {
-  for (const auto& [name, number] : track.numbers) {
-    const bool per_turn = SpeaksOf(name, {"cpr", "ppr"}) ||
-                          (SpeaksOf(name, {"count", "tick", "pulse", "step", "incr", "resolution"}) &&
-                           SpeaksOf(name, {"turn", "rev", "umdr"}));
-    if (per_turn && number > 1.0) return number;
+/// By the column's own name or unit, "encoder [4096 counts/rev]", or by what stands above the rows.
+std::optional<double> StatedPerTurn(const Column& column, const Track& track) {
+  Track own;
+  AddNumbers(column.name + " " + column.unit, own);
+  for (const Track* said : {static_cast<const Track*>(&own), &track}) {
+    for (const auto& [name, number] : said->numbers) {
+      if (SaysPerTurn(SmallLetters(name)) && number > 1.0) return number;
+    }
   }
   return std::nullopt;
 }
@@ -86,6 +85,24 @@ const Column* PlainColumn(const MappedColumn& mapped, const std::vector<Recordin
 
 }  // namespace
 
+bool IsCalledCounts(const Column& column) {
+  const std::vector<const char*> words = {"count", "cts", "tick", "pulse", "incr", "lsb", "digit", "cpr", "ppr"};
+  return SpeaksOf(column.unit, words) || (column.unit.empty() && SpeaksOf(column.name, words));
+}
+
+void RefuseCounts(const std::string& target, const std::string& name, const std::string& file) {
+  throw InputError(file, fmt::format("\"{}\" is in counts, and nothing says how many of them make a turn", name),
+                   fmt::format("a line \"# counts per turn: N\" above the rows, or --column '{}=[{}] * 360 / N' of each column in counts", target, name));
+}
+
+void RequireCountsPerTurn(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, const Map& map) {
+  for (const MappedColumn& mapped : map.columns) {
+    if (std::ranges::find(compared, mapped.column) == compared.end()) continue;
+    const Column* column = PlainColumn(mapped, recordings);
+    if (column && IsCalledCounts(*column) && AreWhole(*column)) RefuseCounts(mapped.column, column->name, recordings[0].file);
+  }
+}
+
 void TakeBothForCounts(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, Map& map,
                        std::vector<std::string>& remarks) {
   constexpr double kLeast = 1000.0, kMost = 65536.0;
@@ -117,7 +134,7 @@ bool TakeCounts(const std::string& target, const Column& column, const Track& tr
   const bool unit_is_open = column.unit.empty() || IsCalledCounts(column);
   if (!wanted || wanted->dimension != Dimension::kAngle || !unit_is_open || !AreWhole(column)) return false;
   const bool called = IsCalledCounts(column);
-  std::optional<double> per_turn = called ? StatedPerTurn(track) : std::nullopt;
+  std::optional<double> per_turn = called ? StatedPerTurn(column, track) : std::nullopt;
   const char* why = "as the file states";
   if (!per_turn) {
     per_turn = FoundPerTurn(column, OtherAngle(target, track, map));

@@ -8,8 +8,8 @@
 
 namespace twinbench::imports {
 
-/// Takes a column of an encoder's counts for an angle, if it is one: how many make a turn is stated above the rows
-/// ("counts per turn = 4096", "CPR: 4096"), or it is the power of two at which the column follows a reference that the
+/// Takes a column of an encoder's counts for an angle, if it is one: how many make a turn is stated in its name, or above
+/// the rows ("counts per turn = 4096", "CPR: 4096", "4096 counts/rev"), or it is the power of two at which the column follows a reference that the
 /// map has already.
 /// @return false if it is none, or nothing says how many.
 bool TakeCounts(const std::string& target, const Column& column, const Track& track, Map& map,
@@ -19,5 +19,14 @@ bool TakeCounts(const std::string& target, const Column& column, const Track& tr
 /// as counts of the power of four above them (1024, 4096, 16384, 65536), of which nothing but the sizes of angles depends.
 void TakeBothForCounts(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, Map& map,
                        std::vector<std::string>& remarks);
+
+/// By its unit or, where it has none, by its name.
+bool IsCalledCounts(const Column& column);
+
+/// @throws InputError that says what to write.
+[[noreturn]] void RefuseCounts(const std::string& target, const std::string& name, const std::string& file);
+
+/// Refuses what is called counts and was guessed as it stands, as if a count were a degree.
+void RequireCountsPerTurn(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, const Map& map);
 
 }  // namespace twinbench::imports

@@ -206,9 +206,9 @@ bool IsOneReadingAStop(const Course& swept, const std::vector<double>& time_s) {
          MeetsTheSameAngles(swept);
 }
 
-/// A few steps of a command, from one row to the next: nobody reads it while it moves.
+/// A few steps of a command, or one, from one row to the next: nobody reads it while it moves.
 bool Jumps(const Course& swept) {
-  constexpr int kFewestRests = 3, kMostRowsBetween = 2;
+  constexpr int kFewestRests = 2, kMostRowsBetween = 2;
   const auto moving = std::ranges::count_if(swept.direction, [](int d) { return d != 0; });
   return swept.rests >= kFewestRests && moving <= kMostRowsBetween * (swept.rests - 1);
 }

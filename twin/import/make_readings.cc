@@ -68,8 +68,12 @@ std::vector<Rest> Maker::RestsIn(const Session& session, const Course& course) c
   const std::vector<double> none;
   const std::vector<Rest> rests =
       RestsOf(course, bench_.compared ? session.value.at(bench_.compared->shown) : none, linear_ ? 0.0 : units::turn);
+  const auto fewest = static_cast<std::ptrdiff_t>(kFewestCompared);
+  if (bench_.compared && std::ssize(rests) < fewest)
+    throw InputError(NameOf(map_, bench_.compared->reference), "the command makes one step and rests before it and behind it: that is all",
+                     "a recording with three rests at least, of more steps; or [course] kind = \"sweep\" in a map, to take it as motion");
   const auto arrived = std::ranges::count(rests, true, &Rest::arrives);
-  if (bench_.compared && arrived < static_cast<std::ptrdiff_t>(kFewestCompared))
+  if (bench_.compared && arrived < fewest)
     throw InputError(NameOf(map_, bench_.compared->shown),
                      fmt::format("the device arrives in {} of the {} rests of {} only", arrived, rests.size(), bench_.compared->reference),
                      "longer rests; or [course] kind = \"sweep\" in a map, to take it as motion");

@@ -9,26 +9,35 @@
 namespace twinbench::imports {
 namespace {
 
-/// "4096 counts/rev": a number that says what it is behind it.
-void AddNumberBefore(std::string_view part, Track& track) {
-  const std::size_t end = part.find_first_of(" \t");
-  if (end == std::string_view::npos) return;
-  const std::string what = SmallLetters(Trimmed(part.substr(end)));
-  const bool per_turn = std::ranges::any_of(std::array{"/rev", "/turn", "/umdr", "per rev", "per turn", "cpr", "ppr"},
-                                            [&what](const char* word) { return what.find(word) != std::string::npos; });
-  const auto number = FieldNumber(part.substr(0, end), false);
-  if (per_turn && number) track.numbers[what] = *number;
+/// "encoder of 4096 counts/rev", "1440 counts per revolution", "4000cpr": a number that says what it is behind it.
+void AddNumbersPerTurn(std::string_view line, Track& track) {
+  constexpr std::string_view kDigits = "0123456789";
+  for (std::size_t at = 0; (at = line.find_first_of(kDigits, at)) != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_not_of(kDigits, at), line.size());
+    const std::string_view digits = line.substr(at, end - at), behind = Trimmed(line.substr(end)).substr(0, 40);
+    const std::string what = SmallLetters(behind.substr(0, behind.find_first_of(",;=\t")));
+    if (const auto number = FieldNumber(digits, false); number && SaysPerTurn(what)) track.numbers[what] = *number;
+    at = end;
+  }
 }
 
 }  // namespace
 
+bool SaysPerTurn(const std::string& small) {
+  const auto speaks = [&small](const auto& words) {
+    return std::ranges::any_of(words, [&small](const char* word) { return small.find(word) != std::string::npos; });
+  };
+  return speaks(std::array{"cpr", "ppr"}) || (speaks(std::array{"count", "cts", "tick", "pulse", "step", "incr", "resolution"}) &&
+                                              speaks(std::array{"turn", "rev", "umdr"}));
+}
+
 void AddNumbers(std::string_view line, Track& track) {
+  AddNumbersPerTurn(line, track);
   while (!line.empty()) {
     const std::size_t comma = line.find_first_of(",;\t");
     const std::string_view part = line.substr(0, comma);
     line.remove_prefix(comma == std::string_view::npos ? line.size() : comma + 1);
     const std::size_t equals = part.find_first_of("=:");
-    AddNumberBefore(Trimmed(equals == std::string_view::npos ? part : part.substr(equals + 1)), track);
     if (equals == std::string_view::npos) continue;
     std::string_view value = Trimmed(part.substr(equals + 1));
     value = value.substr(0, value.find_first_of(" \t\"%"));

@@ -27,11 +27,12 @@ std::string KeysOf(const std::string& column) {
   return BaseOf(column) + "_rad, " + BaseOf(column) + "_arcsec or " + BaseOf(column) + "_mm";
 }
 
-void RequireMotion(const BenchFormat& bench, const Map& map, const std::vector<double>& reference) {
-  const auto [first, last] = std::ranges::minmax(reference);
-  if (first == last)
-    throw InputError(NameOf(map, bench.compared->reference), "the reference never moves",
-                     "another column; for one place from both sides a column \"direction\" of 1 and -1");
+void RequireMotion(const std::string& name, const std::string& source, const std::vector<double>& reference) {
+  const auto [low, high] = std::ranges::minmax(reference);
+  if (low == high)
+    throw InputError(source, fmt::format("the reference never moves: {} is {:g} in all {} rows", name, low / UnitAtEnd(name)->to_SI, reference.size()),
+                     "a recording in which it goes to three places at least, or another column; for one place from both sides a column "
+                     "\"direction\" of 1 and -1");
 }
 
 void RequireLife(const std::string& name, const std::string& source, const std::vector<double>& shown) {
@@ -81,7 +82,7 @@ std::string RequireOneToOne(const Session& session, const std::vector<double>& r
   const std::vector<double>& shown = session.value.at(name);
   RequireLife(name, NameOf(map, name), shown);
   if (one_place) return "";
-  RequireMotion(bench, map, reference);
+  RequireMotion(by, NameOf(map, by), reference);
   const Following now = FollowingOf(reference, shown);
   if (std::abs(now.gain - 1.0) <= kLikeOne && now.correlation > kFollows) return "";
   const Following later = FollowingLater(reference, shown);

@@ -21,7 +21,11 @@ void ReadTable(std::string_view text, const Layout& layout, const ClockSettings&
 /// @throws InputError if the stated column is not there or holds no time.
 void FindClock(const ClockSettings& settings, const std::string& where, Track& track);
 
-/// "Pixel scale = 1.54 arc-sec/px, Binning = 1" and "Rate: 1000": the numbers that have a name.
+/// True of "counts per turn", "ticks/rev", "cpr".
+/// @param small  Small letters.
+bool SaysPerTurn(const std::string& small);
+
+/// "Pixel scale = 1.54 arc-sec/px, Binning = 1" "Rate: 1000" and "4096 counts/rev": the numbers that have a name.
 void AddNumbers(std::string_view line, Track& track);
 
 }  // namespace twinbench::imports
