@@ -70,6 +70,21 @@ TEST_F(Dress, HasUnitsInItsCells) {
            "each its own");
 }
 
+/// "359:30:12.5", as theodolites have it; the clock beside it is one.
+TEST_F(Dress, HasDegreesMinutesAndSecondsBetweenColons) {
+  const auto colons = [](double x) {
+    const auto tenths = std::lround(std::abs(x) * 36000.0);
+    return fmt::format("{}{}:{:02d}:{:04.1f}", x < 0.0 ? "-" : "", tenths / 36000, tenths / 600 % 60, 0.1 * static_cast<double>(tenths % 600));
+  };
+  for (const char* head : {"reference;measured\n", "target [deg];actual [deg]\n", "angle 1 [d:mm:ss];angle 2 [d:mm:ss]\n"})
+    ExpectIt(Dressed(head, [&](double a, double b) { return colons(a) + ";" + colons(b) + "\n"; }), head);
+  const Imported timed = Take(Dressed("time;reference;measured\n", [&](double a, double b) {
+    return fmt::format("10:{:02d}:00;", std::lround(a / 10.0)) + colons(a / 15.0) + ";" + colons(b / 15.0) + "\n";
+  }));
+  EXPECT_NEAR(timed.readings.back().reference_rad / units::deg, 355.0 / 15.0, 1e-4) << "no more than 24 deg: the names say what it is";
+  EXPECT_THAT(timed.story, HasSubstr("time (time of day)"));
+}
+
 TEST_F(Dress, IsALineOfNamesAndValues) {
   ExpectIt(Dressed("", [](double a, double b) { return fmt::format("target={} actual={:.4f}\n", a, b); }), "=");
   ExpectIt(Dressed("boot ok\n", [](double a, double b) { return fmt::format("ref:{},enc:{:.4f}\n", a, b); }), "a serial plotter's");

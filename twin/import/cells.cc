@@ -47,6 +47,19 @@ std::optional<double> DegreesMinutesSeconds(std::string_view text, bool decimal_
 
 }  // namespace
 
+std::optional<double> DegreesOfColons(std::string_view field, bool decimal_comma) {
+  field = Trimmed(field);
+  const bool negative = TakeAny(field, {"-", "\xE2\x88\x92"});
+  if (!negative) TakeAny(field, {"+"});
+  const std::size_t first = field.find(':'), second = field.find(':', first + 1);
+  if (first == std::string_view::npos || second == std::string_view::npos || first > 4) return std::nullopt;
+  const auto degrees = FieldNumber(field.substr(0, first), decimal_comma);
+  const auto minutes = FieldNumber(field.substr(first + 1, second - first - 1), decimal_comma), seconds = FieldNumber(field.substr(second + 1), decimal_comma);
+  if (!degrees || !minutes || !seconds || *minutes < 0.0 || *minutes >= 60.0 || *seconds < 0.0 || *seconds > 60.0) return std::nullopt;
+  const double angle_deg = *degrees + *minutes / 60.0 + *seconds / 3600.0;
+  return negative ? -angle_deg : angle_deg;
+}
+
 std::optional<Cell> CellOf(std::string_view field, bool decimal_comma) {
   if (const auto number = FieldNumber(field, decimal_comma)) return Cell{*number, ""};
   const bool may_be = !field.empty() && (std::isdigit(static_cast<unsigned char>(field.front())) || field.front() == '-' || field.front() == '+' ||

@@ -5,12 +5,13 @@
 #include <string_view>
 #include <vector>
 
+#include "twin/import/heading.h"
 #include "twin/import/text.h"
 
 /// What the cells of a table's column are, and the column while it is read.
 namespace twinbench::imports {
 
-enum class Kind { kNumber, kInstant, kWord };
+enum class Kind { kNumber, kInstant, kWord, kDegreesOfColons };
 
 /// A column while it is read.
 class Gatherer {
@@ -40,8 +41,8 @@ class Gatherer {
   bool has_date_ = false;
 };
 
-/// Kinds of the columns by a few rows.
-std::vector<Kind> KindsOf(const std::vector<std::vector<std::string_view>>& rows, const Fields& how);
+/// Kinds of the columns by a few rows, and by their names: "12:30:15" below "reference" or "angle [deg]" is an angle.
+std::vector<Kind> KindsOf(const std::vector<std::vector<std::string_view>>& rows, const Heading& heading, const Fields& how);
 
 /// Most of a row's fields hold something that is no name.
 bool IsRow(const std::vector<std::string_view>& fields, const Fields& how);

@@ -110,7 +110,7 @@ class TableReader {
     if (!heading_.found) heading_ = FindHeading(above_, width_, how_.separator);
     if (heading_.found && heading_.columns.size() > width_) width_ = heading_.columns.size();
     rows.front().resize(std::max(width_, rows.front().size()));
-    for (const Kind kind : KindsOf(rows, how_)) gatherers_.emplace_back(kind);
+    for (const Kind kind : KindsOf(rows, heading_, how_)) gatherers_.emplace_back(kind);
     const auto held = std::move(waiting_);
     waiting_.clear();
     for (const auto& row : held) Append(row);
@@ -157,6 +157,7 @@ class TableReader {
       Gatherer& g = gatherers_[c];
       Column column{OwnName(NameOf(c)), UnitOf(c), g.TakeValues(), g.TakeWords()};
       if (column.unit.empty()) column.unit = g.UnitOfCells();
+      if (g.kind() == Kind::kDegreesOfColons) column.unit = "deg";
       if (g.kind() == Kind::kInstant) column.unit = g.HasDate() ? "instant" : "time of day";
       track_.columns.push_back(std::move(column));
     }

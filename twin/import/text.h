@@ -47,6 +47,9 @@ struct Cell {
 };
 std::optional<Cell> CellOf(std::string_view field, bool decimal_comma);
 
+/// Degrees of "123:30:15.5", which may be a time of day as well: what the column is called decides.
+std::optional<double> DegreesOfColons(std::string_view field, bool decimal_comma);
+
 /// "tab", "comma", ... of a separator, and back; 0 if there is no such name.
 std::string SeparatorName(char separator);
 char SeparatorNamed(const std::string& name);
