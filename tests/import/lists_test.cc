@@ -87,5 +87,25 @@ TEST_F(Importing, GuessesAPositioningTestByItsColumnsUpAndDown) {
   EXPECT_EQ(Take(text, "", {"reference_deg=angle", "measured_deg=forward"}).readings.size(), 12u) << "who names columns means them";
 }
 
+/// Several columns of one length beside a reference, and nobody says that any of them went back.
+TEST_F(Importing, TakesNumberedRunsForPassesInTheOrderOfTheRows) {
+  for (const char* names : {"reference [deg];run 1 [deg];run 2 [deg];run 3 [deg]", "no.;Sollwert [deg];Lauf 1;Lauf 2;Lauf 3", "angle [deg];1;2;3"}) {
+    std::string text = std::string(names) + "\n";
+    const bool counted = text.starts_with("no.");
+    for (int i = 0; i < 36; ++i) text += fmt::format("{}{};{:.3f};{:.3f};{:.3f}\n", counted ? fmt::format("{};", i) : "", 10 * i, 10 * i + 0.1, 10 * i + 0.2, 10 * i + 0.3);
+    const Imported imported = Take(text);
+    ASSERT_EQ(imported.readings.size(), 108u) << imported.story;
+    for (std::size_t k = 0; k < 108; ++k) {
+      const Reading& r = imported.readings[k];
+      EXPECT_EQ(r.pass, static_cast<int>(k / 36));
+      EXPECT_EQ(r.position, static_cast<int>(k % 36)) << "the same places in every pass";
+      EXPECT_EQ(r.direction, 1);
+      EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::deg, 0.1 * static_cast<double>(k / 36 + 1), 1e-9);
+    }
+    EXPECT_THAT(imported.story, HasSubstr("nothing says in which direction the 3 runs went")) << names;
+  }
+  EXPECT_THAT(Take("time [s];run 1;run 2\n0;0;0\n1;10;10\n2;20;20.1\n3;30;30\n").story, testing::Not(HasSubstr("runs went"))) << "along a time nobody goes";
+}
+
 }  // namespace
 }  // namespace twinbench::imports

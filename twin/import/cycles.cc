@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <optional>
 
 #include "twin/core/errors.h"
 #include "twin/import/common.h"
+#include "twin/import/run_names.h"
 #include "twin/import/text.h"
 #include "twin/import/unit_names.h"
 
@@ -28,52 +27,16 @@ struct CycleTable {
   std::vector<Run> runs;
 };
 
-bool HasAny(const std::string& text, const std::vector<const char*>& words) {
-  return std::ranges::any_of(words, [&text](const char* word) { return text.find(word) != std::string::npos; });
-}
-
-/// Of a heading above a table, or of a column.
-int DirectionIn(std::string_view text) {
-  const std::string small = SmallLetters(text);
-  const bool up =
-      HasAny(small, {"forward", "up", "positive", "vorw", "↑", "pos. dir", "below", "von unten", "aller"}) || Trimmed(text).ends_with('+');
-  const bool down = HasAny(small, {"backward", "down", "negative", "reverse", "rückw", "↓", "neg. dir", "above", "von oben", "retour"}) ||
-                    Trimmed(text).ends_with('-');
-  return up == down ? 0 : up ? 1 : -1;
-}
-
-bool CountsRows(std::string_view name) {
-  const std::string small = SmallLetters(Trimmed(name));
-  return small.empty() || small == "i" || small == "no" || small == "no." || small == "nr" || small == "#" ||
-         small == "point";
-}
-
 /// The unit of a deviation beside the target's: both are known or it is the same.
 double Ratio(const std::string& from, const std::string& to) {
   const auto a = UnitNamed(from), b = UnitNamed(to);
   return a && b && a->dimension == b->dimension ? a->to_SI / b->to_SI : 1.0;
 }
 
-/// All names from there on say up or down, and both come.
-bool RunsFrom(std::size_t first, const std::vector<std::string_view>& names) {
-  int up = 0, down = 0;
-  for (std::size_t c = first; c < names.size(); ++c) {
-    const int direction = DirectionIn(SplitHeader(names[c]).name);
-    if (direction == 0) return false;
-    ++(direction > 0 ? up : down);
-  }
-  return up > 0 && down > 0;
-}
-
-/// "up; down" without a target: one place, a row a repetition.
-bool IsOnePlace(const std::vector<std::string_view>& names) {
-  return RunsFrom(!names.empty() && CountsRows(names[0]) ? 1 : 0, names);
-}
-
 class CycleReader {
  public:
   CycleReader(std::string_view text, const Layout& layout, Recording& recording)
-      : text_(text), recording_(recording), how_(FindFields(FirstLines(text), layout)) {}
+      : text_(text), open_(layout.columns_are_open), recording_(recording), how_(FindFields(FirstLines(text), layout)) {}
 
   void Read() {
     if (how_.separator == '\0') Refuse("no line is a row of numbers");
@@ -122,6 +85,7 @@ class CycleReader {
     const bool named = names.size() == width_;
     first_ = named && CountsRows(names[0]) && width_ > 2 ? 1 : 0;
     one_place_ = named && IsOnePlace(names);
+    numbered_ = open_ && named && NumbersRuns(names);
     first_run_ = first_ + (one_place_ ? 0 : 1);
     table_ = {};
     if (named) table_.target_unit = SplitHeader(names[first_]).unit;
@@ -136,7 +100,7 @@ class CycleReader {
   void EndTable() {
     if (table_.target.size() >= 2) {
       for (Run& run : table_.runs) {
-        if (run.direction == 0) Refuse("nothing says in which direction the runs went");
+        if (run.direction == 0 && !numbered_) Refuse("nothing says in which direction the runs went");
       }
       if (tables_.empty() || (tables_.size() == 1 && IsOtherDirection())) tables_.push_back(std::move(table_));
     }
@@ -174,6 +138,7 @@ class CycleReader {
     track.columns = {
         {"target", unit, {}, {}}, {"actual", unit, {}, {}}, {"direction", "", {}, {}}, {"run", "", {}, {}}};
     if (one_place_ && tables_.size() == 1) return WriteOnePlace(std::move(track));
+    if (std::ranges::any_of(tables_[0].runs, [](const Run& run) { return run.direction == 0; })) return WritePasses(std::move(track));
     const bool deviations = AreDeviations();
     std::array<std::vector<const Run*>, 2> runs;  // up, down
     for (const CycleTable& table : tables_) {
@@ -189,6 +154,30 @@ class CycleReader {
         "a positioning test (ISO 230-2): {} targets, {} runs up, {} down, entries are {}", tables_[0].target.size(),
         runs[0].size(), runs[1].size(), deviations ? "deviations" : "positions");
     recording_.tracks.push_back(std::move(track));
+  }
+
+  /// Runs of which nobody says where they went: all in the order of the rows, a pass each.
+  void WritePasses(Track track) {
+    const CycleTable& table = tables_[0];
+    const bool deviations = AreDeviations();
+    track.columns[2].name = "pass";
+    track.columns.pop_back();
+    for (std::size_t r = 0; r < table.runs.size(); ++r) {
+      for (std::size_t i = 0; i < table.target.size(); ++i) {
+        track.columns[0].value.push_back(table.target[i]);
+        track.columns[1].value.push_back(ActualOf(table.runs[r], i, deviations));
+        track.columns[2].value.push_back(static_cast<double>(r));
+        track.time_s.push_back(static_cast<double>(track.time_s.size()));
+      }
+    }
+    recording_.layout = fmt::format("a table of {} targets and {} runs, entries are {}", table.target.size(), table.runs.size(), deviations ? "deviations" : "positions");
+    recording_.remarks.push_back(fmt::format("nothing says in which direction the {} runs went: each is a pass in the order of the rows", table.runs.size()));
+    recording_.tracks.push_back(std::move(track));
+  }
+
+  double ActualOf(const Run& run, std::size_t i, bool deviations) const {
+    const CycleTable& table = tables_[0];
+    return run.value[i] * Ratio(table.value_unit, table.target_unit) + (deviations ? table.target[i] : 0.0);
   }
 
   /// Row by row, as such a test is done.
@@ -209,34 +198,28 @@ class CycleReader {
 
   void Append(const Run& run, int number, bool deviations, Track& track) const {
     const CycleTable& table = tables_[0];
-    const double ratio = Ratio(tables_[0].value_unit, table.target_unit);
     for (std::size_t k = 0; k < table.target.size(); ++k) {
       const bool ascending = table.target.back() >= table.target.front();
       const std::size_t i = (run.direction > 0) == ascending ? k : table.target.size() - 1 - k;
       track.columns[0].value.push_back(table.target[i]);
-      track.columns[1].value.push_back(run.value[i] * ratio + (deviations ? table.target[i] : 0.0));
+      track.columns[1].value.push_back(ActualOf(run, i, deviations));
       track.columns[2].value.push_back(run.direction);
       track.columns[3].value.push_back(number);
     }
   }
 
   std::string_view text_;
+  bool open_;  // no map says what the columns are
   Recording& recording_;
   Fields how_;
   std::vector<std::string_view> fields_;
   std::string_view above_;
   int said_ = 0;
   std::size_t width_ = 0, first_ = 0, first_run_ = 1;
-  bool one_place_ = false;
+  bool one_place_ = false, numbered_ = false;
   CycleTable table_;
   std::vector<CycleTable> tables_;
 };
-
-/// A target, perhaps behind the row's number, and nothing but runs.
-bool NamesRuns(const std::vector<std::string_view>& names) {
-  const std::size_t first = names.empty() || !CountsRows(names[0]) ? 0 : 1;
-  return first < names.size() && DirectionIn(names[first]) == 0 && RunsFrom(first + 1, names);
-}
 
 }  // namespace
 
@@ -245,7 +228,7 @@ bool AreCycles(const std::vector<std::string_view>& lines) {
   std::vector<std::string_view> names;
   return how.separator != '\0' && std::ranges::any_of(lines, [&](std::string_view line) {
     Split(line, how.separator, names);
-    return !IsComment(line) && (NamesRuns(names) || IsOnePlace(names));
+    return !IsComment(line) && (NamesRuns(names) || NumbersRuns(names) || IsOnePlace(names));
   });
 }
 

@@ -26,6 +26,16 @@ double MeanOf(const std::vector<double>& values, const Block& block) {
   return count > 0 ? sum / static_cast<double>(count) : std::nan("");
 }
 
+/// Every jump of more than three quarters of a turn begins a pass that the recording numbers: the axis was driven back, nothing wraps.
+bool JumpsBetweenPasses(const Session& session, const std::vector<double>& reference) {
+  const auto pass = session.value.find("pass");
+  if (pass == session.value.end()) return false;
+  for (std::size_t i = 1; i < reference.size(); ++i) {
+    if (std::abs(reference[i] - reference[i - 1]) > 0.75 * units::turn && pass->second[i] == pass->second[i - 1]) return false;
+  }
+  return true;
+}
+
 /// Every change of the side begins a pass.
 void NumberApproaches(const std::vector<double>& direction, Course& course) {
   for (std::size_t i = 1; i < direction.size(); ++i) {
@@ -41,7 +51,8 @@ void Maker::Take(const Session& session, std::size_t most, Imported& imported) {
   if (session.Rows() < 2) return;
   const std::string& by = CourseColumn(session);
   const std::vector<double>& reference = session.value.at(by);
-  const double wrap = FindWrap(reference, map_.course, linear_);
+  const bool is_driven_back = map_.course.wrap_rad == 0.0 && JumpsBetweenPasses(session, reference);
+  const double wrap = is_driven_back ? 0.0 : FindWrap(reference, map_.course, linear_);
   const std::vector<double> no_clock;
   const bool one_place = bench_.compared && IsOnePlace(session);
   Course course = CourseOf(reference, session.has_clock && !one_place ? session.time_s : no_clock, map_.course, wrap);
