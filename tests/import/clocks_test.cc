@@ -36,8 +36,28 @@ const std::vector<std::string> kTwo = {"reference_mm=[column 2]", "measured_mm=[
 TEST_F(Importing, FindsAClockWithoutANameAndSaysIt) {
   const Imported imported = Take(Rows("{}\t{:.2f}\t{:.3f}\n"), "", kTwo);
   ExpectMotionInTime(imported, "named by the user");
-  EXPECT_THAT(imported.story, HasSubstr("\"column 1\" rises in equal steps of 10: it is taken as a clock in ms"));
+  EXPECT_THAT(imported.story, HasSubstr("\"column 1\" rises in steps of 10: it is taken as a clock in ms"));
   ExpectMotionInTime(Take(Rows("{}\t{:.2f}\t{:.3f}\n")), "by their order");
+}
+
+/// A computer logs every 10 ms or so; the angle beside it that rises too is none.
+TEST_F(Importing, FindsAClockWithoutANameThatAComputerKept) {
+  std::string text, angles;
+  double time_s = 2.0;
+  for (int i = 0; i < 300; ++i) {
+    text += fmt::format("{:.4f}, {:.3f}, {:.3f}\n", time_s, 30.0 - 30.0 * std::cos(0.02 * i), 30.0 - 30.0 * std::cos(0.02 * i - 0.05));
+    angles += fmt::format("{:.4f}, {:.3f}, {:.3f}\n", 100.0 * time_s, 100.0 * time_s + 0.1, 100.0 * time_s + 0.1 * (i % 2));
+    time_s += 0.01 + 0.001 * (i * i % 5);
+  }
+  EXPECT_THAT(Take(text).story, HasSubstr("it is taken as a clock in s"));
+  EXPECT_THAT(MessageOf([&] { Take(angles); }), HasSubstr("is not clear")) << "three angles";
+}
+
+TEST_F(Importing, TakesARateThatTheFileStates) {
+  std::string text = "# sample rate: 100 Hz\n# baud rate: 115200\ncommanded [deg],measured [deg]\n";
+  for (int i = 0; i < 300; ++i) text += fmt::format("{:.3f},{:.3f}\n", 30.0 * std::sin(0.05 * i), 30.0 * std::sin(0.05 * i - 0.02));
+  EXPECT_NEAR(ToSeconds(Take(text).readings.back().time), 2.99, 1e-9);
+  EXPECT_THAT(Take(text).story, HasSubstr("rows at 100 Hz, as \"sample rate\" says"));
 }
 
 TEST_F(Importing, TakesTheClockThatTheCommandLineNames) {

@@ -46,6 +46,17 @@ TEST_F(Importing, ReadsAListOfObjectsWhereverItIs) {
   ExpectServo(Take(R"({"kp": 32, "gains": [1, 2, 3], "log": {"entries": [)" + list + "]}}"));
 }
 
+/// One recording in a list of recordings, and the rate among the settings.
+TEST_F(Importing, ReadsListsOfOneLengthInAListOfOne) {
+  std::string goal, position;
+  for (int i = 0; i < 400; ++i) {
+    goal += fmt::format("{}{:.5f}", i > 0 ? ", " : "", Goal_rad(i));
+    position += fmt::format("{}{:.5f}", i > 0 ? ", " : "", Goal_rad(i - 3));
+  }
+  ExpectServo(Take(R"({"config": {"control_hz": 50, "limits": [-1.6, 1.6]}, "data": [{"kind": "sine", "marks": [], "goal": [)" + goal +
+                   R"(], "sensor_data": [)" + position + "]}]}"));
+}
+
 TEST_F(Importing, ReadsListsOfOneLength) {
   std::string goal, position, time, rows;
   for (int i = 0; i < 400; ++i) {

@@ -58,7 +58,22 @@ void CountRows(double rate_Hz, Track& track) {
   if (rate_Hz > 0.0) track.clock = fmt::format("rows at {:g} Hz, as the map says", rate_Hz);
 }
 
+bool HasPart(const std::string& name, const std::vector<const char*>& parts) {
+  return std::ranges::any_of(parts, [&name](const char* part) { return name.find(part) != std::string::npos; });
+}
+
 }  // namespace
+
+void TakeStatedRate(Track& track) {
+  for (const auto& [name, number] : track.numbers) {
+    const std::string small = SmallLetters(name);
+    const bool is_rate = HasPart(small, {"sampl", "action", "control", "acquisition", "log"}) && HasPart(small, {"rate", "hz", "freq"});
+    if (!is_rate || !(number > 0.0)) continue;
+    CountRows(number, track);
+    track.clock = fmt::format("rows at {:g} Hz, as \"{}\" says", number, name);
+    return;
+  }
+}
 
 void FindClock(const ClockSettings& settings, const std::string& where, Track& track) {
   const auto is_clock = [](const Column& column) { return IsCalledTime(column) && GoesOn(column); };
@@ -66,8 +81,11 @@ void FindClock(const ClockSettings& settings, const std::string& where, Track& t
   if (!settings.column.empty() && found == track.columns.end())
     throw InputError(where, fmt::format("there is no column \"{}\" to take the time from", settings.column),
                      "[time] column = one of the file's columns");
-  if (found == track.columns.end() || (settings.column.empty() && settings.rate_Hz > 0.0))
-    return CountRows(settings.rate_Hz, track);
+  if (found == track.columns.end() || (settings.column.empty() && settings.rate_Hz > 0.0)) {
+    CountRows(settings.rate_Hz, track);
+    if (!track.HasClock()) TakeStatedRate(track);
+    return;
+  }
   if (!found->IsNumber())
     throw InputError(where, fmt::format("\"{}\" holds words and no time", found->name), "times");
   Column column = std::move(*found);

@@ -146,7 +146,9 @@ class Search {
     if (IsListOf(json, [](const Json& e) { return e.is_object(); })) return Offer(json.size(), json, "a list of objects");
     if (IsListOf(json, [](const Json& e) { return e.is_array() && !e.empty() && !e[0].is_structured(); }))
       return Offer(json.size(), json, "a list of rows");
-    if (!json.is_object() || depth > kDeepest) return;
+    if (depth > kDeepest) return;
+    for (std::size_t i = 0; json.is_array() && i < std::min(json.size(), kFewestRecords); ++i) In(json[i], depth + 1);  // a few recordings
+    if (!json.is_object()) return;
     if (const std::size_t rows = RowsOfColumns(json); rows > 0) Offer(rows, json, "an object of lists");
     for (const auto& [name, part] : json.items()) {
       if (part.is_number()) numbers_[name] = part.get<double>();
@@ -237,6 +239,7 @@ void ReadRecords(std::string_view text, const Layout& layout, const ClockSetting
   for (Track& track : recording.tracks) {
     std::erase_if(track.columns, [](const Column& column) { return column.name == "record"; });
     track.numbers.insert(numbers.begin(), numbers.end());
+    if (!track.HasClock()) TakeStatedRate(track);
   }
 }
 

@@ -21,6 +21,9 @@ void ReadTable(std::string_view text, const Layout& layout, const ClockSettings&
 /// @throws InputError if the stated column is not there or holds no time.
 void FindClock(const ClockSettings& settings, const std::string& where, Track& track);
 
+/// Gives rows without a time the rate that a named number states: "sample_rate", "action_hz", "sampling frequency [Hz]".
+void TakeStatedRate(Track& track);
+
 /// True of "counts per turn", "ticks/rev", "cpr".
 /// @param small  Small letters.
 bool SaysPerTurn(const std::string& small);

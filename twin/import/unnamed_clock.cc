@@ -15,14 +15,28 @@ namespace {
 
 constexpr std::size_t kFewestOfAClock = 12;
 
-/// The usual step of a column that rises strictly and evenly, up to the rounding of its last digit; 0: it does not.
-double EqualStep(const std::vector<double>& values) {
-  constexpr double kEqual = 0.02;
+/// The usual step of a column that rises strictly, each step within `off` of the usual one; 0: it does not.
+double StepWithin(double off, const std::vector<double>& values) {
   const std::vector<double> steps = StepsOf(values);
   if (steps.size() + 1 != values.size() || values.size() < kFewestOfAClock) return 0.0;
   const double usual = MedianOf(steps);
-  const bool equal = usual > 0.0 && std::ranges::all_of(steps, [usual](double step) { return std::abs(step - usual) <= kEqual * usual; });
-  return equal ? usual : 0.0;
+  const bool all = usual > 0.0 && std::ranges::all_of(steps, [&](double step) { return step > 0.0 && std::abs(step - usual) <= off * usual; });
+  return all ? usual : 0.0;
+}
+
+bool GoTogether(const Column& first, const Column& second) {
+  const Following following = FollowingOf(first.value, second.value);
+  return std::abs(following.gain - 1.0) < 0.2 && following.correlation > 0.9;
+}
+
+/// Of a column that rises evenly, up to the rounding of its last digit; or as evenly as a computer logs, if it is not itself an angle
+/// that goes with the others.
+double StepOfClock(const Track& track) {
+  constexpr double kEqual = 0.02, kLogged = 0.9;
+  const Column& first = track.columns.front();
+  if (const double step = StepWithin(kEqual, first.value); step > 0.0) return step;
+  const bool is_angle = std::any_of(track.columns.begin() + 1, track.columns.end(), [&first](const Column& other) { return other.IsNumber() && GoTogether(first, other); });
+  return is_angle ? 0.0 : StepWithin(kLogged, first.value);
 }
 
 /// Two columns that go together one to one: the reference and the device are there already.
@@ -30,9 +44,7 @@ bool TwoOthersFollow(const Track& track) {
   for (std::size_t a = 1; a < track.columns.size(); ++a) {
     for (std::size_t b = a + 1; b < track.columns.size(); ++b) {
       const Column &first = track.columns[a], &second = track.columns[b];
-      if (!first.IsNumber() || !second.IsNumber()) continue;
-      const Following following = FollowingOf(first.value, second.value);
-      if (std::abs(following.gain - 1.0) < 0.2 && following.correlation > 0.9) return true;
+      if (first.IsNumber() && second.IsNumber() && GoTogether(first, second)) return true;
     }
   }
   return false;
@@ -60,7 +72,7 @@ void Take(Track& track, double step, Recording& recording) {
   for (double& t : track.time_s) t = (t - clock.origin) * clock.to_s;
   track.absolute = clock.absolute;
   track.clock = fmt::format("{} [{}]", column.name, clock.words);
-  recording.remarks.push_back(fmt::format("\"{0}\" rises in equal steps of {1:.6g}: it is taken as a clock in {2}; --column 'time_s=[{0}]' says another unit", column.name,
+  recording.remarks.push_back(fmt::format("\"{0}\" rises in steps of {1:.6g}: it is taken as a clock in {2}; --column 'time_s=[{0}]' says another unit", column.name,
                                           step, clock.words));
 }
 
@@ -72,7 +84,7 @@ void TakeUnnamedClock(const Map& map, Recording& recording) {
     if (track.HasClock() || track.columns.size() < 3) continue;
     const Column& first = track.columns.front();
     if (first.name != "column 1" || !first.IsNumber() || IsSpokenOf(first.name, map)) continue;
-    const double step = EqualStep(first.value);
+    const double step = StepOfClock(track);
     if (step > 0.0 && TwoOthersFollow(track)) Take(track, step, recording);
   }
 }
