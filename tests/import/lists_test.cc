@@ -107,5 +107,22 @@ TEST_F(Importing, TakesNumberedRunsForPassesInTheOrderOfTheRows) {
   EXPECT_THAT(Take("time [s];run 1;run 2\n0;0;0\n1;10;10\n2;20;20.1\n3;30;30\n").story, testing::Not(HasSubstr("runs went"))) << "along a time nobody goes";
 }
 
+/// A value a line, as controllers print a test: indices of the target and of the run.
+TEST_F(Importing, ReadsAPositioningTestOfIndexedLines) {
+  std::string text = "TEST_DATA=# of tuesday\nUNIT=mm\nCYCLES=3\n";
+  for (int i = 1; i <= 5; ++i) text += fmt::format("TGT_DATA[{}]={}\n", i, 10 * i);
+  for (int run = 1; run <= 3; ++run) {
+    for (int i = 1; i <= 5; ++i) text += fmt::format("REF_DATA_FWD[{},{}]={:.3f}\n", i, run, 10 * i + 0.01 * run);
+    for (int i = 5; i >= 1; --i) text += fmt::format("REF_DATA_BWD[{},{}]={:.3f}\n", i, run, 10 * i - 0.01 * run);
+  }
+  const Imported imported = Take(text);
+  ASSERT_EQ(imported.readings.size(), 30u) << imported.story;
+  const Reading& r = imported.readings.at(7);  // the third on the first way back
+  EXPECT_EQ(r.direction, -1);
+  EXPECT_NEAR(r.reference_rad / units::deg, 30.0, 1e-9) << "a degree a millimetre";
+  EXPECT_NEAR(r.measured_rad / units::deg, 29.99, 1e-9);
+  EXPECT_THAT(imported.story, HasSubstr("5 targets, 3 runs up, 3 down"));
+}
+
 }  // namespace
 }  // namespace twinbench::imports

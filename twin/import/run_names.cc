@@ -53,8 +53,8 @@ bool IsCalledTarget(std::string_view field) {
 int DirectionIn(std::string_view text) {
   const std::string small = SmallLetters(text);
   const bool up =
-      HasAnyPart(small, {"forward", "up", "positive", "vorw", "↑", "pos. dir", "below", "von unten", "aller"}) || Trimmed(text).ends_with('+');
-  const bool down = HasAnyPart(small, {"backward", "down", "negative", "reverse", "rückw", "↓", "neg. dir", "above", "von oben", "retour"}) ||
+      HasAnyPart(small, {"forward", "fwd", "up", "positive", "vorw", "↑", "pos. dir", "below", "von unten", "aller"}) || Trimmed(text).ends_with('+');
+  const bool down = HasAnyPart(small, {"backward", "bwd", "down", "negative", "reverse", "rückw", "↓", "neg. dir", "above", "von oben", "retour"}) ||
                     Trimmed(text).ends_with('-');
   return up == down ? 0 : up ? 1 : -1;
 }

@@ -11,6 +11,7 @@
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
 #include "twin/import/cycles.h"
+#include "twin/import/indexed.h"
 #include "twin/import/pairs.h"
 #include "twin/import/records.h"
 #include "twin/import/scope.h"
@@ -75,6 +76,12 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
   Recording recording;
   recording.file = path;
   const std::string text = LoadText(path);
+  if ((layout.columns_are_open || layout.kind == "cycles") && AreIndexed(FirstLines(text))) {
+    if (const std::string table = TableOfIndexed(text); !table.empty()) {
+      ReadCycles(table, {}, recording);
+      return recording;
+    }
+  }
   const std::string kind = layout.kind == "auto" ? FindKind(FirstLines(text), layout.columns_are_open) : layout.kind;
   if (kind == "changes") {
     ReadChanges(text, recording);
