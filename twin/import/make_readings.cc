@@ -26,10 +26,10 @@ double MeanOf(const std::vector<double>& values, const Block& block) {
   return count > 0 ? sum / static_cast<double>(count) : std::nan("");
 }
 
-/// Every jump of more than three quarters of a turn begins a pass that the recording numbers: the axis was driven back, nothing wraps.
+/// Every jump of more than three quarters of a turn begins a pass that a list without a clock numbers: it is the same places again.
 bool JumpsBetweenPasses(const Session& session, const std::vector<double>& reference) {
   const auto pass = session.value.find("pass");
-  if (pass == session.value.end()) return false;
+  if (session.has_clock || pass == session.value.end()) return false;
   for (std::size_t i = 1; i < reference.size(); ++i) {
     if (std::abs(reference[i] - reference[i - 1]) > 0.75 * units::turn && pass->second[i] == pass->second[i - 1]) return false;
   }
