@@ -14,7 +14,8 @@ const std::vector<Set>& Sets() {
        OwnScenarioSet},
       {"investigate", "one hidden cause, with as many runs as it takes", InvestigateSet},
       {"clean", "nothing wrong, the noise odd: silence is right", CleanSet},
-      {"unlisted", "causes that the catalogue lacks, and effects struck from it", UnlistedSet}};
+      {"unlisted", "causes that the catalogue lacks, and effects struck from it", UnlistedSet},
+      {"shelf", "recordings as people have them, imported by a plain guess: tests/data/shelf", ShelfSet}};
   return sets;
 }
 

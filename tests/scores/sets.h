@@ -36,6 +36,7 @@ Plans ForeignSet(const std::string& bench, const Amount& amount);
 Plans TwoRunsSet(const std::string& bench, const Amount& amount);
 Plans OwnScenarioSet(const std::string& bench, const Amount& amount);
 Plans InvestigateSet(const std::string& bench, const Amount& amount);
+Plans ShelfSet(const std::string& bench, const Amount& amount);
 
 inline void Append(const Plans& more, Plans& plans) {
   plans.insert(plans.end(), more.begin(), more.end());

@@ -1,0 +1,79 @@
+#include "tests/shelf/examine.h"
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+
+#include "tests/hidden/judge.h"
+#include "tests/hidden/written_file.h"
+#include "tools/twinbench/answers.h"
+#include "twin/benches/expected.h"
+#include "twin/benches/registry.h"
+#include "twin/core/errors.h"
+#include "twin/diagnose/diagnose.h"
+
+namespace twinbench::shelf {
+namespace {
+
+const std::string kFolder = TWINBENCH_TEST_DATA "/shelf";
+
+double ThreadSeconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+tools::Imported ImportedCase(const std::string& name) {
+  const std::string path = kFolder + "/" + name + ".csv";
+  tools::ImportWish wish;
+  wish.files = {path};
+  tools::Imported taken = tools::ImportedFrom(wish);
+  plausible::RefuseFatal(DoubtsAbout(taken.readings, taken.scenario), path);
+  return taken;
+}
+
+std::string Told(const diagnose::Diagnosis& d) {
+  std::string words = hidden::Judge({}, d).answer;
+  if (d.verdict != diagnose::Verdict::kUnknown && diagnose::HasUnmodelled(d))
+    words += " | and " + d.unknown.signature;
+  return words;
+}
+
+}  // namespace
+
+std::vector<std::string> CaseNames() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
+    if (entry.path().extension() == ".csv") names.push_back(entry.path().stem());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+Answer Examine(const std::string& name, const std::string& cache_folder, bool asks_again) {
+  const double begin_s = ThreadSeconds();
+  const Truth truth = ReadTruth(kFolder + "/truth.json", name);
+  Answer answer;
+  answer.truth = InWords(truth);
+  try {
+    const tools::Imported taken = ImportedCase(name);
+    diagnose::DiagnoseOptions options;
+    options.cache_folder = cache_folder;
+    const diagnose::DiagnosisRun found = diagnose::Diagnose(taken.readings, taken.scenario, options);
+    answer.words = Told(found.diagnosis);
+    answer.judged = Judge(truth, found.diagnosis);
+    answer.cpu_s = ThreadSeconds() - begin_s;
+    if (asks_again && found.diagnosis.verdict != diagnose::Verdict::kNone && !truth.causes.empty())
+      answer.second = hidden::Says(taken.readings, hidden::WrittenFile(taken.scenario, found), options);
+  } catch (const InputError& refusal) {
+    if (answer.words.empty()) {
+      answer.words = std::string("refused: ") + refusal.what();
+      answer.judged = {false, false, answer.words};
+    } else {
+      answer.second = std::string("refused: ") + refusal.what();
+    }
+  }
+  return answer;
+}
+
+}  // namespace twinbench::shelf

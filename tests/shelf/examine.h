@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/shelf/judge.h"
+
+/// Recordings as people have them: imported by a plain guess, then diagnosed, as the two commands do it.
+namespace twinbench::shelf {
+
+/// Numbers of the files in tests/data/shelf, in order.
+std::vector<std::string> CaseNames();
+
+struct Answer {
+  Judged judged;
+  std::string truth, words;  // in words; of a file that is refused, why
+  std::optional<std::string>
+      second;          // what a second diagnosis with the written file says; nothing: it was not asked
+  double cpu_s = 0.0;  // of this thread, until the answer was judged
+};
+
+/// @param cache_folder  Of calibrated thresholds; empty: nowhere.
+/// @param asks_again    Diagnose the same readings with the written file.
+Answer Examine(const std::string& name, const std::string& cache_folder, bool asks_again);
+
+}  // namespace twinbench::shelf

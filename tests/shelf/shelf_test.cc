@@ -1,0 +1,42 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "tests/shelf/examine.h"
+#include "tests/shelf/right_cases.h"
+
+// One test a recording, so that they can be run side by side and one by one.
+namespace twinbench::shelf {
+namespace {
+
+class Shelf : public ::testing::TestWithParam<std::string> {};
+
+/// A case that is about as slow as the limit is not to change its mark with every run.
+bool IsSlow(double cpu_s, bool was_slow) {
+  return cpu_s > (was_slow ? 2.0 : 3.0);
+}
+
+TEST_P(Shelf, IsDiagnosedAsWellAsItWas) {
+  const std::string name = GetParam();
+  KnownCases known = ReadKnownCases();
+  const char* const accept = std::getenv("TWINBENCH_ACCEPT_RIGHT");  // "1"; "all": of slow ones too
+  if (known[name].is_slow && (!accept || accept != std::string("all"))) GTEST_SKIP() << "only tests/scores runs it";
+  const Answer answer = Examine(name, "", false);
+  if (accept) {
+    known[name] = {answer.judged.is_right, IsSlow(answer.cpu_s, known[name].is_slow)};
+    WriteKnownCases(known);
+    return;
+  }
+  if (known[name].is_right)
+    EXPECT_TRUE(answer.judged.is_right) << "was right: " << answer.judged.why << "\n" << answer.words;
+  else
+    EXPECT_FALSE(answer.judged.is_right) << "is right now: add this line to tests/data/shelf/right.txt\n"
+                                         << name << " right";
+}
+
+INSTANTIATE_TEST_SUITE_P(Recordings, Shelf, ::testing::ValuesIn(CaseNames()),
+                         [](const auto& one) { return one.param; });
+
+}  // namespace
+}  // namespace twinbench::shelf
