@@ -55,8 +55,16 @@ bool IsRightSize(const std::optional<Size>& told, const Expected& expected, doub
   return sizes.empty() || std::ranges::any_of(sizes, [&](const Size& size) { return IsNear(*told, size, share); });
 }
 
+/// Signals that are cut off have overtones of their own: what a wave of such an order adds to them is not its whole
+/// size.
+bool AddsToClipping(const Cause& cause, const Causes& all) {
+  const double order = OrderOf(cause);
+  return cause.effect == "periodic" && std::abs(std::remainder(order, 4.0)) < 1e-9 &&
+         std::ranges::find(all, "signal_clipping", &Cause::effect) != all.end();
+}
+
 bool HasRightSize(const Cause& cause, const Expected& expected, const Causes& all, double share) {
-  if (!std::isfinite(expected.size)) return true;
+  if (!std::isfinite(expected.size) || AddsToClipping(cause, all)) return true;
   const std::optional<Size> told = SizeOf(cause, expected);
   return !told || IsRightSize(told, expected, share) ||
          IsRightSize(AmplitudeTogether(all, expected.order), expected, share);
@@ -120,18 +128,19 @@ std::string WrongWith(const Expected& expected, const Diagnosis& d) {
   return why;
 }
 
-bool IsSmallOrder(const Cause& cause, const Truth& truth) {
+bool IsSmallOrder(const Cause& cause, const Truth& truth, const Causes& all) {
   const double order = OrderOf(cause);
   const std::optional<Size> size = AmplitudeOf(cause, order);
   if (size && size->value <= truth.any_order_below_deg * units::deg) return true;
   return std::ranges::any_of(truth.orders, [&](const auto& one) {
-    return IsSameOrder(order, one.first) && (!size || IsNear(*size, InSI(one.second, "deg"), kRoughly));
+    return IsSameOrder(order, one.first) &&
+           (!size || AddsToClipping(cause, all) || IsNear(*size, InSI(one.second, "deg"), kRoughly));
   });
 }
 
 /// The size of a cause that must be named is another question.
 bool IsThere(const Cause& cause, const Truth& truth, const Causes& all) {
-  if (Contains(truth.effects, cause.effect) || IsSmallOrder(cause, truth)) return true;
+  if (Contains(truth.effects, cause.effect) || IsSmallOrder(cause, truth, all)) return true;
   return std::ranges::any_of(truth.causes, [&](const Expected& expected) {
     return Matches(cause, expected) && (expected.IsWanted() || HasRightSize(cause, expected, all, kRoughly));
   });

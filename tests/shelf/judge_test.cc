@@ -186,6 +186,13 @@ TEST(ShelfJudge, KnowsTheOrdersOfSignalsThatAreCutOff) {
   EXPECT_TRUE(IsRight(Of({Order(4, 2.2, 0.86), Order(8, 0.8, 0.11)}), Said({cut})));
 }
 
+TEST(ShelfJudge, LetsAWaveMakeUpForTheOvertonesOfSignalsThatAreCutOff) {
+  const Truth truth = Of({Order(4, 2.2, 0.99), Order(12, 0.5, 0.01)});
+  const Cause cut = Found("signal_clipping", 0.9, {{"level", "1", 1.0, 0.82, 1e-5}});
+  EXPECT_TRUE(IsRight(truth, Said({cut, Wave("periodic", 0.9, 0.2, 12)})));
+  EXPECT_FALSE(IsRight(truth, Said({cut, Wave("periodic", 0.9, 0.2, 13)})));
+}
+
 TEST(ShelfJudge, KnowsTheOrdersOfFaultsOfTheSignals) {
   const Cause offset =
       Found("signal_offset", 0.9, {{"offset_sin", "1", 1.0, 0.003, 0.0}, {"offset_cos", "1", 1.0, -0.004, 0.0}});
