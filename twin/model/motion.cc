@@ -24,21 +24,26 @@ double LongestStep_s(const Eigen::VectorXd& time_s) {
 Eigen::VectorXd RateOfChange(const Course& course, const Eigen::VectorXd& values) {
   const double longest_s = LongestStep_s(course.time_s);
   const Eigen::Index last = course.Readings() - 1;
+  const auto step_s = [&](Eigen::Index i) { return course.time_s[i] - course.time_s[i - 1]; };
   // Slope from reading i - 1 to i; NaN if they are not of one motion.
   const auto slope = [&](Eigen::Index i) {
     if (i < 1 || i > last) return kNaN;
-    const double step_s = course.time_s[i] - course.time_s[i - 1];
     const bool is_one = course.setup[static_cast<std::size_t>(i)] == course.setup[static_cast<std::size_t>(i - 1)];
-    return is_one && step_s > 0.0 && step_s <= longest_s ? (values[i] - values[i - 1]) / step_s : kNaN;
+    return is_one && step_s(i) > 0.0 && step_s(i) <= longest_s ? (values[i] - values[i - 1]) / step_s(i) : kNaN;
   };
-  Eigen::VectorXd rate = Eigen::VectorXd::Zero(last + 1);
+  // At an end: of the step there, and as much further as the slope has changed from the next one.
+  const auto at_end = [&](Eigen::Index near, Eigen::Index next) {
+    if (!std::isfinite(slope(near))) return 0.0;
+    if (!std::isfinite(slope(next))) return slope(near);
+    return slope(near) + (slope(near) - slope(next)) * step_s(near) / (step_s(near) + step_s(next));
+  };
+  Eigen::VectorXd rate(last + 1);
   for (Eigen::Index i = 0; i <= last; ++i) {
     const double before = slope(i), behind = slope(i + 1);
     if (std::isfinite(before) && std::isfinite(behind)) {
-      const double before_s = course.time_s[i] - course.time_s[i - 1], behind_s = course.time_s[i + 1] - course.time_s[i];
-      rate[i] = (before * behind_s + behind * before_s) / (before_s + behind_s);
-    } else if (std::isfinite(before) || std::isfinite(behind)) {
-      rate[i] = std::isfinite(before) ? before : behind;
+      rate[i] = (before * step_s(i + 1) + behind * step_s(i)) / (step_s(i) + step_s(i + 1));
+    } else {
+      rate[i] = std::isfinite(before) ? at_end(i, i - 1) : at_end(i + 1, i + 2);
     }
   }
   return rate;

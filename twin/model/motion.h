@@ -7,7 +7,7 @@
 namespace twinbench::model {
 
 /// Rate of change of what has one value a reading, by the times of the course [1/s]: the slope of the parabola through
-/// a reading and its neighbours of the same motion, of a line at its ends, zero where there is no neighbour.
+/// a reading and its neighbours of the same motion, the nearest two at its ends, zero where there is no neighbour.
 ///
 /// A motion goes on from reading to reading of a mounting as long as none is missing, also where it turns back: a pass
 /// ends there, and what goes with the acceleration is largest.

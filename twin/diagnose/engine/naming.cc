@@ -82,10 +82,33 @@ bool LeavesStructure(const Answered& answered, double last_statistic, double thr
   return last_statistic > std::max(threshold, 0.5 * tuning::kSmallRest * answered.power);
 }
 
+Eigen::VectorXd SignalOf(const Term& term) {
+  return term.columns * term.amplitudes;
+}
+
+/// Power of what has a name and is like nothing without one: a constant beside the same that follows the temperature
+/// may be no more than a piece of that.
+double OwnPower(const SearchResult& found, const Answered& answered) {
+  Eigen::VectorXd unnamed = Eigen::VectorXd::Zero(found.terms.front().columns.rows());
+  for (std::size_t k = 0; k < answered.answers.size(); ++k) {
+    if (answered.answers[k].causes.empty()) unnamed += SignalOf(found.terms[k]);
+  }
+  double power = 0.0;
+  for (std::size_t k = 0; k < answered.answers.size(); ++k) {
+    const Answer& answer = answered.answers[k];
+    if (answer.causes.empty()) continue;
+    const Eigen::VectorXd signal = SignalOf(found.terms[k]);
+    const double both = signal.squaredNorm() * unnamed.squaredNorm();
+    const double alike = both > 0.0 ? std::pow(signal.dot(unnamed), 2) / both : 0.0;
+    power += (1.0 - alike) * std::max(0.0, answer.weight);
+  }
+  return power;
+}
+
 /// What has no name explains more than what has one, or something larger is left.
-bool IsMostlyUnnamed(const Answered& answered, double last_statistic, double threshold) {
-  const double unnamed = UnnamedPower(answered) + (last_statistic > threshold ? 2.0 * last_statistic : 0.0);
-  return unnamed > answered.power - UnnamedPower(answered);
+bool IsMostlyUnnamed(const SearchResult& found, const Answered& answered, double threshold) {
+  const double left = found.last_statistic > threshold ? 2.0 * found.last_statistic : 0.0;
+  return UnnamedPower(answered) + left > OwnPower(found, answered);
 }
 
 /// Several named causes together against one generic shape alone, which needs no coincidence.
@@ -161,6 +184,7 @@ Verdict VerdictOf(const Answered& answered) {
 Naming Name(const SearchResult& found, const std::vector<Family>& families, double threshold, bool noise_free) {
   if (found.terms.empty()) return {};
   Answered answered = AnswerAll(found, families);
+  const bool is_mostly_unnamed = IsMostlyUnnamed(found, answered, threshold);
   if (noise_free) std::erase_if(answered.answers, [&](const Answer& a) { return answered.IsSmall(a); });
   Naming naming{VerdictOf(answered), CausesOf(answered), UnknownOf(answered)};
   const double one_unknown = ChanceOfOneUnknown(found, families);
@@ -171,7 +195,7 @@ Naming Name(const SearchResult& found, const std::vector<Family>& families, doub
   } else if (found.overtones > 0.5) {
     DeclareUnknown("something that repeats as the wave identified here and is no sine, function of time", UnnamedPower(answered),
                    naming);
-  } else if (IsMostlyUnnamed(answered, found.last_statistic, threshold) || one_unknown > 0.5) {
+  } else if (is_mostly_unnamed || one_unknown > 0.5) {
     DeclareUnknown(kUnexplained, UnnamedPower(answered), naming);
   } else if (naming.unknown.signature.empty() && LeavesStructure(answered, found.last_statistic, threshold)) {
     naming.unknown = {tuning::kListed, kUnexplained};

@@ -98,14 +98,31 @@ Scatter FromRepeats(const Schedule& s, const Eigen::VectorXd& y, const Eigen::Ve
   return SpreadOf(differences);
 }
 
+/// Where no pass goes from stop to stop: what is not the same at a stop that was reached in one direction again.
+Scatter AtOneStop(const Schedule& s, const Eigen::VectorXd& y, const Eigen::VectorXd& variance) {
+  std::map<Stop, std::vector<int>> at;
+  for (int i = 0; i < s.Readings(); ++i) at[StopOf(s, i)].push_back(i);
+  double squares = 0.0, count = 0.0;
+  for (const auto& [stop, readings] : at) {
+    double weights = 0.0, mean = 0.0;
+    for (const int i : readings) weights += 1.0 / variance[i];
+    for (const int i : readings) mean += y[i] / variance[i] / weights;
+    for (const int i : readings) squares += std::pow(y[i] - mean, 2) / variance[i];
+    count += static_cast<double>(readings.size()) - 1.0;
+  }
+  if (count < kFewestDifferences) return {};
+  return {std::sqrt(squares / count), count};
+}
+
 }  // namespace
 
 double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residual_rad,
                          const Eigen::VectorXd& relative) {
   const Eigen::VectorXd variance =
       relative.size() > 0 ? relative.cwiseAbs2() : Eigen::VectorXd::Ones(residual_rad.size()).eval();
-  const double estimate_rad = SmallerOrMean(FromNeighbours(schedule, residual_rad, variance),
-                                            FromRepeats(schedule, residual_rad, variance));
+  double estimate_rad = SmallerOrMean(FromNeighbours(schedule, residual_rad, variance),
+                                      FromRepeats(schedule, residual_rad, variance));
+  if (!std::isfinite(estimate_rad)) estimate_rad = AtOneStop(schedule, residual_rad, variance).sd;
   const double range_rad = residual_rad.maxCoeff() - residual_rad.minCoeff();
   const double least_rad = std::max(1e-9 * range_rad, 1e-15);
   return std::isfinite(estimate_rad) ? std::max(estimate_rad, least_rad) : std::max(range_rad, least_rad);

@@ -47,8 +47,11 @@ void AddByDirection(Collector& collect) {
   collect.Are([](const Eigen::VectorXd&, int) { return ColumnOf(Following(SignalOf("constant"), "direction")); });
   for (const Angle& angle : d.angles) {
     if (!angle.is_turned_by_motion) continue;
+    // What alternates from stop to stop has exactly two of them a period.
+    Angle to_alternating = angle;
+    if (angle.last_order > 0) ++to_alternating.last_order;
     for (const Eigen::VectorXd& sense : d.senses) {
-      collect.AddModulated("direction harmonic", angle, tuning::kDirectionOrders, sense,
+      collect.AddModulated("direction harmonic", to_alternating, tuning::kDirectionOrders, sense,
                            "direction times order {} synchronous with " + angle.name + ", odd in direction");
       if (&sense == &d.senses.front()) collect.AreHarmonics(angle, Following({}, "direction"));
     }

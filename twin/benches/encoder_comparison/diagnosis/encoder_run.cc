@@ -20,6 +20,7 @@
 #include "twin/diagnose/redundancy.h"
 #include "twin/model/course.h"
 #include "twin/model/motion.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -92,11 +93,12 @@ double Roughness_rad(const LinearRun& run) {
 /// then their median says nothing.
 /// @return that error where it is what the readings scatter by; 0 otherwise.
 double RoundedReference_rad(const LinearRun& run, double noise_rad) {
-  constexpr double kNothing = 0.3, kAlike = 2.0;
+  constexpr double kNothing = 0.01, kAlike = 2.0, kFine = 0.1;  // the last: of the way to the next reading
   const double roughness_rad = Roughness_rad(run);
-  const double rounded_rad = CommonStep(run.schedule.reference_rad) / std::sqrt(12.0);
+  const double step_rad = CommonStep(run.schedule.reference_rad), rounded_rad = step_rad / std::sqrt(12.0);
   const bool is_alike = rounded_rad > roughness_rad / kAlike && rounded_rad < roughness_rad * kAlike;
-  return noise_rad < kNothing * roughness_rad && is_alike ? rounded_rad : 0.0;
+  const bool is_fine = step_rad < kFine * model::TypicalStep_rad(run.schedule, run.schedule.reference_rad);
+  return noise_rad < kNothing * roughness_rad && is_alike && is_fine ? rounded_rad : 0.0;
 }
 
 /// Readings that are rounded err by no less than that, and all by the arithmetic of many turns. Where one is the

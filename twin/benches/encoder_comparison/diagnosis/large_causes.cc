@@ -202,10 +202,13 @@ class Search {
     return FollowTwin(large_.first->encoder, With(scenario_, effects), follow_).error_rad - nothing_;
   }
 
-  double PowerOf(const Eigen::VectorXd& rows) const {
+  /// Whitened, without what the free unknowns take up.
+  Projected WhiteOf(const Eigen::VectorXd& rows) const {
     const Eigen::MatrixXd white = large_.first->encoder.run.sigma.cwiseInverse().asDiagonal() * rows;
-    return Project(*projector_, {}, white).power[0];
+    return Project(*projector_, {}, white);
   }
+
+  double PowerOf(const Eigen::VectorXd& rows) const { return WhiteOf(rows).power[0]; }
 
   /// It is there with the others as they are now.
   static bool IsHeld(const EffectSettings& effect) { return Deviations(effect) > tuning::kHeadline; }
@@ -332,7 +335,8 @@ class Search {
   }
 
   /// How many readings say as much as one would of white noise: what no cause explains goes on from one to the next.
-  double Memory(const Eigen::VectorXd& left) const {
+  double Memory(const Eigen::VectorXd& rows) const {
+    const Eigen::VectorXd left = WhiteOf(rows).rows.col(0);
     const std::vector<int>& pass = large_.first->encoder.run.schedule.pass;
     double products = 0.0, squares = 0.0;
     for (Eigen::Index i = 1; i < left.size(); ++i) {

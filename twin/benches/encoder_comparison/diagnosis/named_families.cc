@@ -251,9 +251,9 @@ void AddMotion(const Context& context, Candidates& named) {
   }
   AddSettling(context, named);
   named.Add(Shown("scale"), {"ratio"}, c.reference_rad);
-  // Over a whole turn a scale closes: what bends there is its orders.
-  constexpr double kNearlyATurn = 0.9;
-  if (!(c.device.turn_m > 0.0) && Range_rad(c.reference_rad) > kNearlyATurn * units::turn) return;
+  // In about one turn a scale that bends is like its first orders.
+  const double turns = Range_rad(c.reference_rad) / units::turn;
+  if (!(c.device.turn_m > 0.0) && turns > 0.9 && turns < 1.5) return;
   Eigen::MatrixXd bent(c.Readings(), 2);
   bent << c.reference_rad, c.reference_rad.cwiseAbs2() / units::turn;
   named.AddBent(Shown("scale"), "ratio", bent);

@@ -37,8 +37,8 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   design.travel_rad = TravelSinceReversal_rad(c);
   design.velocity = c.velocity_rad_s;
   if (model::HasTemperature(design.course)) {
-    const Eigen::VectorXd T = model::Above_K(design.course, 0.0);
-    design.above_K = T.array() - T.mean();
+    design.above_K = model::Above_K(design.course, kReference_degC);
+    design.twin_is_warm = true;
   }
   design.series = series;
   design.unit = encoder.run.unit;
@@ -47,6 +47,9 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   design.may_be_touched = true;
   design.named = {{"harmonic", ""}, {"direction offset", ""}, {"transition", ""}, {"step", "slip"}, {"trend", ""}};
   std::vector<Family> families = unknown::Families(design);
+  // Without a clock nothing has a frequency or a time constant.
+  if (!c.has_clock)
+    std::erase_if(families, [](const Family& family) { return family.effect == "tone" || family.effect == "restart"; });
   std::ranges::move(GrowingSpeeds(c, design), std::back_inserter(families));
   std::ranges::move(LostCountFamilies(c, design), std::back_inserter(families));
   return families;

@@ -18,9 +18,11 @@ double RunUp_rad(const EncoderProcedureSettings& procedure) {
 }
 
 AngleMoment MomentOf(const Reading& reading, double run_up_rad) {
-  const double velocity_rad_s = std::isfinite(reading.velocity_rad_s) ? reading.velocity_rad_s : 0.0;
-  return {reading.time,          reading.setup,  reading.reading,
-          reading.reference_rad, velocity_rad_s, reading.direction * run_up_rad};
+  const auto known = [](double value) { return std::isfinite(value) ? value : 0.0; };
+  return {reading.time,          reading.setup,
+          reading.reading,       reading.reference_rad,
+          known(reading.velocity_rad_s), reading.direction * run_up_rad,
+          known(reading.temperature_degC - kReference_degC)};
 }
 
 double Quantised(double angle_rad, double step_rad) {

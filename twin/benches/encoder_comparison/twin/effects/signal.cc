@@ -18,6 +18,7 @@ class AngleSignal : public AngleEffect {
                                  .reading = moment.reading,
                                  .direction = way_rad == 0.0 ? 0.0 : std::copysign(1.0, way_rad),
                                  .velocity_rad_s = moment.velocity_rad_s,
+                                 .above_K = moment.above_K,
                                  .angle_rad = {device_rad, moment.shaft_rad}};
     return product_.At(instant, std::array{device_rad});
   }

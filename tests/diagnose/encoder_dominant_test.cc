@@ -1,0 +1,205 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/diagnose/encoder_record.h"
+#include "twin/core/reading_clock.h"
+#include "twin/diagnose/engine/repeats.h"
+#include "twin/model/motion.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+using namespace lab;
+
+// Recordings in which one thing dominates and something else is there too, by closed forms. What is named first must be
+// what is largest, in its size, however flexible other shapes are.
+
+struct Wave {
+  int order;
+  double size_deg, phase_deg;
+  double At(double angle_deg) const { return size_deg * std::cos((order * angle_deg + phase_deg) * units::deg); }
+};
+
+double Sum(const std::vector<Wave>& waves, double angle_deg) {
+  double sum = 0.0;
+  for (const Wave& wave : waves) sum += wave.At(angle_deg);
+  return sum;
+}
+
+/// A list without a clock: `stops` once round and the same back.
+template <class Error>
+Record ThereAndBack(int stops, double noise_deg, unsigned seed, Error error_deg) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0.0, noise_deg);
+  Record record;
+  record.kind = "stops";
+  for (int k = 0; k < 2 * stops; ++k) {
+    const int stop = k < stops ? k : 2 * stops - 1 - k, direction = k < stops ? 1 : -1;
+    const double angle_deg = 360.0 * (stop + 1) / stops;
+    record.Add(k, angle_deg, angle_deg + error_deg(angle_deg, stop, direction) + noise(random), direction, k / stops);
+    record.readings.back().extra[kClockColumn] = kNoClock;
+  }
+  return record;
+}
+
+/// Of the wave of this order, whatever its name is.
+double SizeOfOrder(const Answer& answer, int order) {
+  if (order == 1) return answer.Value("eccentricity", "amplitude");
+  if (order == 2) return answer.Value("ellipticity", "amplitude");
+  for (const Cause& cause : answer.run.diagnosis.causes) {
+    double size = kNaN;
+    bool is_it = false;
+    for (const ParameterEstimate& p : cause.parameters) {
+      if (p.name == "order") is_it = p.value == order;
+      if (p.name == "amplitude") size = p.value / p.to_SI;
+    }
+    if (cause.effect == "periodic" && is_it) return size;
+  }
+  return kNaN;
+}
+
+TEST(EncoderDominant, OrdersThatRepeatThereAndBackAreNoWander) {
+  const std::vector<Wave> waves = {{1, 0.3, 20.0}, {2, 0.1, 140.0}, {3, 0.04, -70.0}, {4, 0.03, 260.0}};
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    for (const auto& [stops, noise_deg] : {std::pair{200, 0.015}, std::pair{72, 0.003}}) {
+      const Answer answer = Ask(ThereAndBack(stops, noise_deg, seed, [&](double a, int, int) { return Sum(waves, a); }));
+      SCOPED_TRACE(answer.Words());
+      EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kTie) << "one mounting tells no eccentricity from an offset";
+      EXPECT_FALSE(HasUnmodelled(answer.run.diagnosis));
+      for (const Wave& wave : waves)
+        EXPECT_NEAR(SizeOfOrder(answer, wave.order), wave.size_deg, 4.0 * noise_deg / std::sqrt(stops)) << wave.order;
+      EXPECT_EQ(answer.again.verdict, Verdict::kNone);
+    }
+  }
+}
+
+TEST(EncoderDominant, WhatHasNoNameStandsBesideWhatDominates) {
+  const std::vector<Wave> waves = {{1, 0.5, 5.0}, {2, 0.3, 150.0}};
+  const Answer answer = Ask(ThereAndBack(200, 0.01, 4, [&](double a, int stop, int direction) {
+    return Sum(waves, a) + (stop % 2 == 0 ? 0.1 : -0.1) * direction;
+  }));
+  SCOPED_TRACE(answer.Words());
+  EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kTie);
+  EXPECT_TRUE(HasUnmodelled(answer.run.diagnosis));
+  EXPECT_NEAR(SizeOfOrder(answer, 1), 0.5, 0.01);
+  EXPECT_NEAR(SizeOfOrder(answer, 2), 0.3, 0.01);
+}
+
+TEST(EncoderDominant, CoggingThatShiftsWithTheDirectionIsAnOrderAndItsProductWithTheDirection) {
+  const Answer answer = Ask(ThereAndBack(720, 0.01, 5, [](double a, int, int direction) {
+    return 0.1 * std::cos((72.0 * a + (direction > 0 ? 0.0 : 90.0)) * units::deg);
+  }));
+  EXPECT_NEAR(SizeOfOrder(answer, 72), 0.1 / std::sqrt(2.0), 0.003) << answer.Words();
+  EXPECT_NE(answer.run.diagnosis.unknown.signature.find("direction times order 72"), std::string::npos) << answer.Words();
+  EXPECT_EQ(answer.again.verdict, Verdict::kNone) << answer.Words();
+}
+
+TEST(EncoderDominant, AServoIsLateAndErrsByItsAcceleration) {
+  // measured(t) = r - tau v - kappa a of a swing: r = R / 2 (1 - cos w t)
+  const Swing swing{60.0, 2.0};
+  const double w = 2.0 * units::kPi / swing.period_s, late_s = 0.004, kappa_s2 = 0.0004;
+  const Record record = Swung(swing, 0.0, 12.0, 0.01, 0.02, 6, [&](double t_s) {
+    const double v = 0.5 * swing.range_deg * w * std::sin(w * t_s), a = 0.5 * swing.range_deg * w * w * std::cos(w * t_s);
+    return swing.At(t_s) - late_s * v - kappa_s2 * a;
+  });
+  const Answer answer = Ask(record);
+  EXPECT_TRUE(answer.Names("latency")) << answer.Words();
+  EXPECT_NEAR(answer.Value("latency", "delay"), late_s, 0.02 * late_s) << answer.Words();
+}
+
+TEST(EncoderDominant, ALatencyAndTheOrdersBesideItHaveTheirSizes) {
+  const std::vector<Wave> waves = {{1, 0.4, 190.0}, {2, 0.4, 60.0}, {4, 0.12, 235.0}};
+  const Swing swing{360.0, 16.0};
+  const double late_s = 0.035;
+  const Record record = Swung(swing, 0.0, 16.0, 0.01, 0.01, 7, [&](double t_s) {
+    const double shaft_deg = swing.At(t_s - late_s);
+    return shaft_deg + Sum(waves, shaft_deg);
+  });
+  const Answer answer = Ask(record);
+  EXPECT_TRUE(answer.Names("latency")) << answer.Words();
+  EXPECT_NEAR(answer.Value("latency", "delay"), late_s, 0.02 * late_s) << answer.Words();
+  for (const Wave& wave : waves) EXPECT_NEAR(SizeOfOrder(answer, wave.order), wave.size_deg, 0.05 * wave.size_deg) << answer.Words();
+}
+
+TEST(EncoderDominant, OnePlacePushedFromBothSidesShowsThePlay) {
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> noise_deg(0.0, 0.001);
+  Record record;
+  record.kind = "stops";
+  for (int k = 0; k < 20; ++k) record.Add(k, 30.0, 30.0 - 0.005 * (k % 2 == 0 ? 1 : -1) + noise_deg(random), k % 2 == 0 ? 1 : -1, k);
+  const Answer answer = Ask(record);
+  EXPECT_TRUE(answer.Names("backlash", 0.5)) << answer.Words();
+  EXPECT_NEAR(answer.Value("backlash", "width"), 0.01, 4.0 * answer.Uncertainty("backlash", "width"));
+  EXPECT_EQ(answer.again.verdict, Verdict::kNone) << answer.Words();
+}
+
+TEST(EncoderDominant, WithoutAClockAScaleThatBendsIsNoDrift) {
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> noise_deg(0.0, 0.001);
+  Record record;
+  record.kind = "stops";
+  for (int k = 0; k < 30; ++k) {
+    const double r_deg = 8.0 * k;
+    record.Add(k, r_deg, r_deg * (1.0 + 0.001 * (1.0 + 0.8 * r_deg / 360.0)) + noise_deg(random), 1, 0);
+    record.readings.back().extra[kClockColumn] = kNoClock;
+  }
+  const Answer answer = Ask(record);
+  ExpectFound(answer, {{"scale", "ratio", 0.001, 1e-4}, {"scale", "curvature", 0.8, 0.1}});
+  EXPECT_EQ(answer.Find("drift"), nullptr) << answer.Words();
+}
+
+TEST(EncoderDominant, ACourseInTimeThatDoesNotRepeatIsNoOrder) {
+  const auto wanders = [](double t_s, double) { return 0.02 * std::sin(0.0127 * t_s) + 0.01 * std::cos(0.031 * t_s + 1.0); };
+  const Answer answer = Ask(Stops(0.001, 0.0, 22, wanders));
+  EXPECT_FALSE(answer.Names("periodic", 0.5) || answer.Names("eccentricity", 0.3) || answer.Names("ellipticity", 0.3)) << answer.Words();
+  EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kUnknown) << answer.Words();
+}
+
+TEST(Repeats, PlacesAreTargetsOrBinsAndOnePassHasNone) {
+  Eigen::VectorXd there_and_back(40), once = Eigen::VectorXd::LinSpaced(40, 0.0, 6.0);
+  for (int k = 0; k < 40; ++k) there_and_back[k] = 0.1 * (k < 20 ? k : 39 - k);
+  const std::vector<int> one(40, 0);
+  EXPECT_TRUE(PlacesOf(once, one).empty());
+  const std::vector<int> place = PlacesOf(there_and_back, one);
+  ASSERT_EQ(place.size(), 40u);
+  EXPECT_EQ(place[3], place[36]);
+  EXPECT_NE(place[3], place[4]);
+  std::vector<int> two(40, 0);
+  std::fill(two.begin() + 20, two.end(), 1);
+  EXPECT_TRUE(PlacesOf(there_and_back, two).empty()) << "another mounting is another place";
+}
+
+TEST(Repeats, WhatIsTheSameAtEveryVisitIsNotCounted) {
+  std::vector<int> place;
+  Eigen::VectorXd same(40), opposite(40);
+  for (int k = 0; k < 40; ++k) {
+    place.push_back(k < 20 ? k : 39 - k);
+    same[k] = std::cos(place.back());
+    opposite[k] = k < 20 ? 1.0 : -1.0;
+  }
+  EXPECT_NEAR(PowerNotRepeating(place, same), 0.0, 1e-12);
+  // Every reading differs by one from the mean of its place; 39 visits of 20 places, the two at the turn being one.
+  EXPECT_NEAR(PowerNotRepeating(place, opposite), 40.0 * 39.0 / 19.0, 1e-9);
+}
+
+TEST(RateOfChange, IsExactForAParabolaWithUnevenStepsAlsoWhereItTurnsBack) {
+  model::Course course;
+  Eigen::VectorXd t(9), y(9), slope(9);
+  t << 0.0, 0.1, 0.25, 0.3, 0.4, 0.55, 0.6, 0.7, 5.0;
+  for (int k = 0; k < 9; ++k) {
+    course.reading.push_back(k);
+    course.setup.push_back(0);
+    course.pass.push_back(t[k] < 0.35 ? 0 : 1);
+    y[k] = std::pow(t[k] - 0.35, 2);
+    slope[k] = 2.0 * (t[k] - 0.35);
+  }
+  course.time_s = t;
+  const Eigen::VectorXd rate = model::RateOfChange(course, y);
+  EXPECT_NEAR((rate - slope).head(8).cwiseAbs().maxCoeff(), 0.0, 1e-12);
+  EXPECT_EQ(rate[8], 0.0) << "after a pause there is no neighbour";
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose::encoder
