@@ -86,9 +86,10 @@ Eigen::VectorXd SignalOf(const Term& term) {
   return term.columns * term.amplitudes;
 }
 
-/// Power of what has a name and is like nothing without one: a constant beside the same that follows the temperature
-/// may be no more than a piece of that.
+/// Power of what has a name and is not like what has none: a constant beside the same that follows the temperature may
+/// be no more than a piece of that.
 double OwnPower(const SearchResult& found, const Answered& answered) {
+  constexpr double kAlike = 0.1;  // share of one that the other shows
   Eigen::VectorXd unnamed = Eigen::VectorXd::Zero(found.terms.front().columns.rows());
   for (std::size_t k = 0; k < answered.answers.size(); ++k) {
     if (answered.answers[k].causes.empty()) unnamed += SignalOf(found.terms[k]);
@@ -100,7 +101,7 @@ double OwnPower(const SearchResult& found, const Answered& answered) {
     const Eigen::VectorXd signal = SignalOf(found.terms[k]);
     const double both = signal.squaredNorm() * unnamed.squaredNorm();
     const double alike = both > 0.0 ? std::pow(signal.dot(unnamed), 2) / both : 0.0;
-    power += (1.0 - alike) * std::max(0.0, answer.weight);
+    if (alike < kAlike) power += std::max(0.0, answer.weight);
   }
   return power;
 }

@@ -282,7 +282,7 @@ class Search {
     wave["phase"] = std::arg(sum);
     const AskedAgain asked = Ask(causes);
     const double power = PowerOf(asked.left);
-    if (!(power < power_)) return false;
+    if (!(power < power_ - kBetter)) return false;
     causes[k].explained += power_ - power;
     Accept(asked, std::move(causes), kFewCauses);
     return true;
@@ -377,7 +377,8 @@ class Search {
     Fitted now = FittedWith(large_.causes);
     std::vector<std::vector<Cause>> ties;
     bool is_changed = false;
-    while (std::optional<Fitted> better = BetterLed(now, ties)) {
+    std::size_t rounds = 0;  // noise is judged anew each time: two might be better than each other
+    for (std::optional<Fitted> better = BetterLed(now, ties); better && rounds < kMostLarge; better = BetterLed(now, ties), ++rounds) {
       now = *std::move(better);
       is_changed = true;
     }
