@@ -55,6 +55,7 @@ TEST(DiagnosisText, GivesEachCauseItsSizesProbabilityAndShareAndNotWhatWasNotDet
 TEST(DiagnosisText, ShowsATieOnce) {
   DiagnosisRun run = Named();
   run.diagnosis.verdict = Verdict::kTie;
+  run.diagnosis.causes[0].probability = 0.48;
   Cause rival = run.diagnosis.causes[0];
   rival.effect = "stray_light";
   rival.where = "psd_a";

@@ -10,7 +10,7 @@ namespace {
 const std::vector<diagnose::Split>& Splits() {
   static const std::vector<diagnose::Split> splits = {
       {{"eccentricity", "signal_offset"},
-       "device.signal_periods if its signals have several periods a turn, for an offset then shows in that order; or the raw "
+       "device.signal_periods if its signals have several periods per turn, for an offset then shows in that order; or the raw "
        "sine and cosine signals, whose offsets are their means; or a second reading head opposite the first, which sees the "
        "eccentricity with the other sign"},
       {{"ellipticity", "amplitude_mismatch", "quadrature_error"},

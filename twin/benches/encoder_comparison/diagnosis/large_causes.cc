@@ -83,7 +83,6 @@ class Search {
     DropNeedless();
     EndTies();
     MoveBesideTheRest();
-    TryTheUnnamed();
     TellWhatEachShows();
     return std::move(large_);
   }
@@ -441,30 +440,6 @@ class Search {
       for (auto& [parameter, u] : effect.finding.u) u *= more;
     }
     TakeOver(asked, large_.causes);
-  }
-
-  /// Where a shape with a form and no name stands beside large causes, these may be pieces of it: all is searched at once
-  /// as well.
-  void TryTheUnnamed() {
-    const Searched& last = large_.Last();
-    const auto has_form = [&](const Term& term) {
-      const Family& family = last.families[static_cast<std::size_t>(term.family)];
-      return family.kind == Kind::kUnknown && !family.takes_any_course;
-    };
-    if (large_.causes.empty() || std::ranges::none_of(last.analysis.found.terms, has_form)) return;
-    EncoderRun plain = BuildRun(readings_, scenario_, follow_);
-    LeaveFree(large_.targets, plain.run.nuisance);
-    auto searched = SearchIn(std::move(plain), options_.excluded, For(kMostCauses));
-    const std::vector<Term>& terms = searched->analysis.found.terms;
-    Eigen::VectorXd left = searched->encoder.run.residual;
-    for (const Term& term : terms) left -= term.columns * term.amplitudes;
-    const double with = PowerOf(left), without = PowerOf(AskOf(Beside(), large_.causes).left);
-    const double noise = std::max(1.0, std::min(with, without) / projector_->DegreesOfFreedom());
-    const auto fewer = static_cast<double>(std::ssize(large_.causes) + std::ssize(large_.Last().analysis.found.terms) - std::ssize(terms));
-    if (without - with + kBetter * noise * fewer < 0.5 * kBetter * noise) return;
-    large_.causes.clear();
-    large_.last.reset();
-    large_.first = std::move(searched);
   }
 
   /// What is left for the large causes once the last search has explained the rest.

@@ -46,6 +46,9 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   design.plausible = plausible_rad;
   design.may_be_touched = true;
   design.named = {{"harmonic", ""}, {"direction offset", ""}, {"transition", ""}, {"step", "slip"}, {"trend", ""}};
+  // Of one pass in each direction, what differs from pass to pass is what a reversal leaves.
+  const bool is_turned_once = std::ranges::max(c.pass) - std::ranges::min(c.pass) == 1;
+  if (is_turned_once && design.senses.front().maxCoeff() > design.senses.front().minCoeff()) design.named.emplace("pass", "");
   std::vector<Family> families = unknown::Families(design);
   // Without a clock nothing has a frequency or a time constant.
   if (!c.has_clock)
