@@ -33,15 +33,19 @@ std::vector<std::string> InItsPlace(const EffectSettings& effect, int signal_per
   // Signals that are cut off show in these orders of their period; beside one that is free the others are no more than
   // two orders.
   constexpr int kOrdersOfClipping = 4;
-  const auto order = effect.parameters.find("order");
-  const bool is_order = order != effect.parameters.end();
-  if (is_order && std::remainder(order->second, kOrdersOfClipping * signal_periods) == 0.0) return {"signal_clipping"};
+  const std::optional<double> order = WaveOrderOf(effect);
+  if (order && std::remainder(*order, kOrdersOfClipping * signal_periods) == 0.0) return {"signal_clipping"};
   if (signal_periods != 1) return {};
   const auto with = std::ranges::find_if(kOnce, [&](const Names& names) { return std::ranges::count(names, effect.name) > 0; });
   return with == kOnce.end() ? Names{} : *with;
 }
 
 }  // namespace
+
+std::optional<double> WaveOrderOf(const EffectSettings& effect) {
+  const auto order = effect.parameters.find("order");
+  return order == effect.parameters.end() ? std::nullopt : std::optional(order->second);
+}
 
 std::unique_ptr<Searched> SearchIn(EncoderRun encoder, const std::vector<std::string>& excluded,
                                    const AnalysisOptions& how) {

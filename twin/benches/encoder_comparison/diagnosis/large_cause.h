@@ -37,6 +37,9 @@ struct LargeCause {
 
 bool IsOf(const Cause& cause, const Family& family);
 
+/// Of a wave, as the catalogue counts it; nothing if the effect has no such parameter.
+std::optional<double> WaveOrderOf(const EffectSettings& effect);
+
 /// A family at a point of its grid as a cause, from rows that it has to explain alone.
 /// @param sigma  Of every row.
 Cause CauseFrom(const Family& family, int grid_point, const Eigen::VectorXd& rows, const Eigen::VectorXd& sigma,

@@ -190,8 +190,8 @@ class Search {
   }
 
   std::vector<std::string> Excluded(const std::vector<LargeCause>& causes) const {
-    // A name that is given away leaves its orders to no shape without one.
     std::vector<std::string> excluded = ThatAreOnce(causes, EncoderOf(scenario_).device.signal_periods);
+    // A name that is given away leaves its orders to no shape without one.
     if (!excluded.empty() && !IsExcluded(options_, "periodic")) excluded.push_back("harmonic");
     excluded.insert(excluded.end(), options_.excluded.begin(), options_.excluded.end());
     return excluded;
@@ -263,10 +263,8 @@ class Search {
   }
 
   static bool IsOneWave(const LargeCause& a, const LargeCause& b) {
-    const auto order_a = a.effect.parameters.find("order"), order_b = b.effect.parameters.find("order");
-    return a.effect.name == b.effect.name && a.effect.where == b.effect.where &&
-           order_a != a.effect.parameters.end() && order_b != b.effect.parameters.end() &&
-           order_a->second == order_b->second && a.effect.parameters.contains("phase");
+    return a.effect.name == b.effect.name && a.effect.where == b.effect.where && WaveOrderOf(a.effect) &&
+           WaveOrderOf(a.effect) == WaveOrderOf(b.effect) && a.effect.parameters.contains("phase");
   }
 
   /// A second wave of the k-th one's order is what that lacks: it was fitted before all was there.
@@ -353,13 +351,14 @@ class Search {
   /// @return the first that is clearly better led by another one.
   std::optional<Fitted> BetterLed(const Fitted& now, std::vector<std::vector<Cause>>& ties) const {
     ties.clear();
+    const double memory = Memory(now.asked.left);
     for (std::size_t k = 0; k < now.causes.size(); ++k) {
       ties.push_back({now.causes[k].causes.front()});
       for (std::size_t j = 1; j < now.causes[k].causes.size(); ++j) {
         std::optional<Fitted> other = FittedLedBy(k, j, now);
         if (!other) continue;
-        const double noise = std::max(Memory(now.asked.left) * std::max(1.0, std::min(other->power, now.power) / projector_->DegreesOfFreedom()),
-                                      kAsExact * now.causes[k].explained / kBetter);
+        const double of_rest = std::max(1.0, std::min(other->power, now.power) / projector_->DegreesOfFreedom());
+        const double noise = std::max(memory * of_rest, kAsExact * now.causes[k].explained / kBetter);
         const double more = other->Costs(noise) - now.Costs(noise);
         if (more < -0.5 * kBetter) return other;
         if (more <= kBetter) ties.back().push_back(now.causes[k].causes[j]);
@@ -401,9 +400,7 @@ class Search {
     const auto is_of_large = [this](const Term& term) {
       const Family& family = large_.last->families[static_cast<std::size_t>(term.family)];
       return std::ranges::any_of(large_.causes, [&](const LargeCause& cause) {
-        const auto order = cause.effect.parameters.find("order");
-        return order != cause.effect.parameters.end() && cause.effect.name == family.effect && term.shape.size() == 1 &&
-               order->second == term.shape[0];
+        return cause.effect.name == family.effect && term.shape.size() == 1 && WaveOrderOf(cause.effect) == term.shape[0];
       });
     };
     std::erase_if(large_.last->analysis.found.terms,
