@@ -70,7 +70,7 @@ AngleFault TemperatureSquared(Dice& dice, const Track& example) {
 /// A body that follows the room with a lag turns with its temperature.
 AngleFault LaggedTemperature(Dice& dice, const Track& example) {
   const double lag_s = Duration_s(example) * dice.Between(0.05, 0.2);
-  return {Unlisted({"drift"}), [lag_s](const Track& track, double size) {
+  return {Listed({"zero_temperature"}), [lag_s](const Track& track, double size) {
             double body_degC = track.front().temperature_degC, last_s = track.front().t_s;
             return Along(track, [&](const Instant& at) {
               const double keep = Rest(at.t_s - last_s, lag_s);

@@ -113,6 +113,7 @@ std::vector<std::string> OverridesOf(Design design) {
   if (design == Design::kFreeform)
     return {"freeform_procedure.poses=40", "optics.fidelity=closed", warm[0], warm[1]};
   if (design == Design::kRotary) return {"mechanics.fidelity=kinematic"};
+  if (design == Design::kStopsInWarmRoom) return {warm[0], "environment.swing_period_s=2000.0"};
   return {};
 }
 
@@ -143,7 +144,7 @@ const DesignNames& NamesOf(Design design) {
   static const std::vector<DesignNames> names = {
       {"rotary", kRotaryBench},  {"stops", kEncoderBench},    {"sweep", kEncoderBench},
       {"stops+", kEncoderBench}, {"sweep+", kEncoderBench},   {"turntable", kTurntableBench},
-      {"hob", kHobBench},        {"circles", kCircularBench}, {"freeform", kFreeformBench}};
+      {"hob", kHobBench},        {"circles", kCircularBench}, {"freeform", kFreeformBench}, {"warm stops", kEncoderBench}};
   return names[static_cast<std::size_t>(design)];
 }
 

@@ -26,7 +26,8 @@ enum class Design {
   kTurntable,  // turntable_autocollimator, two tilts and eccentricities, with a sweep
   kHob,        // hob_transmission, two heads and two speeds
   kCircles,    // circular_motion, two radii and the grid
-  kFreeform    // freeform_five_axis, four mountings
+  kFreeform,   // freeform_five_axis, four mountings
+  kStopsInWarmRoom  // encoder_comparison, whose room changes
 };
 struct DesignNames {
   std::string name, bench;

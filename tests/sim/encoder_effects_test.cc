@@ -188,6 +188,27 @@ TEST(EncoderEffects, ScaleGrowsWithTheTurnsDriftIsLinearWithAQuadraticShareAWarm
   }
 }
 
+TEST(EncoderEffects, AZeroFollowsTheTemperatureOfTheRoomThatIsLogged) {
+  constexpr double kRad_K = 1e-4, kK_h = 2.0, kLag_s = 600.0;
+  Scenario scenario = EncoderScenario();
+  scenario.environment.temperature_degC = 21.0;
+  scenario.environment.drift_K_h = kK_h;
+  // Behind a room that warms steadily a body stays behind by rate times lag, once exp(-t / lag) is over.
+  const auto follower_K = [](double t_s, double lag_s) {
+    const double per_s = kK_h / 3600.0;
+    return 1.0 + per_s * (t_s - (lag_s > 0.0 ? lag_s * (1.0 - std::exp(-t_s / lag_s)) : 0.0));
+  };
+  for (const double lag_s : {0.0, kLag_s}) {
+    const auto effect = EncoderEffect("zero_temperature", {{"coefficient", kRad_K}, {"lag", lag_s}});
+    for (const Reading& r : ReadingsWith(scenario, effect)) {
+      EXPECT_NEAR(r.temperature_degC, 21.0 + kK_h * ToSeconds(r.time) / 3600.0, 1e-9);
+      EXPECT_NEAR(Error_rad(r), kRad_K * follower_K(ToSeconds(r.time), lag_s), kTiny_rad);
+    }
+  }
+  EXPECT_TRUE(std::isnan(ReadingsWith(EncoderScenario(), EncoderEffect("scale")).front().temperature_degC))
+      << "where the room does not change nobody looks";
+}
+
 TEST(EncoderEffects, SignalsThatBeginLaterErrLater) {
   const auto clipped = [](double zero_rad) {
     return ReadingsWith(EncoderScenario(), EncoderEffect("signal_clipping", {{"level", 0.5}, {"zero", zero_rad}}));

@@ -40,6 +40,7 @@ double FactorOf(const std::string& unit) {
                                                  {"arcsec_per_h", arcsec / units::hour},
                                                  {"urad_per_h", urad / units::hour},
                                                  {"deg_per_h", deg / units::hour},
+                                                 {"deg_per_K", deg},
                                                  {"deg_per_s", deg},
                                                  {"K", 1.0},
                                                  {"um_m", um},

@@ -26,13 +26,6 @@ Eigen::ArrayXd Along(const std::vector<Reading>& readings, const std::function<d
   return at;
 }
 
-/// 0, and from shorter than a room needs to longer than a machine does.
-std::vector<double> Lags_s() {
-  std::vector<double> lags_s = Ratios(100.0, 20000.0, 16);
-  lags_s.insert(lags_s.begin(), 0.0);
-  return lags_s;
-}
-
 }  // namespace
 
 TwinComparison::Product WaveAlong(const std::string& effect, const std::string& where, const std::string& point,
@@ -58,6 +51,12 @@ TwinComparison::Product SlipAt(const std::string& where, const std::string& poin
   return {"slip", where, point, {"step"}, "at_reading", onsets, step};
 }
 
+std::vector<double> TemperatureLags_s() {
+  std::vector<double> lags_s = Ratios(100.0, 20000.0, 16);
+  lags_s.insert(lags_s.begin(), 0.0);
+  return lags_s;
+}
+
 TwinComparison::Product FollowsTemperature(const std::string& effect, const std::string& where,
                                            const std::string& point, const std::string& size,
                                            double reference_degC) {
@@ -66,7 +65,7 @@ TwinComparison::Product FollowsTemperature(const std::string& effect, const std:
     const Eigen::VectorXd above_K = model::Above_K(course, reference_degC);
     return Eigen::MatrixXd(lag_s > 0.0 ? model::Lagged(course.time_s, above_K, lag_s) : above_K);
   };
-  return {effect, where, point, {size}, "lag", [](const std::vector<Reading>&) { return Lags_s(); }, followed};
+  return {effect, where, point, {size}, "lag", [](const std::vector<Reading>&) { return TemperatureLags_s(); }, followed};
 }
 
 }  // namespace twinbench::diagnose

@@ -14,6 +14,9 @@ TwinComparison::Product WaveAlong(const std::string& effect, const std::string& 
 /// "step" at a point from "at_reading" on; the first reading of a set-up is none, its constants are free.
 TwinComparison::Product SlipAt(const std::string& where, const std::string& point);
 
+/// 0, and from shorter than a room needs to longer than a machine does.
+std::vector<double> TemperatureLags_s();
+
 /// `size` times the temperature above the reference, which the point follows with a "lag".
 TwinComparison::Product FollowsTemperature(const std::string& effect, const std::string& where,
                                            const std::string& point, const std::string& size,

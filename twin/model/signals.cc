@@ -6,6 +6,7 @@
 
 #include "twin/core/distributions.h"
 #include "twin/core/units.h"
+#include "twin/model/first_order_lag.h"
 
 namespace twinbench::model {
 
@@ -107,14 +108,9 @@ Eigen::VectorXd Above_K(const Course& course, double reference_degC) {
 }
 
 Eigen::VectorXd Lagged(const Eigen::VectorXd& time_s, const Eigen::VectorXd& followed, double lag_s) {
-  if (lag_s <= 0.0) return followed;
-  Eigen::VectorXd lagged = followed;
-  for (Eigen::Index i = 1; i < lagged.size(); ++i) {
-    const double elapsed_s = std::max(time_s[i] - time_s[i - 1], 1e-9);
-    const double behind = (followed[i] - followed[i - 1]) / elapsed_s * lag_s;  // on a steady slope
-    const double transient = lagged[i - 1] - followed[i - 1] + behind;
-    lagged[i] = followed[i] - behind + transient * std::exp(-elapsed_s / lag_s);
-  }
+  FirstOrderLag lag(lag_s);
+  Eigen::VectorXd lagged(followed.size());
+  for (Eigen::Index i = 0; i < lagged.size(); ++i) lagged[i] = lag.Next(time_s[i], followed[i]);
   return lagged;
 }
 

@@ -108,6 +108,12 @@ std::vector<EffectEntry> TimeAndReadingEffects() {
        {Signed("rate", "deg_per_h", 0.02, 3600.0, "mean rate over the first hour; of a warm-up, the first one"),
         Signed("curvature", "1", 0.0, 5.0, "share of a quadratic part, zero at 0 and 1 h"),
         Parameter("warm_up", "s", 0.0, 0.0, 1e6, "time in which 63 % of a warm-up is over; 0: it goes on")}},
+      // 1 um/K on 50 mm is 0.001 deg/K
+      {"zero_temperature",
+       "zero of the device that follows the temperature",
+       {},
+       {Signed("coefficient", "deg_per_K", 0.002, 10.0, "of the zero"),
+        Parameter("lag", "s", 0.0, 0.0, 1e5, "behind the temperature")}},
       // one line of the scale, or a coupling that gave way
       {"slip",
        "sudden step of the device's zero",

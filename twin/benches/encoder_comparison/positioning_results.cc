@@ -70,9 +70,11 @@ std::vector<std::string> MissingForVdi3441(const std::vector<TargetPositioning>&
   return {};
 }
 
-/// Some place was reached twice: a table of a firmware or a single pass has nothing to say of reversals and repeats.
+/// Some places were reached twice: a table of a firmware or a single pass has nothing to say of reversals and repeats,
+/// and a device that is held at one place or two has no axis to test.
 bool IsPositioningTest(const std::vector<TargetPositioning>& targets) {
-  return std::ranges::any_of(targets, [](const TargetPositioning& t) { return t.forward.runs + t.backward.runs > 1; });
+  constexpr std::ptrdiff_t kFewest = 3;
+  return std::ranges::count_if(targets, [](const TargetPositioning& t) { return t.forward.runs + t.backward.runs > 1; }) >= kFewest;
 }
 
 /// @return what there is to say of it.

@@ -105,6 +105,7 @@ void AddKeys(Keys& keys, Scenario& s) {
   AddDevice(keys, own.device);
   AddEncoderProcedure(keys, own.encoder_procedure);
   AddSpindle(keys, own.spindle);
+  AddEnvironment(keys, s.environment);
 }
 
 void CheckTogether(const ScenarioText& text, const Scenario& s) {

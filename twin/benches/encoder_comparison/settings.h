@@ -9,9 +9,6 @@
 /// What a scenario of the bench encoder_comparison says.
 namespace twinbench {
 
-/// Logged temperatures count from here (ISO 1).
-inline constexpr double kReference_degC = 20.0;
-
 /// The angle device under test.
 struct DeviceSettings {                   // [device]
   double noise_rad = 0.002 * units::deg;  // one reading, white, standard deviation

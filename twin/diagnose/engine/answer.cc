@@ -124,6 +124,11 @@ void AddRivals(const SearchResult& found, const std::vector<Family>& families, s
 
 }  // namespace
 
+double Likeness(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
+  const double both = one.squaredNorm() * other.squaredNorm();
+  return both > 0.0 ? std::pow(one.dot(other), 2) / both : 0.0;
+}
+
 std::vector<ParameterEstimate> ParametersOf(const Family& family, const Eigen::VectorXd& shape,
                                             const Eigen::VectorXd& amplitudes, const Eigen::MatrixXd& cov) {
   if (family.parameters) return family.parameters(shape, amplitudes, cov);

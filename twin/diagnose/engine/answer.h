@@ -14,7 +14,13 @@ struct Answer {
   double unknown = 0.0;       // probability of all shapes without a name
   std::string signature;      // of the most probable of them
   double weight = 0.0;        // power that nothing else explains
+  bool may_be_piece = false;  // of what has no name, which it is like
 };
+
+/// Beyond it, one may be a piece of the other.
+inline constexpr double kAlike = 0.1;
+/// Share of what one shows that the other, in any size, shows as well.
+double Likeness(const Eigen::VectorXd& one, const Eigen::VectorXd& other);
 
 /// The catalogue's parameters of a fitted family.
 /// @param cov  Of the amplitudes, and of the shape after them as far as it goes.

@@ -86,30 +86,36 @@ Eigen::VectorXd SignalOf(const Term& term) {
   return term.columns * term.amplitudes;
 }
 
-/// Power of what has a name and is not like what has none: a constant beside the same that follows the temperature may
-/// be no more than a piece of that.
-double OwnPower(const SearchResult& found, const Answered& answered) {
-  constexpr double kAlike = 0.1;  // share of one that the other shows
+/// What has a name and is like what has none may be no more than a piece of that: a constant beside the same that
+/// follows the temperature.
+void MarkPieces(const SearchResult& found, Answered& answered) {
   Eigen::VectorXd unnamed = Eigen::VectorXd::Zero(found.terms.front().columns.rows());
   for (std::size_t k = 0; k < answered.answers.size(); ++k) {
     if (answered.answers[k].causes.empty()) unnamed += SignalOf(found.terms[k]);
   }
+  for (std::size_t k = 0; k < answered.answers.size(); ++k)
+    answered.answers[k].may_be_piece = Likeness(SignalOf(found.terms[k]), unnamed) > kAlike;
+}
+
+/// Power of what has a name and is not like what has none.
+double OwnPower(const Answered& answered) {
   double power = 0.0;
-  for (std::size_t k = 0; k < answered.answers.size(); ++k) {
-    const Answer& answer = answered.answers[k];
-    if (answer.causes.empty()) continue;
-    const Eigen::VectorXd signal = SignalOf(found.terms[k]);
-    const double both = signal.squaredNorm() * unnamed.squaredNorm();
-    const double alike = both > 0.0 ? std::pow(signal.dot(unnamed), 2) / both : 0.0;
-    if (alike < kAlike) power += std::max(0.0, answer.weight);
+  for (const Answer& answer : answered.answers) {
+    if (!answer.causes.empty() && !answer.may_be_piece) power += std::max(0.0, answer.weight);
   }
   return power;
+}
+
+bool StandsAlone(const Cause& cause, const Answered& answered) {
+  return std::ranges::any_of(answered.answers, [&](const Answer& answer) {
+    return !answer.may_be_piece && std::ranges::any_of(answer.causes, [&](const Cause& c) { return IsSame(c, cause); });
+  });
 }
 
 /// What has no name explains more than what has one, or something larger is left.
 bool IsMostlyUnnamed(const SearchResult& found, const Answered& answered, double threshold) {
   const double left = found.last_statistic > threshold ? 2.0 * found.last_statistic : 0.0;
-  return UnnamedPower(answered) + left > OwnPower(found, answered);
+  return UnnamedPower(answered) + left > OwnPower(answered);
 }
 
 /// Several named causes together against one generic shape alone, which needs no coincidence.
@@ -137,14 +143,15 @@ bool IsPossible(const Cause& cause) {
   });
 }
 
-/// What has no name is another cause. One that has may be no more than a piece of it: it keeps its probability as
-/// far as it explains more than that.
-/// @param unnamed  Power of what has no name.
-void DeclareUnknown(const std::string& otherwise, double unnamed, Naming& naming) {
+/// What has no name is another cause. One that has and is like it may be no more than a piece of it: it keeps its
+/// probability as far as it explains more than that.
+void DeclareUnknown(const std::string& otherwise, const Answered& answered, Naming& naming) {
+  const double unnamed = UnnamedPower(answered);
   naming.verdict = Verdict::kUnknown;
   naming.unknown.probability = std::clamp(naming.unknown.probability, 0.5, tuning::kListed);
   if (naming.unknown.signature.empty()) naming.unknown.signature = otherwise;
   for (Cause& cause : naming.causes) {
+    if (IsPossible(cause) && StandsAlone(cause, answered)) continue;
     const double own = std::isfinite(cause.rho) ? cause.rho * cause.rho : 0.0;
     const double share = own > 0.0 ? own / (own + unnamed) : 0.0;
     const double left = std::max(share, 1.0 - naming.unknown.probability);
@@ -185,19 +192,18 @@ Verdict VerdictOf(const Answered& answered) {
 Naming Name(const SearchResult& found, const std::vector<Family>& families, double threshold, bool noise_free) {
   if (found.terms.empty()) return {};
   Answered answered = AnswerAll(found, families);
+  MarkPieces(found, answered);
   const bool is_mostly_unnamed = IsMostlyUnnamed(found, answered, threshold);
   if (noise_free) std::erase_if(answered.answers, [&](const Answer& a) { return answered.IsSmall(a); });
   Naming naming{VerdictOf(answered), CausesOf(answered), UnknownOf(answered)};
   const double one_unknown = ChanceOfOneUnknown(found, families);
   Doubt(std::max(one_unknown, found.overtones), naming);
   if (!std::ranges::all_of(naming.causes, IsPossible)) {
-    DeclareUnknown("as the cause identified here, in a size that is not possible for it", UnnamedPower(answered),
-                   naming);
+    DeclareUnknown("as the cause identified here, in a size that is not possible for it", answered, naming);
   } else if (found.overtones > 0.5) {
-    DeclareUnknown("something that repeats as the wave identified here and is no sine, function of time", UnnamedPower(answered),
-                   naming);
+    DeclareUnknown("something that repeats as the wave identified here and is no sine, function of time", answered, naming);
   } else if (is_mostly_unnamed || one_unknown > 0.5) {
-    DeclareUnknown(kUnexplained, UnnamedPower(answered), naming);
+    DeclareUnknown(kUnexplained, answered, naming);
   } else if (naming.unknown.signature.empty() && LeavesStructure(answered, found.last_statistic, threshold)) {
     naming.unknown = {tuning::kListed, kUnexplained};
   }

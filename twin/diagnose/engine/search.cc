@@ -8,6 +8,7 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/base.h"
 #include "twin/diagnose/engine/estimate.h"
+#include "twin/diagnose/engine/holding.h"
 #include "twin/diagnose/engine/overtones.h"
 #include "twin/diagnose/engine/prior.h"
 #include "twin/diagnose/engine/refine.h"
@@ -33,6 +34,12 @@ struct Problem {
 
   bool IsNamed(int family) const {
     return scanner.Families()[static_cast<std::size_t>(family)].kind == Kind::kNamed;
+  }
+
+  /// The shape without a name is exactly that of the cause, on the same channel.
+  bool IsTheSame(const Family& unnamed, const Family& named) const {
+    return named.kind == Kind::kNamed && !unnamed.same_as.empty() && named.effect == unnamed.same_as &&
+           (named.where == unnamed.where || run.Channels() == 1);
   }
 };
 
@@ -80,45 +87,18 @@ void RefineLeaders(const Problem& problem, const Deflation& others, const Projec
   }
 }
 
-/// No shape that has to be is on its bound.
-bool IsInside(const Family& family, const Eigen::VectorXd& shape) {
-  constexpr double kOnBound = 0.02;  // of the distance to the next point of the grid and beyond
-  for (std::size_t k = 0; k < family.shapes.size(); ++k) {
-    const Shape& s = family.shapes[k];
-    const double value = shape[static_cast<Eigen::Index>(k)];
-    if (s.is_inside && (value < s.lower * (1.0 + kOnBound) || value > s.upper * (1.0 - kOnBound))) return false;
-  }
-  return true;
-}
-
-/// The size of a named cause is some standard uncertainties from zero, with its shape free: what is left without
-/// the amplitudes, the slopes of the shape kept, beside what is left with them.
-bool IsThere(const Problem& problem, const Deflation& others, const Projected& data, const Term& term) {
-  const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
-  if (family.kind != Kind::kNamed || !family.at || family.amplitudes.size() != 1) return true;
-  const Eigen::VectorXd rows = data.rows.col(0);
-  const auto explained = [&](const Eigen::MatrixXd& columns) {
-    return Explain(problem.noise.Whiten(problem.run, columns), problem.projector, others, rows);
-  };
-  const Explained alone = explained(term.columns);
-  const Eigen::MatrixXd all = WithShapeSlopes(family, term.shape, term.columns, alone.amplitudes);
-  const double with = explained(all).power, without = explained(all.rightCols(term.shape.size())).power;
-  const double noise = std::max(1.0, (data.power[0] - with) / problem.projector.DegreesOfFreedom());
-  return with - without > tuning::kHeadline * tuning::kHeadline * noise;
-}
-
 /// A shape without a name that a cause of the catalogue has exactly is no better than that cause but by chance: by the
 /// grids that the two are sought on. It is as much less likely than the cause as what looks so and is not listed.
-void HoldBehindTheSame(const std::vector<Family>& families, Eigen::VectorXd& logs) {
+void HoldBehindTheSame(const Problem& problem, Eigen::VectorXd& logs) {
   const double behind = std::log((1.0 - tuning::kListed) / tuning::kListed);
+  const auto& families = problem.scanner.Families();
   for (int k = 0; k < std::ssize(families); ++k) {
     const Family& unnamed = families[static_cast<std::size_t>(k)];
     if (unnamed.same_as.empty()) continue;
     double most = kNever;
     for (int other = 0; other < std::ssize(families); ++other) {
       const Family& family = families[static_cast<std::size_t>(other)];
-      if (family.kind == Kind::kNamed && family.effect == unnamed.same_as && family.where == unnamed.where)
-        most = std::max(most, logs[other]);
+      if (problem.IsTheSame(unnamed, family)) most = std::max(most, logs[other]);
     }
     if (most > kNever) logs[k] = std::min(logs[k], most + behind);
   }
@@ -128,7 +108,7 @@ void HoldBehindTheSame(const std::vector<Family>& families, Eigen::VectorXd& log
 Eigen::VectorXd LogPosterior(const Problem& problem, const Evidence& evidence) {
   Eigen::VectorXd logs(evidence.log_bayes.rows() + 1);
   logs << evidence.log_bayes.col(0) + problem.log_priors, std::log(tuning::kPriorNone);
-  HoldBehindTheSame(problem.scanner.Families(), logs);
+  HoldBehindTheSame(problem, logs);
   logs.array() -= LogSum(logs);
   return logs;
 }
@@ -140,11 +120,6 @@ int FirstOfTheBest(const Eigen::VectorXd& log_posterior) {
   int first = 0;
   while (!(log_posterior[first] >= best - kSame)) ++first;
   return first;
-}
-
-/// A single event in time; many of them are the pieces of a course.
-bool IsEvent(const Family& family) {
-  return std::ranges::count(family.shapes, "at_reading", &Shape::name) > 0;
 }
 
 /// Leaves the place to what has a name and explains nearly as much as the shape without one that is more probable there.
@@ -189,11 +164,22 @@ void LeaveToPlaces(const Problem& problem, const Projected& data, Evidence& evid
   }
 }
 
+/// An event that is none is one by no other name either.
+void Refuse(const Problem& problem, int refused, Evidence& evidence, Eigen::VectorXd& as_scanned) {
+  const auto& families = problem.scanner.Families();
+  const Family& family = families[static_cast<std::size_t>(refused)];
+  for (int k = 0; k < std::ssize(families); ++k) {
+    const bool is_same = IsEvent(family) && problem.IsTheSame(families[static_cast<std::size_t>(k)], family);
+    if (k == refused || is_same) evidence.log_bayes(k, 0) = as_scanned[k] = kNever;
+  }
+}
+
 /// The most probable family in a place of its own.
 Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidence) {
   const Projected data = Project(problem.projector, others, problem.white);
   evidence = problem.scanner.Scan(data, others);
   LeaveToPlaces(problem, data, evidence);
+  const Beside beside{problem.run, problem.noise, problem.projector, others, data};
   Eigen::VectorXd as_scanned = evidence.log_bayes.col(0) + problem.log_priors;
   const auto statistic = [&] { return LogSum(as_scanned) - std::log(tuning::kPriorNone); };
   std::map<int, Eigen::VectorXd> shapes;
@@ -205,14 +191,14 @@ Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidenc
   for (;;) {
     TakeAmong(problem, shapes, evidence, term);
     const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
-    double& log_bayes = evidence.log_bayes(term.family, 0);
+    const double log_bayes = evidence.log_bayes(term.family, 0);
     const bool all_refused = !(log_bayes > kNever);
     if (term.statistic < problem.threshold || all_refused) break;
-    if (IsInside(family, term.shape)) {
-      if (IsThere(problem, others, data, term)) break;
+    if (IsInside(family, term.shape) && IsSudden(family, term, beside)) {
+      if (IsThere(family, term, beside)) break;
       of_unknown_size[term.family] = log_bayes;
     }
-    log_bayes = as_scanned[term.family] = kNever;
+    Refuse(problem, term.family, evidence, as_scanned);
     term.statistic = statistic();
   }
   if (of_unknown_size.empty()) return term;

@@ -40,7 +40,7 @@ double AwayFromWhole(double order, double nearest) {
 void AddLines(Collector& collect) {
   const Design& d = collect.design();
   const Angle& angle = d.angles.front();
-  const double turns = std::max((d.continued_rad.maxCoeff() - d.continued_rad.minCoeff()) / units::turn, 0.1);
+  const double turns = std::max(TurnsOf(d), 0.1);
   if (angle.first_unfree > 0 && turns < tuning::kFewestTurns) return;
   const double last = std::min(60.0, angle.last_order + 0.5);
   const double step =
@@ -65,6 +65,7 @@ void AddLines(Collector& collect) {
       [design = collect.shared(), nearest](const Eigen::VectorXd& k) {
         return model::Times(model::Wave(AwayFromWhole(k[0], nearest) * design->continued_rad), design->moved);
       });
+  if (TimeFollowsAngle(d)) collect.GoByTime();
   if (!angle.by.empty())
     collect.Are([nearest, by = angle.by](const Eigen::VectorXd& k, int) {
       return WaveOf(SignalOf("harmonic", by, {{"order", AwayFromWhole(k[0], nearest)}}));

@@ -67,4 +67,9 @@ struct Design {
 /// One sort of shape after the other; families own what they need.
 std::vector<Family> Families(const Design& design);
 
+/// Where time is the angle in other words, what follows one follows the other.
+bool TimeFollowsAngle(const Design& design);
+/// Turns of the first angle that the course goes through.
+double TurnsOf(const Design& design);
+
 }  // namespace twinbench::diagnose::unknown

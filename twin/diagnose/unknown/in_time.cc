@@ -14,14 +14,6 @@
 namespace twinbench::diagnose::unknown {
 namespace {
 
-/// Where time is the angle in other words, what follows one follows the other.
-bool TimeFollowsAngle(const Design& d) {
-  if (d.angles.empty()) return false;
-  const Eigen::VectorXd t = d.course.time_s.array() - d.course.time_s.mean(),
-                        a = d.angles.front().rad.array() - d.angles.front().rad.mean();
-  return std::abs(t.dot(a)) > 0.999 * t.norm() * a.norm();
-}
-
 /// From 0 to 1 over the longest stretch, beginning anew in each.
 Eigen::VectorXd ShareOfStretch(const Design& d) {
   const Eigen::VectorXd since_s = SinceBegin_s(d.course.time_s, d.series.stretch);
@@ -229,7 +221,7 @@ void AddTemperature(Collector& collect) {
       return ColumnOf(Following(SignalOf("constant"), "temperature", 0.0, per_K));
     });
   constexpr double kLag_s = 600.0;
-  collect.Add("temperature", model::Unit(d.above_K - model::Lagged(d.course.time_s, d.above_K, kLag_s)),
+  collect.Add("temperature rate", model::Unit(d.above_K - model::Lagged(d.course.time_s, d.above_K, kLag_s)),
               "function of the rate of the temperature");
   collect.GoByTime();
 }
@@ -274,11 +266,26 @@ void AddTrends(Collector& collect) {
 
 }  // namespace
 
+bool TimeFollowsAngle(const Design& d) {
+  if (d.angles.empty()) return false;
+  const Eigen::VectorXd t = d.course.time_s.array() - d.course.time_s.mean(),
+                        a = d.angles.front().rad.array() - d.angles.front().rad.mean();
+  return std::abs(t.dot(a)) > 0.999 * t.norm() * a.norm();
+}
+
+double TurnsOf(const Design& d) {
+  return (d.continued_rad.maxCoeff() - d.continued_rad.minCoeff()) / units::turn;
+}
+
 void AddInTime(Collector& collect) {
   AddTrends(collect);
   AddSteps(collect);
   AddTemperature(collect);
-  if (TimeFollowsAngle(collect.design())) return;
+  if (TimeFollowsAngle(collect.design())) {
+    // Several turns tell what comes back at the same angle from what does not.
+    if (TurnsOf(collect.design()) >= tuning::kFewestTurns) AddWander(collect);
+    return;
+  }
   AddTouches(collect);
   AddWander(collect);
   AddRestarts(collect);

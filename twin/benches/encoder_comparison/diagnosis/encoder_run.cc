@@ -180,6 +180,8 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   encoder.context =
       ContextOf(run.schedule, run.schedule.reference_rad + encoder.offset_rad, EncoderOf(scenario).device);
   encoder.context.has_clock = HasClock(used);
+  if (model::HasTemperature(run.schedule))
+    encoder.context.above_K = model::Above_K(run.schedule, scenario.environment.reference_degC);
   run.place = PlacesOf(encoder.context.device_rad, run.schedule.setup);
   SetNoise(run, EncoderOf(scenario), used);
   return encoder;

@@ -19,6 +19,7 @@ struct EncoderRun {
   Eigen::VectorXd offset_rad;  // where the device stands on the shaft
 
   Eigen::SparseMatrix<double, Eigen::RowMajor> setups;  // rows x set-ups: 1 where a reading is in one
+  Eigen::MatrixXd targets;  // rows x targets whose errors are free: 1 where a reading is at one; may be none
 
   /// Free are the offsets of the set-ups and nothing else.
   Nuisance SetUpsAlone() const;

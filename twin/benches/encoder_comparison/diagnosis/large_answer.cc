@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
+#include "twin/diagnose/engine/answer.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose::encoder {
@@ -19,20 +20,25 @@ Accepted AcceptedOf(const LargeCause& cause) {
   return accepted;
 }
 
-/// Of what rows show beside their mean.
-double PowerOf(const Eigen::VectorXd& shown) {
-  return (shown.array() - shown.mean()).matrix().squaredNorm();
+Eigen::VectorXd AboutMean(const Eigen::VectorXd& shown) {
+  return shown.array() - shown.mean();
 }
 
-/// Power of what has no name beside the large causes, as it is fitted with them.
-double UnnamedOf(const LargeCauses& large) {
+/// What has no name beside the large causes, as it is fitted with them, each about its mean.
+std::vector<Eigen::VectorXd> UnnamedOf(const LargeCauses& large) {
   const Searched& last = large.Last();
-  double unnamed = 0.0;
+  std::vector<Eigen::VectorXd> unnamed;
   for (const Term& term : last.analysis.found.terms) {
     const Family& family = last.families[static_cast<std::size_t>(term.family)];
-    if (family.kind == Kind::kUnknown) unnamed += PowerOf(term.columns * term.amplitudes);
+    if (family.kind == Kind::kUnknown) unnamed.push_back(AboutMean(term.columns * term.amplitudes));
   }
   return unnamed;
+}
+
+double PowerOf(const std::vector<Eigen::VectorXd>& shown) {
+  double power = 0.0;
+  for (const Eigen::VectorXd& rows : shown) power += rows.squaredNorm();
+  return power;
 }
 
 /// How sure a size is that it is one, beside all else and with the memory that the rest has; an onset may have been at
@@ -45,20 +51,23 @@ double ChanceOf(const LargeCause& cause, double readings) {
 }
 
 /// What has no name beside the large causes is said; it makes an unknown of the whole only if it explains more than
-/// they do. Then a cause may be no more than a piece of it: it is as sure as it is large beside it.
+/// they do. A cause that is like it may then be no more than a piece of it: it is as sure as it is large beside it.
 void WeighTheRest(const LargeCauses& large, Diagnosis& d, std::vector<Cause>& causes) {
   if (d.verdict != Verdict::kUnknown) return;
-  const double unnamed = UnnamedOf(large);
+  const std::vector<Eigen::VectorXd> shapes = UnnamedOf(large);
+  const double unnamed = PowerOf(shapes);
   double named = 0.0;
-  for (const LargeCause& cause : large.causes) named += PowerOf(cause.shown);
+  for (const LargeCause& cause : large.causes) named += AboutMean(cause.shown).squaredNorm();
   if (unnamed <= named) {
     d.verdict = Verdict::kNamed;
     return;
   }
   auto at = causes.begin();
   for (const LargeCause& cause : large.causes) {
-    for (std::size_t k = 0; k < cause.causes.size(); ++k, ++at)
-      at->probability *= PowerOf(cause.shown) / (PowerOf(cause.shown) + unnamed);
+    const Eigen::VectorXd shown = AboutMean(cause.shown);
+    const bool is_like = std::ranges::any_of(shapes, [&](const Eigen::VectorXd& shape) { return Likeness(shown, shape) > kAlike; });
+    const double share = is_like ? shown.squaredNorm() / (shown.squaredNorm() + unnamed) : 1.0;
+    for (std::size_t k = 0; k < cause.causes.size(); ++k, ++at) at->probability *= share;
   }
 }
 

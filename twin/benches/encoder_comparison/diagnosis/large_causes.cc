@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "twin/benches/encoder_comparison/diagnosis/memory.h"
 #include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
@@ -53,7 +54,9 @@ void LeaveFree(const AskedAgain& asked, Nuisance& nuisance) {
 }
 
 /// Errors of targets may be anything.
-void LeaveFree(const Eigen::MatrixXd& targets, Nuisance& nuisance) {
+void LeaveFree(const Eigen::MatrixXd& targets, EncoderRun& encoder) {
+  encoder.targets = targets;
+  Nuisance& nuisance = encoder.run.nuisance;
   const double precision = nuisance.prior_precision[0];
   AskedAgain any;
   any.slopes = targets;
@@ -83,6 +86,7 @@ class Search {
     DropNeedless();
     EndTies();
     MoveBesideTheRest();
+    JudgeUnsure();
     TellWhatEachShows();
     return std::move(large_);
   }
@@ -108,7 +112,7 @@ class Search {
 
   void Begin(int most_causes) {
     EncoderRun begin = BuildRun(readings_, scenario_, follow_);
-    LeaveFree(large_.targets, begin.run.nuisance);
+    LeaveFree(large_.targets, begin);
     large_.first = SearchIn(std::move(begin), options_.excluded, For(most_causes));
     most_searched_ = most_causes;
     null_ = large_.first->analysis.null;
@@ -331,20 +335,8 @@ class Search {
     return !MovableOf({causes[k]}).empty();
   }
 
-  /// How many readings say as much as one would of white noise: what no cause explains goes on from one to the next.
   double Memory(const Eigen::VectorXd& rows) const {
-    const Eigen::VectorXd left = WhiteOf(rows).rows.col(0);
-    const std::vector<int>& pass = large_.first->encoder.run.schedule.pass;
-    double products = 0.0, squares = 0.0;
-    for (Eigen::Index i = 1; i < left.size(); ++i) {
-      if (pass[static_cast<std::size_t>(i)] != pass[static_cast<std::size_t>(i - 1)]) continue;
-      products += left[i] * left[i - 1];
-      squares += 0.5 * (left[i] * left[i] + left[i - 1] * left[i - 1]);
-    }
-    constexpr double kMost = 0.999;
-    const double rho = squares > 0.0 ? std::clamp(products / squares, 0.0, kMost) : 0.0;
-    if (rho < 3.0 / std::sqrt(static_cast<double>(left.size()))) return 1.0;  // by chance
-    return (1.0 + rho) / (1.0 - rho);
+    return MemoryOf(WhiteOf(rows).rows.col(0), large_.first->encoder.run.schedule.pass);
   }
 
   /// @param ties  By cause, the members that explain as much as the one that leads it now.
@@ -407,21 +399,66 @@ class Search {
                   [&](const Term& term) { return term.explained < kAsExact * explained || is_of_large(term); });
   }
 
-  /// What stood for something that was found later is not kept.
+  /// What stood for something that was found later is not kept, nor what the memory of the rest makes by chance.
   void DropNeedless() {
     if (large_.causes.empty()) return;
-    const double deviations = tuning::kHeadline * std::sqrt(Memory(AskOf(Beside(), large_.causes).left));
-    std::vector<LargeCause> kept = large_.causes;
-    std::erase_if(kept, [&](const LargeCause& cause) { return !(Deviations(cause.effect) > deviations); });
-    if (kept.empty() || kept.size() == large_.causes.size()) return;
+    const AskedAgain beside = AskOf(Beside(), large_.causes);
+    const Eigen::VectorXd left = WhiteOf(beside.left).rows.col(0);
+    const double memory = Memory(beside.left);
+    std::vector<LargeCause> kept;
+    for (std::size_t k = 0; k < large_.causes.size(); ++k) {
+      const Eigen::VectorXd own = Shown(beside.effects) - Shown(EffectsWithout(k, beside));
+      const double most = std::max(memory, MemoryAlong(WhiteOf(own).rows.col(0), left));
+      if (Deviations(large_.causes[k].effect) > tuning::kHeadline * std::sqrt(most)) kept.push_back(large_.causes[k]);
+    }
+    if (kept.size() == large_.causes.size()) return;
+    if (kept.empty()) return SearchPlain();
     const AskedAgain asked = Ask(kept);
     Accept(asked, std::move(kept), kMostCauses);
+  }
+
+  /// Nothing of it was there: for all at once, as if nothing had been large.
+  void SearchPlain() {
+    large_.causes.clear();
+    large_.last.reset();
+    most_searched_ = kFewCauses;
+    SearchOn();
+  }
+
+  /// What was taken while others were missing may have looked like a shape without a name: it is judged anew beside all
+  /// of them.
+  void JudgeUnsure() {
+    constexpr double kSure = 0.8;
+    for (std::size_t k = 0; k < large_.causes.size(); ++k) {
+      std::vector<Cause>& members = large_.causes[k].causes;
+      double together = 0.0;
+      for (const Cause& cause : members) together += cause.probability;
+      if (together > kSure) continue;
+      for (const Cause& now : InPlaceOf(k)) {
+        const auto member = std::ranges::find_if(
+            members, [&](const Cause& m) { return m.effect == now.effect && m.where == now.where; });
+        if (member != members.end()) member->probability = std::max(member->probability, now.probability);
+      }
+    }
+  }
+
+  /// What a search names in the place of the k-th cause, with all others there.
+  std::vector<Cause> InPlaceOf(std::size_t k) const {
+    std::vector<EffectSettings> others = EffectsOf(large_.causes);
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    EncoderRun encoder = BuildRun(readings_, With(scenario_, others), follow_);
+    encoder.run.sigma = large_.Last().encoder.run.sigma;
+    for (const Term& term : large_.Last().analysis.found.terms) encoder.run.residual -= term.columns * term.amplitudes;
+    LeaveFree(large_.targets, encoder);
+    const auto searched = SearchIn(std::move(encoder), options_.excluded, For(1));
+    if (searched->analysis.found.terms.empty()) return {};
+    return AnswerOf(searched->analysis.found, 0, searched->families).causes;
   }
 
   std::unique_ptr<Searched> SearchWith(const AskedAgain& asked, const std::vector<LargeCause>& causes,
                                        const AnalysisOptions& how) const {
     EncoderRun encoder = BuildRun(readings_, With(scenario_, asked.effects), follow_);
-    LeaveFree(large_.targets, encoder.run.nuisance);
+    LeaveFree(large_.targets, encoder);
     LeaveFree(asked, encoder.run.nuisance);
     TellSignalZero(asked.effects, encoder.context.device);
     return SearchIn(std::move(encoder), Excluded(causes), how);

@@ -68,12 +68,22 @@ std::vector<double> Spots_rad(const Eigen::VectorXd& device_rad) {
   return spots;
 }
 
+/// The same but for little as a drift: a few steps in one sense, as far from each other.
+bool IsLikeDrift(const Eigen::VectorXd& course) {
+  constexpr double kLike = 0.95;  // share that goes with the number of the reading
+  const Eigen::VectorXd steps = course.array() - course.mean();
+  Eigen::VectorXd number = Eigen::VectorXd::LinSpaced(course.size(), 0.0, 1.0);
+  number.array() -= number.mean();
+  return std::pow(steps.dot(number), 2) > kLike * steps.squaredNorm() * number.squaredNorm();
+}
+
 /// Where something happens more than once: a single step has a name.
 std::vector<double> PassedAgain(Passing passing, const Eigen::VectorXd& device_rad, std::vector<double> spots_rad) {
   std::erase_if(spots_rad, [&](double spot_rad) {
     const Passing jumps = passing == Passing::kCatchesUp ? Passing::kComesBack : passing;
     const Eigen::VectorXd course = CourseOf(jumps, device_rad, spot_rad);
-    return StepsOf(course, std::vector<int>(static_cast<std::size_t>(course.size()))).size() < 2;
+    return StepsOf(course, std::vector<int>(static_cast<std::size_t>(course.size()))).size() < 2 ||
+           (passing == jumps && IsLikeDrift(course));
   });
   return spots_rad;
 }

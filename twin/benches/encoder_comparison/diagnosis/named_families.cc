@@ -6,6 +6,7 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/candidates.h"
 #include "twin/diagnose/engine/wave_series.h"
+#include "twin/diagnose/products.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose::encoder {
@@ -173,8 +174,8 @@ struct WayShapes {
   std::vector<Shape> All() const { return {way, start, approach}; }
 };
 
-double Range_rad(const Eigen::VectorXd& angle_rad) {
-  return angle_rad.maxCoeff() - angle_rad.minCoeff();
+double Range(const Eigen::VectorXd& values) {
+  return values.maxCoeff() - values.minCoeff();
 }
 
 /// A gap that is crossed between two readings has no way of its own: it is the width.
@@ -190,7 +191,7 @@ void AddBacklashAtOnce(const Context& context, double finest_rad, Candidates& na
 
 /// Play with its state; a gap may be crossed over more than one reading.
 void AddBacklash(const Context& context, Candidates& named) {
-  const double finest_rad = FinestSpacing_rad(*context), widest_rad = 0.5 * Range_rad(context->reference_rad);
+  const double finest_rad = FinestSpacing_rad(*context), widest_rad = 0.5 * Range(context->reference_rad);
   if (finest_rad == 0.0 && !context->Moves()) AddBacklashAtOnce(context, RunUp_rad(*context), named);
   if (!(finest_rad > 0.0) || widest_rad < finest_rad) return;
   AddBacklashAtOnce(context, finest_rad, named);
@@ -207,7 +208,7 @@ void AddBacklash(const Context& context, Candidates& named) {
 /// The lag in steady motion; the state at the beginning is no larger than it. One that settles between two readings
 /// is none that these can tell from play.
 void AddHysteresis(const Context& context, Candidates& named) {
-  const double finest_rad = FinestSpacing_rad(*context), longest_rad = Range_rad(context->reference_rad);
+  const double finest_rad = FinestSpacing_rad(*context), longest_rad = Range(context->reference_rad);
   if (!(finest_rad > 0.0) || longest_rad < finest_rad) return;
   const double run_up_rad = RunUp_rad(*context);
   WayShapes shapes(*context, "settles_over", Ratios(0.5 * finest_rad, std::min(longest_rad, units::turn), 20));
@@ -252,7 +253,7 @@ void AddMotion(const Context& context, Candidates& named) {
   AddSettling(context, named);
   named.Add(Shown("scale"), {"ratio"}, c.reference_rad);
   // In about one turn a scale that bends is like its first orders.
-  const double turns = Range_rad(c.reference_rad) / units::turn;
+  const double turns = Range(c.reference_rad) / units::turn;
   if (!(c.device.turn_m > 0.0) && turns > 0.9 && turns < 1.5) return;
   Eigen::MatrixXd bent(c.Readings(), 2);
   bent << c.reference_rad, c.reference_rad.cwiseAbs2() / units::turn;
@@ -279,6 +280,16 @@ void AddWarmUp(const Context& context, Candidates& named) {
   };
 }
 
+/// A zero that follows the temperature, or one that lags behind it.
+void AddTemperature(const Context& context, Candidates& named) {
+  if (context->above_K.size() == 0 || Range(context->above_K) == 0.0) return;
+  const std::string effect = "zero_temperature";
+  named.AddOver(Shown(effect), {"coefficient"}, {named.catalogue().ShapeOf(effect, "lag", TemperatureLags_s())},
+                [context](const Eigen::VectorXd& lag_s) {
+                  return Eigen::MatrixXd(model::Lagged(context->since_start_s, context->above_K, lag_s[0]));
+                });
+}
+
 /// Faults of the signals know what strength they have.
 void SetSizes(double plausible_rad, Family& family) {
   if (family.effect == "signal_clipping") return;
@@ -296,6 +307,7 @@ std::vector<Family> NamedFamilies(const Context& context, const TimeSeries& seri
     named.AddDrift(Shown("drift"), "rate", context->since_start_s);
     AddWarmUp(context, named);
   }
+  AddTemperature(context, named);
   named.AddStep(Shown("slip"), "step", series);
   std::vector<Family> families = named.Take();
   for (Family& family : families) SetSizes(plausible_rad, family);

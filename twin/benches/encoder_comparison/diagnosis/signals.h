@@ -20,6 +20,7 @@ struct SignalContext {
   Eigen::VectorXd reference_rad;
   Eigen::VectorXd device_rad;      // angle of the device's scale, without its errors
   Eigen::VectorXd velocity_rad_s;  // zero where it was not recorded
+  Eigen::VectorXd above_K;         // temperature above the reference; empty if none was logged
   DeviceSettings device;
   bool has_clock = true;  // false: times count the rows
 

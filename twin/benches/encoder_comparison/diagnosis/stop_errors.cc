@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "twin/benches/encoder_comparison/diagnosis/target_curve.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/model/signals.h"
@@ -72,18 +73,6 @@ double NumbersByAngle(const LargeCauses& large) {
   return numbers;
 }
 
-/// The curve as a structure without a name.
-Accepted Curve(const Eigen::VectorXd& error) {
-  Accepted curve;
-  curve.family.kind = Kind::kUnknown;
-  curve.family.effect = "error curve";
-  curve.family.where = "angle";
-  curve.family.amplitudes = {{"strength", "1", 1.0, 1.0}};
-  curve.amplitudes = Eigen::VectorXd::Ones(1);
-  curve.columns = error;
-  return curve;
-}
-
 }  // namespace
 
 Eigen::MatrixXd Targets(const SignalContext& c) {
@@ -131,6 +120,7 @@ void AddErrorsOfTargets(const LargeCauses& large, DiagnosisRun& result) {
   const Eigen::VectorXd sigma = result.run.sigma;
   result.run = large.first->encoder.run;
   result.run.sigma = sigma;
+  result.run.nuisance = large.first->encoder.SetUpsAlone();  // the errors of the targets are told, not free
   Eigen::VectorXd left = result.run.residual, named = Eigen::VectorXd::Zero(left.size());
   for (const Accepted& accepted : result.accepted) {
     const Eigen::VectorXd shown = accepted.columns * accepted.amplitudes;
@@ -142,7 +132,7 @@ void AddErrorsOfTargets(const LargeCauses& large, DiagnosisRun& result) {
       "error of its own at each of {} targets, {:.3g} {} from the least to the largest, the same at every "
       "visit from either side, synchronous with reference angle, on angle",
       large.targets.cols(), (error.maxCoeff() - error.minCoeff()) / result.run.to_SI, result.run.unit);
-  result.accepted.insert(result.accepted.begin(), Curve(error));
+  result.accepted.insert(result.accepted.begin(), CurveThrough(large.first->encoder.context, large.targets, error));
   d.unknown.signature = words + (d.unknown.signature.empty() ? "" : " | " + d.unknown.signature);
   d.unknown.probability = std::max(d.unknown.probability, tuning::kListed);
   const auto about_mean = [](const Eigen::VectorXd& rows) { return (rows.array() - rows.mean()).matrix().squaredNorm(); };

@@ -41,7 +41,7 @@ std::vector<LapSum> FullLaps(const FittedGroup& fitted, int highest) {
   return full;
 }
 
-Eigen::VectorXd Pooled(const Eigen::VectorXd& single, int pooled_orders) {
+Eigen::VectorXd PooledWithNeighbours(const Eigen::VectorXd& single, int pooled_orders) {
   Eigen::VectorXd pooled(single.size());
   for (Eigen::Index k = 0; k < single.size(); ++k) {
     const Eigen::Index first = k - std::min<Eigen::Index>(k, pooled_orders);
@@ -69,7 +69,7 @@ OrderNoise NoiseOf(const std::vector<FittedGroup>& groups, int highest, int pool
   noise.white_rad2 = dof > 0.0 ? rest2 / dof : kNaN;
   noise.between_laps = changes > 0.0;
   noise.dof = noise.between_laps ? 2.0 * changes : dof;
-  noise.variance_rad2 = noise.between_laps ? Pooled(squares / changes, pooled_orders)
+  noise.variance_rad2 = noise.between_laps ? PooledWithNeighbours(squares / changes, pooled_orders)
                                            : Eigen::VectorXd::Constant(highest, noise.white_rad2);
   return noise;
 }

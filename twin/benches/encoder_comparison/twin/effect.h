@@ -16,7 +16,7 @@ struct AngleMoment {
   double shaft_rad = 0.0;       // true angle of the shaft, unwrapped
   double velocity_rad_s = 0.0;  // of the shaft
   double approach_rad = 0.0;    // last leg of the usual way to a stop, signed; 0 in motion
-  double above_K = 0.0;         // temperature above 20 degC, as far as one was logged
+  double above_K = 0.0;         // of the room, above that of the reference, as far as it is known
 };
 
 using mechanics::SignalState;

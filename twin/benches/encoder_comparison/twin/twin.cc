@@ -17,12 +17,17 @@ double RunUp_rad(const EncoderProcedureSettings& procedure) {
   return procedure.kind == "stops" ? units::kPi / procedure.stops : 0.0;
 }
 
-AngleMoment MomentOf(const Reading& reading, double run_up_rad) {
+/// @param above_K  Of the temperature; NaN: not known.
+AngleMoment MomentOf(const Reading& reading, double run_up_rad, double above_K) {
   const auto known = [](double value) { return std::isfinite(value) ? value : 0.0; };
   return {reading.time,          reading.setup,
           reading.reading,       reading.reference_rad,
           known(reading.velocity_rad_s), reading.direction * run_up_rad,
-          known(reading.temperature_degC - kReference_degC)};
+          known(above_K)};
+}
+
+bool Changes(const EnvironmentSettings& room) {
+  return room.drift_K_h != 0.0 || room.swing_K != 0.0 || room.random_walk_K_sqrt_h != 0.0 || !room.temperature_file.empty();
 }
 
 double Quantised(double angle_rad, double step_rad) {
@@ -78,6 +83,7 @@ EncoderTwin::EncoderTwin(const Scenario& scenario, double run_up_rad)
       graduation_(scenario),
       spindle_(EncoderOf(scenario)),
       empirical_(scenario.empiricals, "angle") {
+  if (Changes(scenario.environment)) room_.emplace(scenario.environment, scenario.RunSeed());
   for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeAngleEffect(effect, scenario));
   for (const auto& effect : effects_) {
     effect->AlterSignals(signals_);
@@ -129,7 +135,8 @@ double EncoderTwin::Shown_rad(const AngleMoment& moment) const {
 }
 
 double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad) {
-  AngleMoment moment = MomentOf(reading, run_up_rad_);
+  AngleMoment moment =
+      MomentOf(reading, run_up_rad_, reading.temperature_degC - scenario_.environment.reference_degC);
   // A reference that errs by arcseconds an arcminute: each step leaves a hundredth of what is wrong, or less.
   constexpr int kSteps = 5;
   for (int k = 0; k < kSteps; ++k) moment.shaft_rad = reading.reference_rad - ReferenceError_rad(moment);
@@ -138,10 +145,25 @@ double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad) {
   return Shown_rad(moment);
 }
 
+double EncoderTwin::AboveReference_K(Time now) {
+  return room_ ? room_->AboveReference_K(now) : 0.0;
+}
+
+/// By the bench's thermometer.
+void EncoderTwin::LogTemperature(Reading& reading) {
+  if (!room_) return;
+  reading.temperature_degC = room_->Temperature_degC(reading.time);
+  if (scenario_.noise_free) return;
+  Stream stream(scenario_.RunSeed(), "environment.sensor");
+  stream.Seek(static_cast<std::uint64_t>(reading.reading));
+  reading.temperature_degC += scenario_.environment.sensor_noise_K * stream.Normal();
+}
+
 /// When the line that the reading names passes the head: the shaft then stands where the scale shows its angle.
 void EncoderTwin::TakeStamp(Reading& reading) {
-  AngleMoment moment = MomentOf(reading, 0.0);
-  moment.now = Time(FromSeconds(spindle_.Now_s()));
+  const Time now(FromSeconds(spindle_.Now_s()));
+  AngleMoment moment = MomentOf(reading, 0.0, AboveReference_K(now));
+  moment.now = now;
   const double mounting_rad = MountingOf_rad(reading.setup);
   constexpr int kSteps = 3;  // of a curve that falls by a thousandth and less
   for (int k = 0; k < kSteps; ++k) {
@@ -161,9 +183,10 @@ void EncoderTwin::TakeStamp(Reading& reading) {
 void EncoderTwin::Take(Reading& reading) {
   if (EncoderOf(scenario_).encoder_procedure.kind == "coast") {
     TakeStamp(reading);
-    return;
+    return LogTemperature(reading);
   }
-  const AngleMoment moment = MomentOf(reading, run_up_rad_);
+  LogTemperature(reading);
+  const AngleMoment moment = MomentOf(reading, run_up_rad_, AboveReference_K(reading.time));
   Advance(moment);
   reading.reference_rad += ReferenceError_rad(moment);
   reading.measured_rad = Shown_rad(moment);

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <vector>
 
 #include "twin/benches/encoder_comparison/twin/effect.h"
@@ -10,6 +11,7 @@
 #include "twin/benches/encoder_comparison/twin/spindle.h"
 #include "twin/core/devices.h"
 #include "twin/sim/empirical_signal.h"
+#include "twin/sim/environment.h"
 
 namespace twinbench::sim {
 
@@ -38,6 +40,8 @@ class EncoderTwin : public AngleComparator {
 
  private:
   void TakeStamp(Reading& reading);
+  double AboveReference_K(Time now);
+  void LogTemperature(Reading& reading);
   double MountingOf_rad(int setup) const;
   double Shown_rad(const AngleMoment& moment) const;
   void Advance(const AngleMoment& moment);
@@ -54,6 +58,7 @@ class EncoderTwin : public AngleComparator {
   ShaftCourse course_;
   SignalState signals_;
   EmpiricalSignal empirical_;
+  std::optional<Environment> room_;  // where its temperature changes
 };
 
 }  // namespace twinbench::sim

@@ -20,6 +20,7 @@ AngleEffectPointer MakeHysteresis(const EffectSettings&);
 AngleEffectPointer MakeSettling(const EffectSettings&);
 AngleEffectPointer MakeScale(const EffectSettings&);
 AngleEffectPointer MakeZeroDrift(const EffectSettings&);
+AngleEffectPointer MakeZeroTemperature(const EffectSettings&);
 AngleEffectPointer MakeZeroSlip(const EffectSettings&);
 AngleEffectPointer MakeReferenceFault(const EffectSettings&);
 AngleEffectPointer MakeAngleOutliers(const EffectSettings&, const Scenario&);

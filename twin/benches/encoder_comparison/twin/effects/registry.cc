@@ -38,6 +38,7 @@ AngleEffectPointer MakeAngleEffect(const EffectSettings& effect, const Scenario&
       {"settling", [&] { return MakeSettling(effect); }},
       {"scale", [&] { return MakeScale(effect); }},
       {"drift", [&] { return MakeZeroDrift(effect); }},
+      {"zero_temperature", [&] { return MakeZeroTemperature(effect); }},
       {"slip", [&] { return MakeZeroSlip(effect); }},
       {"reference_fault", [&] { return MakeReferenceFault(effect); }},
       {"outliers", [&] { return MakeAngleOutliers(effect, scenario); }},

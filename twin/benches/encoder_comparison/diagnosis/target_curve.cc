@@ -1,0 +1,65 @@
+#include "twin/benches/encoder_comparison/diagnosis/target_curve.h"
+
+#include "twin/core/linear_algebra.h"
+#include "twin/core/units.h"
+#include "twin/diagnose/unknown/collector.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+/// Mean of one value a reading at each target.
+Eigen::VectorXd AtTargets(const Eigen::MatrixXd& targets, const Eigen::VectorXd& values) {
+  return (targets.transpose() * values).cwiseQuotient(targets.colwise().sum().transpose());
+}
+
+/// cos(k pi (angle - begin) / travel), k = 0, 1, ...; the ends lie half a step beyond the outer targets.
+struct HalfPeriods {
+  double begin_rad, per_rad;  // of k
+
+  Eigen::MatrixXd At(const Eigen::VectorXd& angle_rad, Eigen::Index count) const {
+    Eigen::MatrixXd modes(angle_rad.size(), count);
+    for (Eigen::Index k = 0; k < count; ++k)
+      modes.col(k) = (static_cast<double>(k) * per_rad * (angle_rad.array() - begin_rad)).cos();
+    return modes;
+  }
+};
+
+HalfPeriods Between(const Eigen::VectorXd& target_rad) {
+  const double range_rad = target_rad.maxCoeff() - target_rad.minCoeff();
+  const double half_step_rad = 0.5 * range_rad / static_cast<double>(target_rad.size() - 1);
+  return {target_rad.minCoeff() - half_step_rad, units::kPi / (range_rad + 2.0 * half_step_rad)};
+}
+
+/// The constant is that of the mounting.
+std::vector<Product> ProductsOf(const HalfPeriods& modes, const Eigen::VectorXd& sizes_rad) {
+  std::vector<Product> products;
+  for (Eigen::Index k = 1; k < sizes_rad.size(); ++k) {
+    const double order = static_cast<double>(k) * modes.per_rad;
+    const double phase_rad = std::remainder(-order * modes.begin_rad, units::turn);
+    products.push_back({unknown::SignalOf("harmonic", "device", {{"order", order}, {"phase", phase_rad}}), 0, false,
+                        sizes_rad[k]});
+  }
+  return products;
+}
+
+}  // namespace
+
+Accepted CurveThrough(const SignalContext& context, const Eigen::MatrixXd& targets, const Eigen::VectorXd& error_rad) {
+  constexpr Eigen::Index kMostWaves = 100;  // of a file that somebody may still read
+  Accepted curve;
+  curve.family.kind = Kind::kUnknown;
+  curve.family.effect = "error curve";
+  curve.family.where = "angle";
+  curve.family.amplitudes = {{"strength", "1", 1.0, 1.0}};
+  curve.amplitudes = Eigen::VectorXd::Ones(1);
+  curve.columns = error_rad;
+  if (targets.cols() > kMostWaves) return curve;
+  const Eigen::VectorXd target_rad = AtTargets(targets, context.device_rad);
+  const HalfPeriods modes = Between(target_rad);
+  const Eigen::VectorXd sizes_rad =
+      SolveShortest(modes.At(target_rad, targets.cols()), AtTargets(targets, error_rad));
+  curve.family.products = [modes, sizes_rad](const Eigen::VectorXd&, int) { return ProductsOf(modes, sizes_rad); };
+  return curve;
+}
+
+}  // namespace twinbench::diagnose::encoder

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "twin/benches/encoder_comparison/diagnosis/signals.h"
+#include "twin/diagnose/extend.h"
+
+namespace twinbench::diagnose::encoder {
+
+/// Errors of targets as a structure without a name, and as waves of the device's angle that a twin can carry out:
+/// cosines of half periods over the travel, one a target, which pass through all of them.
+/// @param targets    Readings x targets: 1 where a reading is at one.
+/// @param error_rad  One a reading, the same at every visit.
+Accepted CurveThrough(const SignalContext& context, const Eigen::MatrixXd& targets, const Eigen::VectorXd& error_rad);
+
+}  // namespace twinbench::diagnose::encoder
