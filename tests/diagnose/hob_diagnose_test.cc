@@ -162,7 +162,7 @@ TEST(HobDiagnosis, ListsWhatOppositeHeadsCannotSeeWithWhatItWouldBias) {
   const auto found = std::ranges::find_if(
       diagnosis.invisible, [](const Invisible& i) { return i.effect == "ellipticity" && i.where == "table"; });
   ASSERT_NE(found, diagnosis.invisible.end());
-  EXPECT_NE(found->could_bias.find("transmission order 2"), std::string::npos) << found->could_bias;
+  EXPECT_NE(found->could_bias.find("transmission of order 2"), std::string::npos) << found->could_bias;
   for (const Invisible& i : diagnosis.invisible) EXPECT_FALSE(i.effect == "eccentricity" && i.where == "table");
 }
 

@@ -2,8 +2,6 @@
 
 #include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
 #include "twin/benches/encoder_comparison/twin/factory.h"
-#include "twin/benches/hob_transmission/diagnosis/hob_run.h"
-#include "twin/benches/hob_transmission/twin/factory.h"
 #include "twin/benches/turntable_autocollimator/diagnosis/turntable_run.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
 
@@ -15,12 +13,6 @@ inline EncoderRun RunOf(const std::vector<Reading>& readings, const Scenario& sc
   return BuildRun(readings, scenario, benches::encoder::FollowRecord);
 }
 }  // namespace encoder
-
-namespace hob {
-inline HobRun RunOf(const std::vector<Reading>& readings, const Scenario& scenario) {
-  return BuildRun(readings, scenario, benches::hob::FollowRecord);
-}
-}  // namespace hob
 
 namespace turntable {
 inline TurntableRun RunOf(const std::vector<Reading>& readings, const Scenario& scenario) {

@@ -7,9 +7,8 @@
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/freeform_five_axis/settings.h"
-#include "twin/benches/hob_transmission/diagnosis/hob_run.h"
+#include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/hob_transmission/settings.h"
-#include "twin/benches/hob_transmission/twin/factory.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -209,7 +208,7 @@ Eigen::VectorXd SignatureScale::Rows(const std::vector<Reading>& readings, const
     return diagnose::turntable::BuildRun(readings, Believed(design_), benches::turntable::FollowRecord)
         .run.observed;
   if (design_ == Design::kHob)
-    return diagnose::hob::BuildRun(readings, Believed(design_), benches::hob::FollowRecord).run.observed;
+    return benches::hob::Linear(readings, Believed(design_), Estimator::kRigorous).observed;
   Eigen::VectorXd rows(clean.Rows());
   for (int row = 0; row < clean.Rows(); ++row) {
     const auto number =

@@ -10,6 +10,7 @@
 #include "twin/diagnose/compared.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/analysis.h"
+#include "twin/diagnose/to_readings.h"
 #include "twin/diagnose/twin_candidates.h"
 
 namespace twinbench::diagnose {
@@ -41,6 +42,21 @@ std::string BiasOf(const LinearRun& run, const FreeConstants& free, const Eigen:
   for (const auto& [trace_of_it, text] : told) words += (words.empty() ? "" : ", ") + text;
   if (words.empty()) return "nothing: the run leaves nothing free";
   return too_many ? words + " and others" : words;
+}
+
+/// Simulated runs without effect: fewer where a run has many rows.
+int NullRuns(const LinearRun& run, int wanted) {
+  constexpr int kFewest = 150;
+  constexpr double kRows = 1e6;  // of all simulated runs
+  return std::min(wanted, std::max(static_cast<int>(kRows / run.Rows()), kFewest));
+}
+
+AnalysisOptions HowToAnalyse(const LinearRun& run, const DiagnoseOptions& options,
+                             const TwinComparison& comparison) {
+  AnalysisOptions how = AnalysisOptionsOf(options);
+  how.most_causes = comparison.most_causes;
+  if (comparison.sampled) how.null_runs = NullRuns(run, options.null_runs);
+  return how;
 }
 
 std::string NextOf(const std::string& effect, const std::string& rival) {
@@ -82,6 +98,13 @@ EffectSettings EffectOf(const Family& family, const Term& term, const std::vecto
   effect.where = family.where;
   const EffectEntry& entry = *std::ranges::find(catalogue, family.effect, &EffectEntry::name);
   for (const EffectParameter& p : entry.parameters) effect.parameters[p.name] = p.default_SI;
+  if (family.parameters) {
+    const Eigen::Index size = term.amplitudes.size();
+    for (const ParameterEstimate& p :
+         family.parameters(term.shape, term.amplitudes, Eigen::MatrixXd::Identity(size, size)))
+      effect.parameters[p.name] = p.value;
+    return effect;
+  }
   for (std::size_t k = 0; k < family.amplitudes.size(); ++k)
     effect.parameters[family.amplitudes[k].name] = term.amplitudes[static_cast<Eigen::Index>(k)];
   for (std::size_t k = 0; k < family.shapes.size(); ++k)
@@ -89,12 +112,23 @@ EffectSettings EffectOf(const Family& family, const Term& term, const std::vecto
   return effect;
 }
 
-/// Whether asking again with the first cause in the twin may tell more: it is named, the twin has it as it stands,
-/// and what it leaves may be nothing but that it was taken for linear.
-bool MayBeCurved(const Searched& searched) {
-  if (!searched.LeavesStructure()) return false;
-  const Family& family = searched.FamilyOf(searched.found().terms.front());
-  return family.kind == Kind::kNamed && !family.parameters;
+/// Whether what the twin shows of the first cause is off its tangent by more than the noise of the readings.
+bool IsOffItsTangent(const Searched& searched, const std::vector<Reading>& readings,
+                     const TwinComparison& comparison) {
+  const Compared& c = searched.compared;
+  const Term& first = searched.found().terms.front();
+  const BelievedRecord asked = AskedRecord(c, readings, searched.scenario, comparison);
+  const EffectSettings effect = EffectOf(searched.FamilyOf(first), first, comparison.format->effects);
+  const Eigen::MatrixXd off = asked.ShownWith(effect) - asked.Shown() - first.columns * first.amplitudes;
+  return Project(*searched.analysis.projector, {}, searched.analysis.noise.Whiten(c.run, off)).power[0] > 1.0;
+}
+
+/// Whether asking again with the first cause in the twin may tell more: it is named, and either what it leaves may
+/// be nothing but that it was taken for linear, or its size is wrong by that.
+bool MayBeCurved(const Searched& searched, const std::vector<Reading>& readings, const TwinComparison& comparison) {
+  if (searched.found().terms.empty() || searched.FamilyOf(searched.found().terms.front()).kind != Kind::kNamed)
+    return false;
+  return searched.LeavesStructure() || (comparison.bends && IsOffItsTangent(searched, readings, comparison));
 }
 
 /// The same search with slopes about the first cause at the size that was found; it is still weighed against the
@@ -105,11 +139,13 @@ std::unique_ptr<Searched> AboutFirstCause(const Searched& before, const std::vec
   Scenario believed = before.scenario;
   believed.effects.push_back(EffectOf(before.FamilyOf(first), first, comparison.format->effects));
   auto after = std::make_unique<Searched>(readings, believed, options, comparison);
-  if (after->candidates.families.size() != before.candidates.families.size()) return nullptr;
+  if (after->candidates.families.size() != before.candidates.families.size() ||
+      after->compared.run.Rows() != before.compared.run.Rows())
+    return nullptr;
   const Family& same = after->FamilyOf(first);
   const Eigen::MatrixXd columns = same.at ? same.at(first.shape) : same.ColumnsAt(first.grid_point);
   after->compared.run.residual += columns * first.amplitudes;
-  AnalysisOptions how = AnalysisOptionsOf(options);
+  AnalysisOptions how = HowToAnalyse(after->compared.run, options, comparison);
   how.null = &before.analysis.null;
   after->analysis = Analyse(after->compared.run, after->candidates.families, how);
   return after;
@@ -125,18 +161,21 @@ LinearRun CompareWithTwin(const std::vector<Reading>& readings, const Scenario& 
 DiagnosisRun DiagnoseByTwin(const std::vector<Reading>& readings, const Scenario& scenario,
                             const DiagnoseOptions& options, const TwinComparison& comparison) {
   auto searched = std::make_unique<Searched>(readings, scenario, options, comparison);
-  searched->analysis = Analyse(searched->compared.run, searched->candidates.families, AnalysisOptionsOf(options));
-  if (MayBeCurved(*searched)) {
+  searched->analysis = Analyse(searched->compared.run, searched->candidates.families,
+                               HowToAnalyse(searched->compared.run, options, comparison));
+  if (MayBeCurved(*searched, readings, comparison)) {
     auto again = AboutFirstCause(*searched, readings, options, comparison);
     const auto terms = [](const Searched& s) { return s.found().terms.size(); };
     if (again && terms(*again) > 0 && terms(*again) <= terms(*searched)) searched = std::move(again);
   }
   const Compared& c = searched->compared;
   DiagnosisRun result =
-      Conclude(c.run, searched->analysis, {},
-               {[&](const std::string&, const Eigen::VectorXd& x) { return BiasOf(c.run, c.free, x); }, NextOf});
+      Conclude(c.run, searched->analysis, OutliersLeftOut(c, comparison, options.excluded),
+               {[&](const std::string&, const Eigen::VectorXd& x) { return BiasOf(c.run, c.free, x); },
+                comparison.next_measurement ? comparison.next_measurement : NextOf});
   std::ranges::copy(searched->candidates.invisible, std::back_inserter(result.diagnosis.invisible));
-  result.diagnosis.left_out = static_cast<int>(readings.size() - c.used.size());
+  result.diagnosis.left_out = static_cast<int>(readings.size() - c.used.size() - c.outliers.readings.size());
+  if (comparison.sampled) ToReadings(c, comparison, result);
   return result;
 }
 

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +22,12 @@ namespace twinbench::diagnose {
 struct TwinComparison {
   /// An angle that structure may be locked to, and where a reading keeps it.
   struct KnownAngle {
-    std::string name;  // of the format's angles
+    std::string name;  // of the format's angles; empty: the twin has no signals that are synchronous with it
     std::function<double(const Reading&)> rad;
+    std::string words = {};               // empty: the name and "angle"
+    std::string harmonics = "harmonic";   // sort of its whole orders
+    int first_unfree = 1;                 // the first whole order that no constant of the run takes up
+    bool is_turned_by_motion = true;      // false: direction and speed are of another angle
   };
 
   /// A point whose value at each reading is a sum of stated courses times constants that all set-ups share: an
@@ -29,6 +35,7 @@ struct TwinComparison {
   struct FreeCourses {
     std::string point;
     std::function<Eigen::MatrixXd(const std::vector<Reading>&)> courses;  // readings x constants, dimensionless
+    std::string of = "the bench";                                         // in words, behind the name of the point
   };
 
   /// An effect of the catalogue as a point times courses that depend on one shape, where asking the twin anew at
@@ -39,10 +46,11 @@ struct TwinComparison {
     std::string shape;               // the parameter that courses depend on
     std::function<std::vector<double>(const std::vector<Reading>&)> values;                  // SI, to be tried
     std::function<Eigen::MatrixXd(const std::vector<Reading>&, double shape)> courses = {};  // readings x sizes
+    bool is_order = false;  // whole numbers; courses are the cosine and the sine of "amplitude" and "phase"
   };
 
-  /// A place of the effect "tone" that is nothing but a wave in what channels show.
-  struct ToneOn {
+  /// A place of the effect "tone", or "slip", that is nothing but a wave, or a step, in what channels show.
+  struct ShownOn {
     std::string where;
     Eigen::MatrixXd pattern;  // channels x 1: what each shows of it
   };
@@ -67,6 +75,20 @@ struct TwinComparison {
     std::string point;
     Coordinate along;
     double shortest, longest;
+  };
+
+  /// Of a bench that is read in motion, thousands of times a pass: neighbours are taken together (grouping.h), once
+  /// single values that lie far outside have been left out.
+  struct Sampled {
+    std::function<Eigen::VectorXd(const std::vector<Reading>&)> line_rad;    // phase of the fastest wave that stays
+    std::function<Eigen::VectorXd(const std::vector<Reading>&)> folded_rad;  // of one that the sampling folds
+    std::function<Eigen::VectorXd(const std::vector<Reading>&)> travel_rad;  // since the last reversal
+  };
+
+  /// A whole order by turns of the first angle that is tabulated, and what it may mean.
+  struct TabulatedOrder {
+    int order;
+    std::string meaning;
   };
 
   const BenchFormat* format = nullptr;  // never null
@@ -96,7 +118,26 @@ struct TwinComparison {
   std::vector<Coordinate> coordinates = {};
   std::vector<FringesAlong> fringes = {};
   std::string outliers = {};  // the point at which the catalogue's outliers enter; empty: the readings
-  std::vector<ToneOn> tones = {};
+  std::vector<ShownOn> tones = {}, steps = {};
+
+  // Of a bench with channels that not every run or reading has. Those that are used show the first.
+  std::vector<std::string> channels = {};                // the first ones that the twin shows; empty: the format's
+  std::function<bool(const Reading&)> is_used = {};      // empty: if every channel is shown
+  bool is_alike_on_all = false;                          // structure without a name may show so on all channels
+  // What the channels show is what is wrong: it has no scale of its own that errors may go by.
+  bool shows_errors = false;
+  bool remounting_ends_tones = false;                    // size and phase are of each set-up
+  std::function<void(Reading&, const Eigen::VectorXd&)> show = {};  // the reverse of `shown`, for what a reading
+                                                                    // should have been: causes are asked of that
+  std::optional<Sampled> sampled = {};
+  std::vector<TabulatedOrder> orders = {};
+  // What is thought of causes of the catalogue.
+  bool sizes_by_trace = false;  // `plausible` is what each leaves: devices may be of any quality
+  std::function<double(const std::string& effect, const std::string& where)> listed = {};  // see Family
+  std::map<std::string, std::string> named = {};                                           // see unknown::Design
+  int most_causes = 4;
+  bool bends = false;  // the first cause is searched about itself wherever it is off its tangent by more than noise
+  std::function<std::string(const std::string& effect, const std::string& rival)> next_measurement = {};
 };
 
 /// Readings against the twin's, with the free constants that fit best.

@@ -5,6 +5,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
+#include "twin/core/units.h"
 #include "twin/diagnose/engine/noise_estimate.h"
 #include "twin/diagnose/mean_of_runs.h"
 #include "twin/diagnose/redundancy.h"
@@ -37,10 +38,12 @@ ValuesOf ShownBy(const TwinComparison& comparison) {
   };
 }
 
-std::vector<Reading> WithValues(const std::vector<Reading>& readings, const ValuesOf& values_of) {
+std::vector<Reading> WithValues(const std::vector<Reading>& readings, const TwinComparison& comparison) {
+  const ValuesOf values_of = ShownBy(comparison);
   std::vector<Reading> used;
   std::ranges::copy_if(readings, std::back_inserter(used), [&](const Reading& r) {
-    return r.status == ReadingStatus::kOk && values_of(r).allFinite();
+    if (r.status != ReadingStatus::kOk) return false;
+    return comparison.is_used ? comparison.is_used(r) : values_of(r).allFinite();
   });
   RefuseTooFew(used.size(), readings.size());
   return used;
@@ -57,7 +60,8 @@ LinearRun RunOf(const std::vector<Reading>& used, const Scenario& scenario, cons
   LinearRun run;
   run.bench = scenario.bench;
   run.schedule = model::CourseOf(used);
-  run.channels = comparison.format->channels;
+  if (comparison.sampled) run.schedule.target_rad = OfReadings(used, comparison.angles.front().rad);
+  run.channels = comparison.channels.empty() ? comparison.format->channels : comparison.channels;
   run.unit = comparison.unit;
   run.to_SI = comparison.to_SI;
   run.units = comparison.units;
@@ -76,10 +80,25 @@ Eigen::VectorXd StatedNoise(const std::vector<Reading>& used, const Scenario& sc
       used, [&](const Reading& r) { return comparison.noise_of(scenario, r); }, run.Channels());
 }
 
-void EstimateNoise(LinearRun& run) {
+/// Every turn of a pass as a pass of its own over the same places: what repeats with the angle is then no noise.
+Schedule ByTurns(Schedule s, const Eigen::VectorXd& angle_rad) {
+  constexpr int kMostTurns = 10000;
+  for (Eigen::Index i = 0; i < angle_rad.size(); ++i) {
+    const double turn = std::floor(angle_rad[i] / units::turn + 1e-9);
+    int& pass = s.pass[static_cast<std::size_t>(i)];
+    pass = pass * kMostTurns + static_cast<int>(turn);
+    s.reference_rad[i] = angle_rad[i] - turn * units::turn;
+  }
+  return s;
+}
+
+/// Of the channels whose noise nobody states.
+void EstimateNoise(const TwinComparison& comparison, LinearRun& run) {
+  const Schedule schedule = comparison.sampled ? ByTurns(run.schedule, run.schedule.target_rad) : run.schedule;
   for (int c = 0; c < run.Channels(); ++c) {
     const auto of_channel = Eigen::seq(c, Eigen::last, run.Channels());
-    run.sigma(of_channel).setConstant(EstimateNoise_rad(run.schedule, run.residual(of_channel)));
+    if (run.sigma(of_channel).minCoeff() > 0.0) continue;
+    run.sigma(of_channel).setConstant(EstimateNoise_rad(schedule, run.residual(of_channel)));
   }
 }
 
@@ -99,18 +118,22 @@ std::vector<FreePoint> FreeOf(const Compared& c, const TwinComparison& compariso
   for (const std::string& point : comparison.free_points)
     points.push_back({c.twin.Point(point), model::Indicators(c.run.schedule.setup), "a mounting"});
   for (const TwinComparison::FreeCourses& of_bench : comparison.free_courses)
-    points.push_back({c.twin.Point(of_bench.point), of_bench.courses(c.used), "the bench"});
+    points.push_back({c.twin.Point(of_bench.point), of_bench.courses(c.used), of_bench.of});
   if (!comparison.free_sd) return points;
   for (FreePoint& free : points) free.sd = comparison.free_sd(free.point);
   return points;
 }
 
-}  // namespace
+constexpr double kNoWeight = 1e5;  // times the noise: of a channel that a reading has not
 
-Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario, const TwinComparison& comparison) {
-  const std::vector<Reading> used = WithValues(readings, ShownBy(comparison));
-  Compared c{used, Followed(comparison.follow, scenario, readings, used), RunOf(used, scenario, comparison), {}};
+/// Reading by reading.
+Compared CompareReadings(const std::vector<Reading>& readings, const std::vector<Reading>& used,
+                         const Scenario& scenario, const TwinComparison& comparison) {
+  LinearRun of_used = RunOf(used, scenario, comparison);
+  Compared c{used, Followed(comparison.follow, scenario, readings, used, of_used.Channels()), of_used, {}};
   LinearRun& run = c.run;
+  const Eigen::ArrayXd read = run.observed.array().isFinite().cast<double>();
+  run.observed = (read > 0.0).select(run.observed, 0.0);
   if (!c.twin.Predict({}).allFinite())
     throw InputError("readings", "there are values where the scenario's bench would show none",
                      "a scenario of the bench that the readings come from");
@@ -118,15 +141,60 @@ Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario,
   run.sigma_stated = run.sigma.minCoeff() > 0.0;
   ScaleToMean(used, run);
   constexpr double kHold = 10.0;  // what is left must be nearly linear in whatever the constants may be besides
-  const Eigen::VectorXd weights =
-      run.sigma_stated ? Eigen::VectorXd(run.sigma.cwiseInverse()) : Eigen::VectorXd::Ones(run.observed.size());
+  Eigen::VectorXd weights = read;
+  if (run.sigma_stated) weights.array() /= run.sigma.array();
   c.free = FitFree(c.twin, FreeOf(c, comparison), run.observed,
                    {weights, comparison.free_rank, comparison.free_rounds, kHold});
-  run.residual = run.observed - ByRow(c.twin.Predict(c.free.Disturbances()));
-  if (!run.sigma_stated) EstimateNoise(run);
-  run.nuisance = NuisanceOf(c.free, run.sigma);
+  c.predicted = ByRow(c.twin.Predict(c.free.Disturbances()));
+  run.residual = read.matrix().cwiseProduct(run.observed - c.predicted);
+  EstimateNoise(comparison, run);
+  run.sigma = (read > 0.0).select(run.sigma, kNoWeight * run.sigma);
+  c.readings = run.schedule;
+  c.groups = GroupsOf(run.schedule, 1);
   run.outlier_per_noise = PerNoise(c, comparison.outliers);
-  c.predicted = run.Predicted();
+  return c;
+}
+
+/// Once more without single values that lie far outside.
+Compared WithoutOutliers(Compared all, const std::vector<Reading>& readings, const Scenario& scenario,
+                         const TwinComparison& comparison) {
+  const LinearRun& run = all.run;
+  SingleOutliers outliers = FindSingleOutliers(run.schedule, run.channels.front(),
+                                               run.residual(Eigen::seq(0, Eigen::last, run.Channels())));
+  if (outliers.readings.empty()) return all;
+  std::vector<Reading> used = all.used;
+  std::erase_if(used, [&](const Reading& r) { return std::ranges::count(outliers.readings, r.reading) > 0; });
+  Compared rest = CompareReadings(readings, used, scenario, comparison);
+  rest.outliers = std::move(outliers);
+  return rest;
+}
+
+/// Rows are means of neighbours from here on.
+void TakeTogether(const TwinComparison& comparison, Compared& c) {
+  const TwinComparison::Sampled& sampled = *comparison.sampled;
+  c.groups = LargestGroups(c.readings, sampled.line_rad(c.used), sampled.folded_rad(AsPredicted(c, comparison)));
+  LinearRun& run = c.run;
+  const Eigen::Index channels = run.Channels();
+  Eigen::VectorXd sigma = c.groups.MeanOfRows(run.sigma.cwiseAbs2()).cwiseSqrt();
+  for (Eigen::Index row = 0; row < sigma.size(); ++row) sigma[row] /= std::sqrt(c.groups.Size(row / channels));
+  run.schedule = Grouped(c.readings, c.groups);
+  run.observed = c.groups.MeanOfRows(run.observed);
+  run.residual = c.groups.MeanOfRows(run.residual);
+  run.sigma = sigma;
+  c.free.columns = c.groups.MeanOfRows(c.free.columns);
+}
+
+}  // namespace
+
+Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario, const TwinComparison& comparison) {
+  Compared c = CompareReadings(readings, WithValues(readings, comparison), scenario, comparison);
+  if (comparison.sampled) {
+    c = WithoutOutliers(std::move(c), readings, scenario, comparison);
+    TakeTogether(comparison, c);
+  }
+  LinearRun& run = c.run;
+  if (comparison.shows_errors) run.observed = run.residual;
+  run.nuisance = NuisanceOf(c.free, run.sigma);
   if (!comparison.free_sd) return c;
   // What the constants are held by is held from nothing, not from where the fit has put them.
   run.nuisance.at = SolveLeastSquares(c.free.fitted, c.free.values);
@@ -134,8 +202,19 @@ Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario,
   return c;
 }
 
+ToRows Compared::Means() const {
+  if (!groups.Averages()) return {};
+  return [groups = groups](const Eigen::MatrixXd& of_readings) { return groups.Mean(of_readings); };
+}
+
 std::vector<Reading> AsPredicted(const Compared& compared, const TwinComparison& comparison) {
   std::vector<Reading> readings = compared.used;
+  if (comparison.show) {
+    const Eigen::Index channels = compared.run.Channels();
+    for (std::size_t i = 0; i < readings.size(); ++i)
+      comparison.show(readings[i], compared.predicted.segment(static_cast<Eigen::Index>(i) * channels, channels));
+    return readings;
+  }
   if (comparison.shown) return readings;  // of values that are no columns
   const std::vector<ReadingColumn> columns = ShownColumns(comparison);
   Eigen::Index row = 0;
@@ -145,9 +224,27 @@ std::vector<Reading> AsPredicted(const Compared& compared, const TwinComparison&
   return readings;
 }
 
+std::vector<Reading> RecordAsPredicted(const Compared& c, std::vector<Reading> readings,
+                                       const TwinComparison& comparison) {
+  if (!comparison.show) return readings;
+  const std::vector<Reading> predicted = AsPredicted(c, comparison);
+  std::size_t next = 0;
+  for (Reading& r : readings) {
+    if (next < predicted.size() && r.reading == predicted[next].reading) r = predicted[next++];
+  }
+  return readings;
+}
+
+Eigen::VectorXd OfReadings(const std::vector<Reading>& readings,
+                           const std::function<double(const Reading&)>& value) {
+  Eigen::VectorXd values(std::ssize(readings));
+  for (std::size_t i = 0; i < readings.size(); ++i) values[static_cast<Eigen::Index>(i)] = value(readings[i]);
+  return values;
+}
+
 double PerNoise(const Compared& c, const std::string& point) {
   if (point.empty()) return kNaN;
-  const Eigen::VectorXd white = ByRow(c.twin.Slope(point, c.free.Disturbances())).cwiseQuotient(c.run.sigma);
+  const Eigen::VectorXd white = c.Rows(c.twin.Slope(point, c.free.Disturbances())).cwiseQuotient(c.run.sigma);
   const auto by_channel = white.reshaped(c.run.Channels(), c.run.schedule.Readings());
   return std::sqrt(static_cast<double>(by_channel.cols())) / by_channel.rowwise().norm().maxCoeff();
 }

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "twin/diagnose/by_twin.h"
 #include "twin/diagnose/engine/followed.h"
 #include "twin/diagnose/engine/free_constants.h"
+#include "twin/diagnose/engine/wave_series.h"
+#include "twin/diagnose/grouping.h"
+#include "twin/diagnose/single_outliers.h"
 
 /// A record beside its twin: the first half of a diagnosis by the twin.
 namespace twinbench::diagnose {
@@ -16,14 +20,30 @@ struct Compared {
   Followed twin;
   LinearRun run;
   FreeConstants free;
-  Eigen::VectorXd predicted = {};  // with those constants, by row
+  Eigen::VectorXd predicted = {};  // with those constants, by reading and channel
+  Schedule readings = {};          // those of the run are of groups of readings
+  Grouping groups = {};
+  SingleOutliers outliers = {};  // that were left out
+
+  /// What is shown of readings (x channels) as rows of the run.
+  Eigen::VectorXd Rows(const Eigen::MatrixXd& by_reading) const { return ByRow(groups.Mean(by_reading)); }
+  /// From readings to rows of one channel; empty: they are the same.
+  ToRows Means() const;
 };
 
 /// @throws InputError as CompareWithTwin does.
 Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario, const TwinComparison& comparison);
 
-/// The used readings as the twin says them, with the format's columns.
+/// The used readings as the twin says them.
 std::vector<Reading> AsPredicted(const Compared& compared, const TwinComparison& comparison);
+
+/// The same in the record; it itself if the comparison does not tell how.
+std::vector<Reading> RecordAsPredicted(const Compared& compared, std::vector<Reading> readings,
+                                       const TwinComparison& comparison);
+
+/// One value a reading.
+Eigen::VectorXd OfReadings(const std::vector<Reading>& readings,
+                           const std::function<double(const Reading&)>& value);
 
 /// SI of the point for one noise on the channel that shows it best, as it mostly is; NaN: there is no such point.
 double PerNoise(const Compared& compared, const std::string& point);

@@ -1,5 +1,8 @@
 #include "twin/diagnose/twin_candidates.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "twin/diagnose/conclusion.h"
@@ -19,38 +22,71 @@ bool NamesTonesOfChannels(const TwinComparison& comparison) {
          });
 }
 
+constexpr double kPlausibleNoise = 3.0;
+constexpr double kKept = 0.3;  // of a wave, by the means of neighbours
+
+/// Of a disturbance that nobody thought of: no less than shows in noise.
+double PlausibleOf(const LinearRun& run, const TwinComparison& comparison) {
+  const double noise = comparison.is_used ? run.sigma.minCoeff() : run.sigma.mean();
+  return std::max(comparison.plausible, kPlausibleNoise * noise);
+}
+
+/// Every channel alone, and before them all together.
+std::vector<unknown::Place> PlacesOf(const LinearRun& run, bool is_alike_on_all) {
+  std::vector<unknown::Place> places;
+  if (is_alike_on_all && run.Channels() > 1) {
+    const std::string all = fmt::format("{}", fmt::join(run.channels, ", "));
+    places.push_back({all, all, Eigen::VectorXd::Ones(run.Channels())});
+  }
+  for (const Pattern& pattern : run.patterns) places.push_back({pattern.name, pattern.name, pattern.weight});
+  return places;
+}
+
+/// The largest whole order that the readings show and their means keep to some extent.
+int LastOrder(const Compared& c, const Eigen::VectorXd& angle_rad) {
+  const int most = model::HighestOrder(model::TypicalStep_rad(c.readings, angle_rad));
+  if (!c.groups.Averages()) return most;
+  int last = std::min(most, 2);
+  while (last < most && KeptByMean((last + 1) * angle_rad, c.groups) >= kKept) ++last;
+  return last;
+}
+
 unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, const TimeSeries& series) {
   constexpr double kPlausibleShare = 0.01;
   const LinearRun& run = c.run;
+  const Schedule& readings = c.readings;
   unknown::Design design;
-  design.course = run.schedule;
+  design.course = readings;
+  design.rows = c.Means();
   design.channels = run.channels;
-  for (const Pattern& pattern : run.patterns) design.places.push_back({pattern.name, pattern.name, pattern.weight});
+  design.places = PlacesOf(run, comparison.is_alike_on_all);
   for (const TwinComparison::KnownAngle& known : comparison.angles) {
-    Eigen::VectorXd rad(run.schedule.Readings());
-    for (std::size_t i = 0; i < c.used.size(); ++i) rad[static_cast<Eigen::Index>(i)] = known.rad(c.used[i]);
+    const Eigen::VectorXd rad = OfReadings(c.used, known.rad);
     if (!rad.allFinite()) continue;
-    design.angles.push_back({known.name + " angle", rad,
-                             model::HighestOrder(model::TypicalStep_rad(run.schedule, rad)), 1, "harmonic",
-                             known.name, design.angles.empty()});
+    design.angles.push_back({known.words.empty() ? known.name + " angle" : known.words, rad, LastOrder(c, rad),
+                             known.first_unfree, known.harmonics, known.name,
+                             known.is_turned_by_motion && design.angles.empty()});
   }
   if (!design.angles.empty()) design.continued_rad = design.angles.front().rad;
-  design.moved = Eigen::VectorXd::Ones(run.schedule.Readings());
-  design.senses = {model::HeldDirection(run.schedule)};
-  if (run.schedule.velocity_rad_s.allFinite()) design.velocity = run.schedule.velocity_rad_s;
+  design.moved = Eigen::VectorXd::Ones(readings.Readings());
+  design.senses = {model::HeldDirection(readings)};
+  if (comparison.sampled) design.travel_rad = comparison.sampled->travel_rad(c.used);
+  if (readings.velocity_rad_s.allFinite()) design.velocity = readings.velocity_rad_s;
   if (model::HasTemperature(run.schedule)) {
     const Eigen::VectorXd T_degC = model::Above_K(run.schedule, 0.0);
     design.above_K = T_degC.array() - T_degC.mean();
   }
   design.series = series;
-  design.shown = run.Predicted().reshaped<Eigen::RowMajor>(run.schedule.Readings(), run.Channels());
-  design.shown_name = "reading";
+  if (!comparison.shows_errors) {
+    design.shown = run.Predicted().reshaped<Eigen::RowMajor>(run.schedule.Readings(), run.Channels());
+    design.shown_name = "reading";
+  }
   design.unit = run.unit;
   design.to_SI = run.to_SI;
   design.units = run.units;
-  constexpr double kPlausibleNoise = 3.0;
-  design.plausible = std::max(comparison.plausible, kPlausibleNoise * run.sigma.mean());
-  if (NamesTonesOfChannels(comparison)) design.named = {{"tone", "tone"}};
+  design.plausible = PlausibleOf(run, comparison);
+  design.named = comparison.named;
+  if (NamesTonesOfChannels(comparison)) design.named.emplace("tone", "tone");
   if (run.IsMixed()) {
     design.plausible = kPlausibleNoise;
     design.scale = run.sigma.reshaped(run.Channels(), run.schedule.Readings()).rowwise().mean();
@@ -59,8 +95,20 @@ unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, co
   return design;
 }
 
-TwinComparison::ShapedProduct Shaped(const TwinComparison::Product& p, const std::vector<Reading>& used) {
-  const std::vector<double> values = p.values(used);
+/// Without orders, the first of them on that the means of neighbours hardly keep.
+void LeaveOutAveraged(const Compared& c, const TwinComparison::Product& orders, std::vector<double>& values) {
+  if (!c.groups.Averages()) return;
+  const auto averaged = std::ranges::find_if(values, [&](double order) {
+    const Eigen::MatrixXd wave = orders.courses(c.used, order);
+    const double kept2 = c.groups.Mean(wave).squaredNorm() / static_cast<double>(c.groups.Groups());
+    return kept2 < kKept * kKept * wave.squaredNorm() / static_cast<double>(c.groups.Samples());
+  });
+  values.erase(std::max(averaged, values.begin() + 1), values.end());
+}
+
+TwinComparison::ShapedProduct Shaped(const TwinComparison::Product& p, const Compared& c) {
+  std::vector<double> values = p.values(c.used);
+  if (p.is_order) LeaveOutAveraged(c, p, values);
   return {p.effect,
           p.where,
           p.point,
@@ -72,25 +120,27 @@ TwinComparison::ShapedProduct Shaped(const TwinComparison::Product& p, const std
           }};
 }
 
-void AddProduct(const Compared& c, const TwinComparison& comparison, const TwinComparison::ShapedProduct& product,
-                Candidates& named) {
+Family& AddProduct(const Compared& c, const TwinComparison& comparison,
+                   const TwinComparison::ShapedProduct& product, Candidates& named) {
   std::vector<Shape> shapes;
   for (std::size_t k = 0; k < product.shapes.size(); ++k) {
     const auto values = product.values.col(static_cast<Eigen::Index>(k));
     shapes.push_back(named.catalogue().ShapeOf(product.effect, product.shapes[k], {values.begin(), values.end()}));
   }
-  named.AddOver({product.effect, product.where, {}}, product.sizes, shapes,
-                [slope = c.twin.Slope(product.point, c.free.Disturbances()), courses = product.courses,
-                 used = AsPredicted(c, comparison)](const Eigen::VectorXd& shape) {
-                  return unknown::ShownOf(slope, courses(used, shape));
-                });
+  return named.AddOver({product.effect, product.where, {}}, product.sizes, shapes,
+                       [slope = c.twin.Slope(product.point, c.free.Disturbances()), courses = product.courses,
+                        used = AsPredicted(c, comparison), groups = c.groups](const Eigen::VectorXd& shape) {
+                         return groups.MeanOfRows(unknown::ShownOf(slope, courses(used, shape)));
+                       });
 }
 
 /// Effects of the catalogue as slopes of the twin times courses, where asking anew at each shape takes too long.
 void AddProducts(const Compared& c, const TwinComparison& comparison, const DiagnoseOptions& options,
                  Candidates& named) {
   for (const TwinComparison::Product& product : comparison.products) {
-    if (!IsExcluded(options, product.effect)) AddProduct(c, comparison, Shaped(product, c.used), named);
+    if (IsExcluded(options, product.effect)) continue;
+    Family& family = AddProduct(c, comparison, Shaped(product, c), named);
+    if (product.is_order) named.MakeOrders(family);
   }
   for (const TwinComparison::ShapedProduct& product : comparison.shaped_products) {
     if (!IsExcluded(options, product.effect)) AddProduct(c, comparison, product, named);
@@ -98,7 +148,6 @@ void AddProducts(const Compared& c, const TwinComparison& comparison, const Diag
 }
 
 unknown::AtPoint AtPointOf(const Compared& c, const std::string& name) {
-  constexpr double kPlausibleNoise = 3.0;
   const model::Point& point = c.twin.Point(name);
   return {name, point.unit, point.to_SI, kPlausibleNoise * PerNoise(c, name),
           c.twin.Slope(name, c.free.Disturbances())};
@@ -132,6 +181,7 @@ std::vector<EffectEntry> AskedOf(const TwinComparison& comparison, const Diagnos
   std::erase_if(entries, [&](const EffectEntry& entry) {
     return IsExcluded(options, entry.name) || entry.name == "outliers" ||
            (entry.name == "tone" && !comparison.tones.empty()) ||
+           (entry.name == "slip" && !comparison.steps.empty()) ||
            std::ranges::count(comparison.products, entry.name, &TwinComparison::Product::effect) > 0 ||
            std::ranges::count(comparison.shaped_products, entry.name, &TwinComparison::ShapedProduct::effect) > 0;
   });
@@ -140,21 +190,37 @@ std::vector<EffectEntry> AskedOf(const TwinComparison& comparison, const Diagnos
 
 }  // namespace
 
+BelievedRecord AskedRecord(const Compared& c, const std::vector<Reading>& readings, const Scenario& scenario,
+                           const TwinComparison& comparison) {
+  return {
+      comparison.follow, scenario, RecordAsPredicted(c, readings, comparison), c.used, c.free.Disturbances(), {},
+      c.run.Channels(),  c.groups};
+}
+
 TwinCandidates CandidatesOf(const Compared& compared, const std::vector<Reading>& readings,
                             const Scenario& scenario, const DiagnoseOptions& options,
                             const TwinComparison& comparison) {
   const Compared& c = compared;
-  const TimeSeries series = TimeSeriesOf(c.run.schedule, std::vector<int>(c.used.size(), 0), c.run.Channels());
-  Candidates named(Catalogue(comparison.format->effects), c.run.Channels());
+  const std::vector<int> stretch =
+      comparison.remounting_ends_tones ? c.readings.setup : std::vector<int>(c.used.size(), 0);
+  const TimeSeries series = TimeSeriesOf(c.readings, stretch, c.run.Channels(), c.Means(), c.run.schedule.time_s);
+  Candidates named(Catalogue(comparison.format->effects), c.run.Channels(), c.Means());
   AddProducts(c, comparison, options, named);
-  for (const TwinComparison::ToneOn& tone : comparison.tones) {
+  for (const TwinComparison::ShownOn& tone : comparison.tones) {
     if (!IsExcluded(options, "tone")) named.AddTone({"tone", tone.where, tone.pattern}, series);
   }
+  for (const TwinComparison::ShownOn& step : comparison.steps) {
+    if (!IsExcluded(options, "slip")) named.AddStep({"slip", step.where, step.pattern}, "step", series);
+  }
   TwinCandidates candidates;
-  candidates.invisible =
-      AddAskedEffects({comparison.follow, scenario, readings, c.used, c.free.Disturbances(), series.onsets},
-                      AskedOf(comparison, options), named);
+  BelievedRecord asked = AskedRecord(c, readings, scenario, comparison);
+  asked.onsets = series.onsets;
+  candidates.invisible = AddAskedEffects(asked, AskedOf(comparison, options), named);
   candidates.families = named.Take();
+  for (Family& family : candidates.families) {
+    if (comparison.sizes_by_trace) SetSizesByTrace(c.run.Channels(), PlausibleOf(c.run, comparison), family);
+    if (comparison.listed) family.listed = comparison.listed(family.effect, family.where);
+  }
   std::ranges::move(unknown::Families(DesignOf(c, comparison, series)), std::back_inserter(candidates.families));
   AddAtPoints(c, comparison, candidates.families);
   return candidates;

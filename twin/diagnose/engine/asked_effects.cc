@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "twin/core/signal_effect.h"
+#include "twin/core/units.h"
 #include "twin/diagnose/engine/followed.h"
 #include "twin/diagnose/tuning.h"
 
@@ -31,10 +32,14 @@ class AskedEffect {
       effect_.parameters[p.name] = p.default_SI;
     }
     if (!parameters_.empty()) SortParameters();
+    is_odd_ = !shapes_.empty() && sizes_.size() == 1 && IsOdd(sizes_.front());
   }
 
   const std::vector<EffectParameter>& Sizes() const { return sizes_; }
   const std::vector<EffectParameter>& Shapes() const { return shapes_; }
+  /// The size is that of a wave with a "phase"; it has a "curvature".
+  bool IsWave() const { return is_wave_; }
+  bool IsBent() const { return is_bent_; }
 
   /// What the rows show more with these parameters; the others keep their plausible values.
   Eigen::VectorXd More(const Values& values) const {
@@ -43,20 +48,25 @@ class AskedEffect {
     return baseline_->believed.ShownWith(effect) - baseline_->shown;
   }
 
-  /// d rows / d size about no effect: rows x sizes.
+  /// d rows / d size about no effect: rows x sizes; of a wave its cosine and sine, of what has a curvature what is
+  /// straight and what the curvature adds.
   Eigen::MatrixXd Columns(const Eigen::VectorXd& shape) const {
-    Eigen::MatrixXd columns(baseline_->shown.size(), std::ssize(sizes_));
-    for (std::size_t j = 0; j < sizes_.size(); ++j) {
-      Values values;
-      for (const EffectParameter& p : sizes_) values[p.name] = 0.0;
-      for (std::size_t k = 0; k < shapes_.size(); ++k)
-        values[shapes_[k].name] = shape[static_cast<Eigen::Index>(k)];
-      const double above = tuning::kAskedStep * Typical(sizes_[j]), below = sizes_[j].lower_SI < 0.0 ? -above : 0.0;
-      values[sizes_[j].name] = above;
-      Eigen::VectorXd column = More(values);
-      values[sizes_[j].name] = below;
-      column -= More(values);
-      columns.col(static_cast<Eigen::Index>(j)) = column / (above - below);
+    Values values;
+    for (const EffectParameter& p : sizes_) values[p.name] = 0.0;
+    for (std::size_t k = 0; k < shapes_.size(); ++k) values[shapes_[k].name] = shape[static_cast<Eigen::Index>(k)];
+    const auto with = [&](const char* name, double value) {
+      values[name] = value;
+      return Column(sizes_.front(), values);
+    };
+    Eigen::MatrixXd columns(baseline_->shown.size(), is_wave_ || is_bent_ ? 2 : std::ssize(sizes_));
+    if (is_wave_) {
+      columns << with("phase", 0.0), with("phase", 0.75 * units::turn);
+    } else if (is_bent_) {
+      columns.col(0) = with("curvature", 0.0);
+      columns.col(1) = with("curvature", 1.0) - columns.col(0);
+    } else {
+      for (std::size_t j = 0; j < sizes_.size(); ++j)
+        columns.col(static_cast<Eigen::Index>(j)) = Column(sizes_[j], values);
     }
     return columns;
   }
@@ -66,8 +76,31 @@ class AskedEffect {
  private:
   void SortParameters() {
     sizes_ = {parameters_.front()};
+    const std::string only = parameters_.size() == 2 ? parameters_.back().name : "";
+    is_wave_ = only == "phase";
+    is_bent_ = only == "curvature";
+    if (is_wave_ || is_bent_) return;
     for (std::size_t k = 1; k < parameters_.size(); ++k)
       (IsSize(parameters_[k]) ? sizes_ : shapes_).push_back(parameters_[k]);
+  }
+
+  Eigen::VectorXd Column(const EffectParameter& size, Values values) const {
+    const double above = tuning::kAskedStep * Typical(size), below = size.lower_SI < 0.0 ? -above : 0.0;
+    values[size.name] = above;
+    Eigen::VectorXd column = More(values);
+    if (is_odd_) return column / above;
+    values[size.name] = below;
+    column -= More(values);
+    return column / (above - below);
+  }
+
+  /// Whether a size shows as much one way as the other: then one way tells the slope.
+  bool IsOdd(const EffectParameter& size) const {
+    constexpr double kRounding = 1e-6;
+    const double step = tuning::kAskedStep * Typical(size);
+    if (size.lower_SI > -step) return false;
+    const Eigen::VectorXd above = More({{size.name, step}});
+    return (above + More({{size.name, -step}})).norm() < kRounding * above.norm();
   }
 
   /// Whether the answer is linear in it alone and adds to that of the sizes so far. What an effect shows at sizes
@@ -94,6 +127,7 @@ class AskedEffect {
   EffectEntry entry_;
   EffectSettings effect_;
   std::vector<EffectParameter> parameters_, sizes_, shapes_;
+  bool is_wave_ = false, is_bent_ = false, is_odd_ = false;
 };
 
 /// Evenly chosen, at most `most`.
@@ -145,10 +179,26 @@ std::vector<std::string> NamesOf(const std::vector<EffectParameter>& parameters)
   return names;
 }
 
+void AddAsked(const std::shared_ptr<const AskedEffect>& asked, const Showing& showing,
+              const std::vector<double>& onsets, Candidates& named) {
+  std::vector<std::string> sizes = NamesOf(asked->Sizes());
+  if (!asked->Shapes().empty()) {
+    named.AddOver(showing, sizes, ShapesOf(named.catalogue(), *asked, showing.effect, onsets),
+                  [asked](const Eigen::VectorXd& shape) { return asked->Columns(shape); });
+    return;
+  }
+  const Eigen::MatrixXd columns = asked->Columns({});
+  if (asked->IsBent()) return named.AddStraightAndBent(showing, sizes.front(), columns);
+  if (asked->IsWave()) sizes.assign(2, sizes.front());
+  Family& family = named.Add(showing, sizes, columns);
+  if (asked->IsWave()) named.MakeOrders(family);
+}
+
 }  // namespace
 
 Eigen::VectorXd BelievedRecord::ShownUnder(const Scenario& believed) const {
-  return ByRow(Followed(follow, believed, record, used).Predict(free));
+  const Eigen::MatrixXd shown = Followed(follow, believed, record, used, channels).Predict(free);
+  return ByRow(groups.start.empty() ? shown : groups.Mean(shown));
 }
 
 Eigen::VectorXd BelievedRecord::ShownWith(const EffectSettings& effect) const {
@@ -164,15 +214,10 @@ std::vector<Invisible> AddAskedEffects(const BelievedRecord& believed, const std
   for (const EffectEntry& entry : entries) {
     for (const std::string& place : entry.places.empty() ? std::vector<std::string>{""} : entry.places) {
       const auto asked = std::make_shared<const AskedEffect>(baseline, entry, place);
-      const Showing showing{entry.name, place, {}};
       if (asked->Sizes().empty() || asked->More({}).isZero())
         invisible.push_back({entry.name, place, "nothing: this run shows nothing of it"});
-      else if (asked->Shapes().empty())
-        named.Add(showing, NamesOf(asked->Sizes()), asked->Columns({}));
       else
-        named.AddOver(showing, NamesOf(asked->Sizes()),
-                      ShapesOf(named.catalogue(), *asked, entry.name, believed.onsets),
-                      [asked](const Eigen::VectorXd& shape) { return asked->Columns(shape); });
+        AddAsked(asked, {entry.name, place, {}}, believed.onsets, named);
     }
   }
   return invisible;

@@ -150,10 +150,17 @@ Family& Candidates::AddWave(const Showing& showing, const Eigen::VectorXd& phase
 Family& Candidates::AddOrders(const Showing& showing, const std::shared_ptr<const Base>& base,
                               const std::string& order, const std::vector<double>& orders) {
   Family& family = AddShared(showing, {"amplitude", "amplitude"}, base);
+  if (!order.empty()) family.shapes = {catalogue_.ShapeOf(showing.effect, order, orders)};
+  MakeOrders(family);
+  return family;
+}
+
+void Candidates::MakeOrders(Family& family) const {
   family.amplitudes[0].name = "cosine";
   family.amplitudes[1].name = "sine";
-  if (!order.empty()) family.shapes = {catalogue_.ShapeOf(showing.effect, order, orders)};
-  family.parameters = [catalogue = catalogue_, effect = showing.effect, order](
+  family.at = nullptr;
+  const std::string order = family.shapes.empty() ? "" : family.shapes.front().name;
+  family.parameters = [catalogue = catalogue_, effect = family.effect, order](
                           const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
     const Polar polar = PolarOf(x, cov);
     std::vector<ParameterEstimate> estimates = {
@@ -163,12 +170,15 @@ Family& Candidates::AddOrders(const Showing& showing, const std::shared_ptr<cons
       estimates.insert(estimates.begin(), catalogue.Estimate(effect, order, shape[0], 0.0));  // a whole number
     return estimates;
   };
-  return family;
 }
 
 void Candidates::AddDrift(const Showing& showing, const std::string& rate, const Eigen::VectorXd& time_s) {
-  const Eigen::MatrixXd drift_s = model::Drift_s(time_s);
-  Family& steady = Add(showing, {rate}, drift_s.leftCols(1));
+  AddStraightAndBent(showing, rate, model::Drift_s(time_s));
+}
+
+void Candidates::AddStraightAndBent(const Showing& showing, const std::string& rate,
+                                    const Eigen::MatrixXd& straight_and_bend) {
+  Family& steady = Add(showing, {rate}, straight_and_bend.leftCols(1));
   const auto estimate = [catalogue = catalogue_, effect = showing.effect](const std::string& name, double value,
                                                                           double u) {
     return catalogue.Estimate(effect, name, value, u);
@@ -176,7 +186,7 @@ void Candidates::AddDrift(const Showing& showing, const std::string& rate, const
   steady.parameters = [=](const Eigen::VectorXd&, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
     return std::vector{estimate(rate, x[0], std::sqrt(cov(0, 0))), estimate("curvature", 0.0, kNaN)};
   };
-  AddBent(showing, rate, drift_s);
+  AddBent(showing, rate, straight_and_bend);
 }
 
 void Candidates::AddBent(const Showing& showing, const std::string& size, const Eigen::MatrixXd& straight_and_bend) {

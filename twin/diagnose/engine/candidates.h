@@ -78,8 +78,12 @@ class Candidates {
   /// The same of several whole orders. @param order  The catalogue's name for it; empty: there is one only.
   Family& AddOrders(const Showing& showing, const std::shared_ptr<const Base>& base, const std::string& order,
                     const std::vector<double>& orders);
+  /// Of the waves of whole orders, their cosine and sine, makes "amplitude" and "phase"; no order lies between two.
+  void MakeOrders(Family& family) const;
   /// `rate` along time, with "curvature" and without: two families.
   void AddDrift(const Showing& showing, const std::string& rate, const Eigen::VectorXd& time_s);
+  /// `size` of the first column, with "curvature" as the share of the second and without: two families.
+  void AddStraightAndBent(const Showing& showing, const std::string& size, const Eigen::MatrixXd& straight_and_bend);
   /// `size` of the first column, with "curvature" as the share of the second.
   void AddBent(const Showing& showing, const std::string& size, const Eigen::MatrixXd& straight_and_bend);
   /// A step of size `parameter` at any reading; nothing if there is no room.

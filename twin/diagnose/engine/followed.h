@@ -15,10 +15,11 @@ Eigen::VectorXd ByRow(const Eigen::MatrixXd& by_reading);
 /// the bench, too.
 class Followed {
  public:
-  /// @param used  Some of `record`, in its order.
+  /// @param used      Some of `record`, in its order.
+  /// @param channels  So many of the twin's, the first ones; 0: all.
   /// @throws InputError from the maker.
   Followed(const model::FollowMaker& maker, const Scenario& scenario, const std::vector<Reading>& record,
-           const std::vector<Reading>& used);
+           const std::vector<Reading>& used, int channels = 0);
 
   /// Used readings x channels.
   /// @param at  One value a used reading.
@@ -29,10 +30,11 @@ class Followed {
   Eigen::MatrixXd Slope(const std::string& point, const std::vector<model::Disturbance>& at) const;
 
  private:
+  Eigen::MatrixXd OfUsed(const Eigen::MatrixXd& of_record) const;
   std::vector<model::Disturbance> OfRecord(const std::vector<model::Disturbance>& at) const;
 
   std::unique_ptr<model::Follow> follow_;
-  Eigen::Index readings_;
+  Eigen::Index readings_, channels_;
   std::vector<Eigen::Index> rows_;  // of the used readings in the record
 };
 

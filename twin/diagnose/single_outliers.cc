@@ -1,4 +1,4 @@
-#include "twin/benches/hob_transmission/diagnosis/outliers.h"
+#include "twin/diagnose/single_outliers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,17 +6,16 @@
 #include "twin/core/distributions.h"
 #include "twin/diagnose/engine/noise_causes.h"
 
-namespace twinbench::diagnose::hob {
+namespace twinbench::diagnose {
 namespace {
 
-constexpr double kBelieved = 6.0;  // log Bayes factor
-constexpr double kFar = 5.0;       // from either side, in deviations of white noise
+constexpr double kBelieved = 6.0;     // log Bayes factor
+constexpr double kFarFromBoth = 5.0;  // from either side, in deviations of white noise
 constexpr int kBeside = 3;
 
 /// Median of the three samples from `first` on; NaN if they are not all of sample i's pass.
-double MedianFrom(const SignalContext& c, const Eigen::VectorXd& y, Eigen::Index i, Eigen::Index first) {
+double MedianFrom(const Schedule& s, const Eigen::VectorXd& y, Eigen::Index i, Eigen::Index first) {
   if (first < 0 || first + kBeside > y.size()) return kNaN;
-  const auto& s = c.schedule;
   std::array<double, kBeside> values{};
   for (Eigen::Index k = 0; k < kBeside; ++k) {
     const auto at = static_cast<std::size_t>(first + k), own = static_cast<std::size_t>(i);
@@ -32,10 +31,10 @@ struct Distances {
   Eigen::VectorXd before, behind, between;
 };
 
-Distances DistancesOf(const SignalContext& c, const Eigen::VectorXd& y) {
+Distances DistancesOf(const Schedule& s, const Eigen::VectorXd& y) {
   Distances d{y, y, y};
   for (Eigen::Index i = 0; i < y.size(); ++i) {
-    const double left = MedianFrom(c, y, i, i - kBeside), right = MedianFrom(c, y, i, i + 1);
+    const double left = MedianFrom(s, y, i, i - kBeside), right = MedianFrom(s, y, i, i + 1);
     d.before[i] = y[i] - left;
     d.behind[i] = y[i] - right;
     d.between[i] = 0.5 * (d.before[i] + d.behind[i]);
@@ -61,36 +60,37 @@ double RobustDeviation(const Eigen::VectorXd& values) {
 
 }  // namespace
 
-Outliers FindOutliers(const SignalContext& c, const Eigen::VectorXd& left_rad) {
-  Outliers outliers;
-  outliers.of = static_cast<int>(c.Samples());
-  const Distances d = DistancesOf(c, left_rad);
+SingleOutliers FindSingleOutliers(const Schedule& schedule, const std::string& channel,
+                                  const Eigen::VectorXd& left) {
+  SingleOutliers outliers;
+  outliers.of = schedule.Readings();
+  const Distances d = DistancesOf(schedule, left);
+  const double deviation = RobustDeviation(d.between);
+  if (!(deviation > 0.0)) return outliers;
   LinearRun samples;
-  samples.schedule = c.schedule;
-  samples.channels = {kTransmission};
+  samples.schedule = schedule;
+  samples.channels = {channel};
   samples.residual = d.between;
-  const NoiseModel noise{Eigen::VectorXd::Ones(c.Samples()), 0.0};
-  const double deviation_rad = RobustDeviation(d.between);
-  if (!(deviation_rad > 0.0)) return outliers;
-  double square = 0.0;
-  const Rest rest{d.between / deviation_rad, Eigen::VectorXd::Ones(c.Samples())};
+  const Eigen::VectorXd alike = Eigen::VectorXd::Ones(left.size());
+  const Rest rest{d.between / deviation, alike};
   const auto without = [&](const std::vector<int>& rows) {
     Rest others = rest;  // nothing that is fitted joins them
     others.redundancy(rows).setZero();
     return others;
   };
-  for (const NoiseCause& cause : FindNoiseCauses(samples, noise, rest, without)) {
+  double square = 0.0;
+  for (const NoiseCause& cause : FindNoiseCauses(samples, {alike, 0.0}, rest, without)) {
     if (cause.kind != NoiseCause::Kind::kOutliers || cause.log_bayes < kBelieved) continue;
     for (const int i : cause.outliers) {
-      if (!StandsAlone(d.before[i], d.behind[i], kFar * deviation_rad)) continue;
-      outliers.readings.push_back(c.schedule.reading[static_cast<std::size_t>(i)]);
+      if (!StandsAlone(d.before[i], d.behind[i], kFarFromBoth * deviation)) continue;
+      outliers.readings.push_back(schedule.reading[static_cast<std::size_t>(i)]);
       square += d.between[i] * d.between[i];
     }
     const auto found = static_cast<double>(outliers.readings.size());
     outliers.log_bayes = cause.log_bayes * found / static_cast<double>(cause.outliers.size());
-    outliers.size_rad = std::sqrt(square / std::max(found, 1.0));
+    outliers.size = std::sqrt(square / std::max(found, 1.0));
   }
   return outliers;
 }
 
-}  // namespace twinbench::diagnose::hob
+}  // namespace twinbench::diagnose

@@ -1,12 +1,13 @@
-#include "twin/benches/hob_transmission/diagnosis/grouping.h"
+#include "twin/diagnose/grouping.h"
 
 #include <cmath>
 #include <complex>
+#include <utility>
 
-namespace twinbench::diagnose::hob {
+namespace twinbench::diagnose {
 namespace {
 
-bool Together(const Schedule& s, std::size_t a, std::size_t b) {
+bool AreNeighbours(const Schedule& s, std::size_t a, std::size_t b) {
   return s.setup[a] == s.setup[b] && s.pass[a] == s.pass[b] && s.direction[a] == s.direction[b];
 }
 
@@ -21,7 +22,7 @@ std::vector<Label> Firsts(const std::vector<Label>& of_samples, const Grouping& 
 }  // namespace
 
 Eigen::MatrixXd Grouping::Mean(const Eigen::MatrixXd& samples) const {
-  if (Groups() == Samples()) return samples;
+  if (!Averages()) return samples;
   Eigen::MatrixXd means(Groups(), samples.cols());
   for (Eigen::Index j = 0; j < samples.cols(); ++j) {
     const double* const column = samples.col(j).data();
@@ -35,12 +36,22 @@ Eigen::MatrixXd Grouping::Mean(const Eigen::MatrixXd& samples) const {
   return means;
 }
 
+Eigen::MatrixXd Grouping::MeanOfRows(const Eigen::MatrixXd& rows) const {
+  if (!Averages()) return rows;
+  const Eigen::Index channels = rows.rows() / Samples();
+  Eigen::MatrixXd means(Groups() * channels, rows.cols());
+  for (Eigen::Index c = 0; c < channels; ++c)
+    means(Eigen::seq(c, Eigen::last, channels), Eigen::all) =
+        Mean(rows(Eigen::seq(c, Eigen::last, channels), Eigen::all));
+  return means;
+}
+
 Grouping GroupsOf(const Schedule& schedule, int size) {
   Grouping groups;
   const auto n = static_cast<std::size_t>(schedule.Readings());
   for (std::size_t i = 0; i < n; ++i) {
     const bool full = !groups.start.empty() && static_cast<int>(i) - groups.start.back() >= size;
-    if (i == 0 || full || !Together(schedule, i - 1, i)) groups.start.push_back(static_cast<int>(i));
+    if (i == 0 || full || !AreNeighbours(schedule, i - 1, i)) groups.start.push_back(static_cast<int>(i));
   }
   groups.start.push_back(static_cast<int>(n));
   return groups;
@@ -72,4 +83,17 @@ double KeptByMean(const Eigen::VectorXd& phase_rad, const Grouping& groups) {
   return std::sqrt(kept / static_cast<double>(groups.Samples()));
 }
 
-}  // namespace twinbench::diagnose::hob
+Grouping LargestGroups(const Schedule& schedule, const Eigen::VectorXd& line_rad,
+                       const Eigen::VectorXd& folded_rad) {
+  constexpr int kMost = 64;
+  constexpr double kLine = 0.8, kFolded = 0.5;
+  Grouping groups = GroupsOf(schedule, 1);
+  for (int size = 2; size <= kMost; ++size) {
+    Grouping larger = GroupsOf(schedule, size);
+    if (KeptByMean(line_rad, larger) < kLine) break;
+    if (folded_rad.size() == 0 || KeptByMean(folded_rad, larger) >= kFolded) groups = std::move(larger);
+  }
+  return groups;
+}
+
+}  // namespace twinbench::diagnose
