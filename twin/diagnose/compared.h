@@ -20,7 +20,7 @@ struct Compared {
   Followed twin;
   LinearRun run;
   FreeConstants free;
-  Eigen::VectorXd predicted = {};  // with those constants, by reading and channel
+  Eigen::VectorXd predicted = {};  // with those constants, by reading and channel, without noise that was read
   Schedule readings = {};          // those of the run are of groups of readings
   Grouping groups = {};
   SingleOutliers outliers = {};  // that were left out
