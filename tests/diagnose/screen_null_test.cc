@@ -5,13 +5,12 @@
 #include <map>
 
 #include "tests/diagnose/support/synthetic_run.h"
-#include "twin/diagnose/screen/significance.h"
+#include "twin/core/distributions.h"
 
 namespace twinbench::diagnose {
 namespace {
 
-constexpr int kSeeds = 200;
-constexpr int kNullRuns = 99;
+constexpr int kSeeds = 300;
 
 /// Largest distance of the empirical distribution from the uniform one.
 double Kolmogorov(std::vector<double> p) {
@@ -25,35 +24,57 @@ double Kolmogorov(std::vector<double> p) {
   return distance;
 }
 
-/// p-values of every test over many runs of white noise; `scale` is the true noise over the stated one.
-std::map<std::string, std::vector<double>> NullPValues(int seeds, double scale) {
-  const LinearRun clean = SyntheticRun({.positions = 8, .shifts = {0, 1, 3}, .passes = {1, -1, -1, 1}});
-  std::map<std::string, std::vector<double>> p;
+/// The residual tests of many runs of normal noise; `scale` is the true noise over the stated one.
+std::vector<std::vector<ResidualTest>> OfNoise(const LinearRun& clean, int seeds, double scale) {
+  std::vector<std::vector<ResidualTest>> all;
   for (int seed = 0; seed < seeds; ++seed) {
     LinearRun run = clean;
     AddNoise(run, static_cast<std::uint64_t>(seed));
     run.residual *= scale;
-    // Nulls of their own for every run: shared ones would make the 200 p-values depend on each other.
-    for (const ScreenTest& t : ScreenAsStated(run, kNullRuns, 1000 + static_cast<std::uint64_t>(seed))) {
-      p[t.name].push_back(t.p);
-    }
+    // Nulls of their own for every run: shared ones would make the p-values depend on each other.
+    all.push_back(TestsAsStated(run, 99, 1000 + static_cast<std::uint64_t>(seed)));
+  }
+  return all;
+}
+
+std::map<std::string, std::vector<double>> PValuesOf(const std::vector<std::vector<ResidualTest>>& all) {
+  std::map<std::string, std::vector<double>> p;
+  for (const auto& tests : all) {
+    for (const ResidualTest& t : tests) p[t.name].push_back(t.p);
   }
   return p;
 }
 
-TEST(Screen, GivesEveryTestAUniformPValueUnderWhiteNoise) {
-  const auto p = NullPValues(kSeeds, 1.0);
-  EXPECT_GE(p.size(), 25u);
-  for (const auto& [name, values] : p) {
+void ExpectHonest(const LinearRun& clean) {
+  const auto all = OfNoise(clean, kSeeds, 1.0);
+  for (const auto& [name, values] : PValuesOf(all)) {
     ASSERT_EQ(values.size(), static_cast<std::size_t>(kSeeds)) << name;
     // Kolmogorov: sqrt(n) D exceeds 1.95 with probability 0.001. Steps of 1 / 100 in p add at most 0.01.
     EXPECT_LT(Kolmogorov(values), 1.95 / std::sqrt(kSeeds) + 0.01) << name;
   }
+  const auto alarms = std::ranges::count_if(all, [](const std::vector<ResidualTest>& tests) {
+    return std::ranges::any_of(
+        tests, [&](const ResidualTest& t) { return t.p < 0.1 / static_cast<double>(tests.size()); });
+  });
+  // A tenth shared by five tests: 29 of 300 if they are independent, standard deviation 5; 14 and 45 have 0.001.
+  EXPECT_GT(alarms, 13);
+  EXPECT_LT(alarms, 46);
 }
 
-TEST(Screen, BlamesAWrongNoiseFigureOnTheNoiseAndNotOnStructure) {
+TEST(ResidualTests, HoldTheirPValuesWhereTablesAreFree) {
+  const LinearRun clean = SyntheticRun({.positions = 8, .shifts = {0, 1, 3}, .passes = {1, -1, -1, 1}});
+  EXPECT_EQ(TestsAsStated(clean, 50, 1).size(), 5u);
+  ExpectHonest(clean);
+}
+
+TEST(ResidualTests, HoldTheirPValuesInALongSweep) {
+  ExpectHonest(SyntheticSweep(240));
+}
+
+TEST(ResidualTests, BlameAWrongNoiseFigureOnTheNoiseAndNotOnStructure) {
   constexpr int kFew = 40;
-  for (const auto& [name, values] : NullPValues(kFew, 1.25)) {
+  const LinearRun clean = SyntheticRun({.positions = 8, .shifts = {0, 1, 3}, .passes = {1, -1, -1, 1}});
+  for (const auto& [name, values] : PValuesOf(OfNoise(clean, kFew, 1.25))) {
     const auto low = std::count_if(values.begin(), values.end(), [](double v) { return v < 0.01; });
     // 384 rows tell the level to 4 %; the other tests are below 0.01 in 0.4 of 40 runs: 5 has probability 1e-4.
     if (name == "fit to stated noise")
@@ -63,20 +84,14 @@ TEST(Screen, BlamesAWrongNoiseFigureOnTheNoiseAndNotOnStructure) {
   }
 }
 
-TEST(PValue, CountsTheNullsThatAreAtLeastAsLarge) {
-  Eigen::VectorXd statistic = Eigen::VectorXd::LinSpaced(100, 0.0, 99.0);  // entry 0 is the run
-  statistic[0] = 50.0;
-  // 50, 51, ..., 99 and the run itself: 51 of 100.
-  EXPECT_DOUBLE_EQ(screen::PValue(statistic), 0.51);
-}
-
-TEST(PValue, GoesOnBeyondTheLargestNullAsAnExponential) {
-  // Quantiles of an exponential of mean 1: the fitted tail must give exp(-t).
-  Eigen::VectorXd statistic(1001);
-  for (int i = 1; i <= 1000; ++i) statistic[i] = -std::log((i - 0.5) / 1000.0);
-  statistic[0] = 14.0;
-  // The mean excess of 100 quantiles is within 1 % of 1; over the 11.7 from threshold to 14 that is 12 % of p.
-  EXPECT_NEAR(screen::PValue(statistic) / std::exp(-14.0), 1.0, 0.15);
+TEST(FitToStatedNoise, HasThePValueOfTheChiSquaredDistribution) {
+  const LinearRun clean = SyntheticSweep(400);  // one free constant: 399 degrees of freedom
+  for (const auto& tests : OfNoise(clean, 10, 1.0)) {
+    const ResidualTest fit = *Find(tests, "fit to stated noise");
+    const double above = ChiSquaredExceedance(fit.statistic, 399.0);
+    // 99 simulated runs tell a p near 0.5 to 0.05, and it is two-sided by deviations of the logarithm.
+    EXPECT_NEAR(fit.p, 2.0 * std::min(above, 1.0 - above), 0.16);
+  }
 }
 
 }  // namespace

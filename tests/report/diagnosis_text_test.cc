@@ -99,10 +99,10 @@ TEST(DiagnosisText, KeepsWarningsInTheShortForm) {
   EXPECT_KEPT(Page(run));
   run.diagnosis.notes = {diagnose::kNoGainNote};  // the diagnosis itself may have said so
   EXPECT_KEPT(Page(run));
-  diagnose::ScreenTest loud;
-  loud.name = "raw: hum";
-  loud.p = 1e-9;
-  EXPECT_KEPT(DiagnosisText({DiagnosisRun{}, Shown{}, "run", {loud}}, {}));
+  diagnose::ResidualTest test;
+  test.name = "periodogram";
+  test.p = 1e-9;
+  EXPECT_KEPT(DiagnosisText({DiagnosisRun{}, Shown{}, "run", {test}}, {}));
 }
 
 TEST(DiagnosisText, IsPlainTextOfAtMost80Columns) {

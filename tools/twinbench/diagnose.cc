@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 #include "tools/twinbench/commands.h"
@@ -81,31 +80,6 @@ std::string Provenance(const std::string& source, std::size_t readings) {
                      fmt::gmtime(std::chrono::system_clock::now()));
 }
 
-/// Raw blocks of the readings that have numbers.
-std::vector<RawBlock> RawBlocksOf(const std::string& folder, const std::vector<Reading>& readings) {
-  std::set<int> good;
-  for (const Reading& reading : readings) {
-    if (reading.status == ReadingStatus::kOk) good.insert(reading.reading);
-  }
-  std::vector<RawBlock> blocks = RunRecord::Open(folder)->RawBlocks();
-  std::erase_if(blocks, [&good](const RawBlock& block) { return !good.contains(block.reading); });
-  return blocks;
-}
-
-/// Adds the residual tests of the model as it was believed, before any cause was added.
-void Screen(const std::string& folder, const RecordedRun& run, report::DiagnosisPage& page) {
-  const diagnose::DiagnosisRun& found = page.found;
-  const diagnose::Projector projector(found.noise.Whiten(found.run, found.run.nuisance.jacobian),
-                                      found.run.nuisance);
-  page.screen = diagnose::Screen(found.run, found.noise, projector);
-  const std::vector<RawBlock> blocks = RawBlocksOf(folder, run.readings);
-  const auto raw_scale = BenchOf(run.scenario).raw_scale;
-  if (!raw_scale || blocks.empty()) return;
-  const diagnose::RawScale scale = raw_scale(run.scenario, found.run);
-  for (diagnose::ScreenTest& test : diagnose::ScreenRaw(blocks, scale)) page.screen.push_back(std::move(test));
-  page.raw_limits = diagnose::RawLimitsInWords(blocks, scale);
-}
-
 /// Puts the diagnosis into the run's results.json, beside what is there.
 void MergeIntoResults(const RunFolder& folder, nlohmann::json diagnosis, const report::DiagnosisPage& page) {
   const auto record = RunRecord::Open(folder.path);
@@ -115,7 +89,7 @@ void MergeIntoResults(const RunFolder& folder, nlohmann::json diagnosis, const r
   for (const double share : page.shown.share) diagnosis["plots"]["share"].push_back(report::In(1.0, share));
   diagnosis["plots"]["share_unnamed"] = report::In(1.0, page.shown.share_unnamed);
   diagnosis["in_words"] = report::DiagnosisText(page, {report::Letters::kAscii, true});
-  diagnosis["screen"] = diagnose::ToJson(page.screen);
+  diagnosis["screen"] = diagnose::ToJson(page.residual_tests);
   results["diagnosis"] = std::move(diagnosis);
   record->WriteBeside(kResultsFile, JsonText(results));
 }
@@ -158,7 +132,7 @@ void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
   const diagnose::Shown shown = diagnose::ShownBy(found);
   report::DiagnosisPage page{found, shown, options.source};
   if (fs::is_directory(options.source)) {
-    Screen(options.source, run, page);
+    page.residual_tests = diagnose::TestResiduals(found.run, found.noise);  // before any cause is added
     if (access(options.source.c_str(), W_OK) == 0)
       MergeIntoResults({options.source}, json, page);
     else

@@ -36,7 +36,6 @@ namespace diagnose {
 struct DiagnoseOptions;
 struct DiagnosisRun;
 struct LinearRun;
-struct RawScale;
 }  // namespace diagnose
 namespace procedure {
 struct Progress;
@@ -99,8 +98,6 @@ struct Bench {
                                      const diagnose::DiagnoseOptions&) = nullptr;
   /// The readings so far, to be watched while more come. Throws InputError if they are too few.
   diagnose::LinearRun (*linear_run)(const std::vector<Reading>&, const Scenario&, Estimator) = nullptr;
-  /// How codes of raw blocks become readings; null: the bench keeps none.
-  diagnose::RawScale (*raw_scale)(const Scenario&, const diagnose::LinearRun&) = nullptr;
   /// `gain.change_of_tables` of diagnosis.json; null: the bench has no such thing to say.
   nlohmann::json (*change_of_tables)(const diagnose::DiagnosisRun&, const Scenario&) = nullptr;
 };

@@ -42,7 +42,7 @@ struct Accepted {
   Eigen::VectorXd at_readings = {};  // SI, on the first channel
 };
 
-/// All that the pages, the gain and the screen need besides the verdict.
+/// All that the pages, the gain and the residual tests need besides the verdict.
 struct DiagnosisRun {
   Diagnosis diagnosis;
   LinearRun run;

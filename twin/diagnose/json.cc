@@ -97,9 +97,9 @@ json GainJson(const Gain& gain, const LinearRun& run) {
 
 }  // namespace
 
-json ToJson(const std::vector<ScreenTest>& screen) {
+json ToJson(const std::vector<ResidualTest>& tests) {
   json list = json::array();
-  for (const ScreenTest& test : screen) {
+  for (const ResidualTest& test : tests) {
     list.push_back({{"test", test.name},
                     {"statistic", Number(test.statistic)},
                     {"p", Number(test.p)},

@@ -17,8 +17,8 @@ namespace twinbench::diagnose {
 /// @param extended_scenario  Path of the file that was written; empty: none, null in the file.
 nlohmann::json ToJson(const DiagnosisRun& run, const std::string& extended_scenario);
 
-/// The screen of residual tests: `diagnosis.screen` of results.json.
-nlohmann::json ToJson(const std::vector<ScreenTest>& screen);
+/// `diagnosis.screen` of results.json.
+nlohmann::json ToJson(const std::vector<ResidualTest>& tests);
 
 /// What the simulation gets wrong, for plots: `diagnosis.plots` of results.json.
 ///

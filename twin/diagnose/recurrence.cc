@@ -13,9 +13,9 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr double kChance = 1e-3;    // of a scatter that looks like it, each way in which it may look so
-constexpr std::size_t kFewest = 3;  // readings
-constexpr double kNarrow = 0.02;    // of the range of a value, or of a turn
+constexpr double kChanceOfScatter = 1e-3;  // of a scatter that looks like it, each way in which it may look so
+constexpr std::size_t kFewest = 3;         // readings
+constexpr double kNarrow = 0.02;           // of the range of a value, or of a turn
 
 /// P(at least `count`) of a Poisson number.
 double PoissonTail(int count, double mean) {
@@ -44,7 +44,7 @@ bool StandInARow(const std::set<int>& far, const Schedule& s) {
   int neighbours = 0;
   for (const int i : far) neighbours += far.contains(i + 1) && SamePass(s, i, i + 1) ? 1 : 0;
   const auto count = static_cast<double>(far.size());
-  return neighbours > 0 && PoissonTail(neighbours, count * (count - 1.0) / s.Readings()) < kChance;
+  return neighbours > 0 && PoissonTail(neighbours, count * (count - 1.0) / s.Readings()) < kChanceOfScatter;
 }
 
 /// Where most of the far ones lie together more closely than chance would have them; NaN if nowhere.
@@ -67,7 +67,7 @@ double CommonPlace(const std::set<int>& far, const Eigen::VectorXd& value, bool 
     if (std::ssize(far) > 2 * together || share >= 1.0) continue;
     const double chance =
         static_cast<double>(far.size()) * BinomialTail(static_cast<int>(together) - 1, others, share);
-    if (together >= static_cast<std::ptrdiff_t>(kFewest) && chance < kChance) return from;
+    if (together >= static_cast<std::ptrdiff_t>(kFewest) && chance < kChanceOfScatter) return from;
   }
   return kNaN;
 }

@@ -46,14 +46,14 @@ std::string CurveOfPage(const DiagnosisPage& page, Letters letters) {
 }
 
 /// Residual tests that stand out although nothing was found, by name.
-std::string LoudTests(const std::vector<diagnose::ScreenTest>& screen) {
+std::string TestsStandingOut(const std::vector<diagnose::ResidualTest>& tests) {
   constexpr std::size_t kMostNamed = 3;
-  const std::vector<diagnose::ScreenTest> loud = Loud(screen);
+  const std::vector<diagnose::ResidualTest> out = StandingOut(tests);
   std::string names;
-  for (std::size_t k = 0; k < std::min(loud.size(), kMostNamed); ++k) names += (k > 0 ? ", " : "") + loud[k].name;
-  if (loud.empty()) return "";
-  return Sentence("! ", fmt::format("{} of {} residual tests stand{} out nevertheless: {}{}", loud.size(),
-                                    screen.size(), loud.size() == 1 ? "s" : "", names, loud.size() > kMostNamed ? ", ..." : ""));
+  for (std::size_t k = 0; k < std::min(out.size(), kMostNamed); ++k) names += (k > 0 ? ", " : "") + out[k].name;
+  if (out.empty()) return "";
+  return Sentence("! ", fmt::format("{} of {} residual tests stand{} out nevertheless: {}{}", out.size(),
+                                    tests.size(), out.size() == 1 ? "s" : "", names, out.size() > kMostNamed ? ", ..." : ""));
 }
 
 /// What limits the answer, a line or two each.
@@ -65,7 +65,7 @@ std::string Warnings(const DiagnosisPage& page) {
   for (const std::string& note : d.notes) text += Sentence("! ", note);
   if (d.left_out > 0)
     text += Sentence("! ", fmt::format("{} without usable values left out", d.left_out == 1 ? "1 reading" : fmt::format("{} readings", d.left_out)));
-  if (d.verdict == Verdict::kNone) text += LoudTests(page.screen);
+  if (d.verdict == Verdict::kNone) text += TestsStandingOut(page.residual_tests);
   return text;
 }
 
@@ -109,8 +109,8 @@ std::vector<Remark> RemarksOn(const DiagnosisPage& page, bool verbose) {
   Add("noise", NoiseInWords(d), remarks);
   Add("smallest detectable sizes", DetectableTable(d), remarks);
   Add("what is not observable", InvisibleTable(d), remarks);
-  if (!page.screen.empty())
-    Add("residual tests", Sentence("", ScreenInWords(page.screen) + " " + page.raw_limits), remarks);
+  if (!page.residual_tests.empty())
+    Add("residual tests", Sentence("", ResidualTestsInWords(page.residual_tests)), remarks);
   return remarks;
 }
 

@@ -15,8 +15,7 @@ struct DiagnosisPage {
   const diagnose::DiagnosisRun& found;
   const diagnose::Shown& shown;
   std::string source;                             // the file or folder
-  std::vector<diagnose::ScreenTest> screen = {};  // of a run's folder
-  std::string raw_limits = {};                    // what its raw blocks are too short for
+  std::vector<diagnose::ResidualTest> residual_tests = {};  // of a run's folder
 };
 
 struct PageStyle {

@@ -1,8 +1,6 @@
 #include "tests/diagnose/support/synthetic_run.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -172,27 +170,13 @@ LinearRun SyntheticSweep(int readings) {
   return run;
 }
 
-std::vector<ScreenTest> ScreenAsStated(const LinearRun& run, int null_runs, std::uint64_t seed) {
-  const NoiseModel noise{run.sigma, 0.0};
-  return Screen(run, noise, ProjectorOf(run, noise), null_runs, seed);
+std::vector<ResidualTest> TestsAsStated(const LinearRun& run, int null_runs, std::uint64_t seed) {
+  return TestResiduals(run, {run.sigma, 0.0}, null_runs, seed);
 }
 
-const ScreenTest* Find(const std::vector<ScreenTest>& tests, const std::string& name) {
-  for (const ScreenTest& t : tests) {
-    if (t.name == name) return &t;
-  }
-  return nullptr;
-}
-
-const ScreenTest& Loud(const std::vector<ScreenTest>& tests, const std::string& name, double p,
-                       const std::string& says) {
-  static const ScreenTest none;
-  const ScreenTest* const found = Find(tests, name);
-  EXPECT_NE(found, nullptr) << name;
-  if (!found) return none;
-  EXPECT_LT(found->p, p) << name;
-  EXPECT_THAT(found->reading, testing::HasSubstr(says));
-  return *found;
+const ResidualTest* Find(const std::vector<ResidualTest>& tests, const std::string& name) {
+  const auto found = std::ranges::find(tests, name, &ResidualTest::name);
+  return found == tests.end() ? nullptr : &*found;
 }
 
 }  // namespace twinbench::diagnose

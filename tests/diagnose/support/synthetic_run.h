@@ -42,16 +42,12 @@ void AddEffect(LinearRun& run, const Eigen::VectorXd& weight, const std::functio
 /// Nuisance: a constant. Stated noise 1 arcsec.
 LinearRun SyntheticSweep(int readings);
 
-/// The screen with the noise as stated.
-std::vector<ScreenTest> ScreenAsStated(const LinearRun& run, int null_runs, std::uint64_t seed);
-
-/// The test of that name, which must be there with a smaller p and with these words in its reading.
-const ScreenTest& Loud(const std::vector<ScreenTest>& tests, const std::string& name, double p,
-                       const std::string& says);
+/// The residual tests with the noise as stated.
+std::vector<ResidualTest> TestsAsStated(const LinearRun& run, int null_runs, std::uint64_t seed);
 
 Projector ProjectorOf(const LinearRun& run, const NoiseModel& noise);
 
-/// @return nullptr if the screen holds no test with that name.
-const ScreenTest* Find(const std::vector<ScreenTest>& tests, const std::string& name);
+/// @return nullptr if there is no test with that name.
+const ResidualTest* Find(const std::vector<ResidualTest>& tests, const std::string& name);
 
 }  // namespace twinbench::diagnose

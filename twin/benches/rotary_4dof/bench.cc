@@ -49,7 +49,6 @@ const Bench& Whole() {
     b.next_runs = NextRunsOf;
     b.diagnose = Diagnose;
     b.linear_run = Linear;
-    b.raw_scale = RawScaleOf;
     b.change_of_tables = ChangeOfTables;
     return b;
   }();

@@ -21,7 +21,6 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
                                 const diagnose::DiagnoseOptions& options);
 std::vector<plan::NextRun> NextRunsOf(const Scenario& scenario);
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator);
-diagnose::RawScale RawScaleOf(const Scenario& scenario, const diagnose::LinearRun& run);
 std::vector<uncertainty::Contribution> Contributions(const Scenario& scenario);
 nlohmann::json ChangeOfTables(const diagnose::DiagnosisRun& found, const Scenario& scenario);
 

@@ -70,7 +70,7 @@ PageTable GainTable(const json& diagnosis) {
   return table;
 }
 
-PageTable ScreenTable(const json& diagnosis) {
+PageTable ResidualTestTable(const json& diagnosis) {
   PageTable table{"Residual tests", {"test", "p", "what it says"}, {}};
   for (const json& test : ListAt(diagnosis, "screen"))
     table.rows.push_back({TextAt(test, "test"), fmt::format("{:.2g}", NumberAt(test, "p")), InPrint(TextAt(test, "reading"))});
@@ -94,7 +94,7 @@ PageSection ResidualSection(const json& diagnosis) {
   if (diagnosis.contains("plots")) {
     if (PageChoice choice = ResidualChoice(diagnosis.at("plots")); !choice.figures.empty()) section.blocks.emplace_back(std::move(choice));
   }
-  AddFilled(ScreenTable(diagnosis), section);
+  AddFilled(ResidualTestTable(diagnosis), section);
   return section;
 }
 
