@@ -8,6 +8,7 @@
 
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
+#include "twin/diagnose/engine/answer.h"
 #include "twin/diagnose/engine/prior.h"
 #include "twin/diagnose/tuning.h"
 
@@ -25,21 +26,9 @@ using FamiliesByCause = std::vector<std::pair<ShownCause, BestShown>>;
 
 /// Of the catalogue, where the first amplitude has that size and the shape is that of a grid point.
 std::vector<ParameterEstimate> ParametersAt(const Family& family, int grid_point, double size) {
-  const Eigen::VectorXd shape = family.ShapeAt(grid_point);
-  const auto count = std::ssize(family.amplitudes);
-  const Eigen::VectorXd amplitudes = size * Eigen::VectorXd::Unit(count, 0);
-  if (family.parameters)
-    return family.parameters(shape, amplitudes, Eigen::MatrixXd::Zero(count + shape.size(), count + shape.size()));
-  std::vector<ParameterEstimate> parameters;
-  for (std::size_t k = 0; k < family.amplitudes.size(); ++k) {
-    const Amplitude& a = family.amplitudes[k];
-    parameters.push_back({a.name, a.unit, a.to_SI, amplitudes[static_cast<Eigen::Index>(k)], 0.0, a.lower, a.upper});
-  }
-  for (std::size_t k = 0; k < family.shapes.size(); ++k) {
-    const Shape& s = family.shapes[k];
-    parameters.push_back({s.name, s.unit, s.to_SI, shape[static_cast<Eigen::Index>(k)], 0.0, s.lower, s.upper});
-  }
-  return parameters;
+  const auto amplitudes = std::ssize(family.amplitudes), count = amplitudes + std::ssize(family.shapes);
+  return ParametersOf(family, family.ShapeAt(grid_point), size * Eigen::VectorXd::Unit(amplitudes, 0),
+                      Eigen::MatrixXd::Zero(count, count));
 }
 
 /// The twin can carry it out: all parameters are the catalogue's, and one of them is as large as the family's amplitude,
