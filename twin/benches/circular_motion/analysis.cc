@@ -144,7 +144,8 @@ void ApplyBias(const std::vector<CirclePath>& rigorous, CircleAnalysis& a) {
   }
 }
 
-constexpr std::array kIsoValues = {&Iso230_4::G_ccw,    &Iso230_4::G_cw,    &Iso230_4::G_b,     &Iso230_4::Fmax_ccw,
+constexpr std::array kIsoValues = {&Iso230_4::G_mz_ccw, &Iso230_4::G_mz_cw, &Iso230_4::G_mz_b,
+                                  &Iso230_4::G_ccw,    &Iso230_4::G_cw,    &Iso230_4::G_b,     &Iso230_4::Fmax_ccw,
                                   &Iso230_4::Fmin_ccw, &Iso230_4::Fmax_cw, &Iso230_4::Fmin_cw, &Iso230_4::Fmax_b,
                                   &Iso230_4::Fmin_b,   &Iso230_4::D,       &Iso230_4::H};
 
@@ -185,7 +186,7 @@ void Publish(const Scenario& scenario, CircleAnalysis& a) {
 CircleAnalysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   CircleAnalysis a;
   a.points = PointsOf(readings, scenario);
-  if (a.points.empty()) throw InputError("readings", "none has radius and angle", "readings of a bar or a grid");
+  if (a.points.empty()) throw InputError("readings", "none has a radius", "readings of a bar or a grid");
   if (estimator == Estimator::kRigorous)
     Fit(scenario, a);
   else

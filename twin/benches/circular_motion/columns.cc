@@ -63,9 +63,14 @@ bool IsOfBar(const Reading& r) {
   return !std::isfinite(kGridX_m(r));
 }
 
+bool ShowsAngle(const Reading& r) {
+  return !IsOfBar(r) || std::isfinite(kEncoder_rad(r));
+}
+
 std::vector<DesiredColumn> Desired() {
-  return {{"encoder_deg", [](const Reading& r) { return std::isfinite(kEncoder_rad(r)) || !IsOfBar(r); },
-           "only the radius is known there, as of a ball bar without an encoder, and such readings are left out"},
+  return {{"encoder_deg", ShowsAngle,
+           "only the radius is known there: servo_lag and what the encoder does cannot be named; beside readings with both they "
+           "are left out"},
           {"temperature_degC", [](const Reading& r) { return std::isfinite(r.temperature_degC); },
            "thermal_growth, drift and bar_expansion cannot be named"}};
 }

@@ -28,4 +28,7 @@ double Radius_m(const Reading& reading);
 /// True if the bar measured, false if the grid did.
 bool IsOfBar(const Reading& reading);
 
+/// False of a bar without an encoder: the radius is all it shows.
+bool ShowsAngle(const Reading& reading);
+
 }  // namespace twinbench::benches::circular

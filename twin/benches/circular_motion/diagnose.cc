@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
 #include "twin/benches/circular_motion/bench.h"
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/settings.h"
@@ -11,6 +15,33 @@ Eigen::VectorXd Shown_m(const Reading& r) {
   const Deviation deviation = DeviationOf(r);
   return Eigen::Vector2d(deviation.radial_m, deviation.tangential_m);
 }
+
+bool HasAngles(const std::vector<Reading>& readings) {
+  return std::ranges::any_of(readings, [](const Reading& r) { return std::isfinite(DeviationOf(r).tangential_m); });
+}
+
+/// The bench where its readings show the radius alone.
+const BenchFormat& OfRadii() {
+  static const BenchFormat format = [] {
+    BenchFormat f = Format();
+    f.channels = f.points = {f.channels.front()};
+    return f;
+  }();
+  return format;
+}
+
+/// The twin's radius alone.
+class FollowRadii : public model::Follow {
+ public:
+  explicit FollowRadii(std::unique_ptr<model::Follow> whole) : whole_(std::move(whole)) {}
+  const std::vector<model::Point>& Points() const override { return whole_->Points(); }
+  Eigen::Index Readings() const override { return whole_->Readings(); }
+  Eigen::MatrixXd Predict(const std::vector<model::Disturbance>& at) const override { return whole_->Predict(at).leftCols(1); }
+  std::vector<std::string> Unfixed() const override { return whole_->Unfixed(); }
+
+ private:
+  std::unique_ptr<model::Follow> whole_;
+};
 
 Eigen::VectorXd Noise_m(const Scenario& scenario, const Reading& r) {
   const StatedNoise noise = StatedNoiseOf(CircularOf(scenario), IsOfBar(r), Radius_m(r));
@@ -47,15 +78,32 @@ diagnose::TwinComparison Comparison(const Scenario& scenario) {
   return comparison;
 }
 
+/// Of the radius alone: what turns the circle is not free, for it is not seen.
+diagnose::TwinComparison OfRadiiAlone(diagnose::TwinComparison comparison) {
+  comparison.format = &OfRadii();
+  comparison.follow = [whole = comparison.follow](const Scenario& scenario, const std::vector<Reading>& record) {
+    return std::make_unique<FollowRadii>(whole(scenario, record));
+  };
+  comparison.free_points = {"offset_x", "offset_y", "length"};
+  comparison.shown = [](const Reading& r) { return Eigen::VectorXd(Shown_m(r).head(1)); };
+  comparison.noise_of = [](const Scenario& scenario, const Reading& r) { return Eigen::VectorXd(Noise_m(scenario, r).head(1)); };
+  comparison.tones = {{"", Eigen::VectorXd::Ones(1)}};
+  return comparison;
+}
+
+diagnose::TwinComparison Comparison(const Scenario& scenario, const std::vector<Reading>& readings) {
+  return HasAngles(readings) ? Comparison(scenario) : OfRadiiAlone(Comparison(scenario));
+}
+
 }  // namespace
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  return diagnose::DiagnoseByTwin(WithAngles(readings), scenario, options, Comparison(scenario));
+  return diagnose::DiagnoseByTwin(WithAngles(readings), scenario, options, Comparison(scenario, readings));
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
-  return diagnose::CompareWithTwin(WithAngles(readings), scenario, Comparison(scenario));
+  return diagnose::CompareWithTwin(WithAngles(readings), scenario, Comparison(scenario, readings));
 }
 
 }  // namespace twinbench::benches::circular

@@ -30,30 +30,31 @@ json PartsOf(double quantisation, double repeatability, double model) {
                             {"model", model}});
 }
 
-bool IsBarSetup(const CircleAnalysis& a, int setup) {
-  const auto point = std::ranges::find(a.points, setup, &CirclePoint::setup);
-  return point != a.points.end() && point->is_bar;
+/// As scenarios call it.
+std::string InstrumentOf(bool is_bar, bool has_angle) {
+  return !is_bar ? "grid" : has_angle ? "bar" : "radial_bar";
 }
 
-double RadiusOf_m(const CircleAnalysis& a, int setup) {
-  return std::ranges::find(a.points, setup, &CirclePoint::setup)->radius_m;
+const CirclePoint& FirstOf(const CircleAnalysis& a, int setup) {
+  return *std::ranges::find(a.points, setup, &CirclePoint::setup);
 }
 
 /// What was fitted of a set-up.
-void AddMounting(const CircleFit& fit, int setup, bool is_bar, json& entry) {
+void AddMounting(const CircleFit& fit, const CirclePoint& first, json& entry) {
+  const int setup = first.setup;
   const CircleMounting& m = fit.MountingOf(setup);
-  const Eigen::Index first = fit.UnknownOf(setup);
+  const Eigen::Index from = fit.UnknownOf(setup);
   const auto value = [&](Eigen::Index k, double of, double unit) {
-    const bool known = fit.identified[static_cast<std::size_t>(first + k)];
-    const PartedVariance variance = fit.shared.Parted(Eigen::VectorXd::Unit(fit.shared.cov.rows(), first + k));
+    const bool known = fit.identified[static_cast<std::size_t>(from + k)];
+    const PartedVariance variance = fit.shared.Parted(Eigen::VectorXd::Unit(fit.shared.cov.rows(), from + k));
     json entry_of = WithUncertainty(of, known ? std::sqrt(variance.all) : kNaN, unit);
     if (known) entry_of["u_parts"] = PartsOf(variance.of_steps / variance.all, variance.of_machine / variance.all, 0.0);
     return entry_of;
   };
   entry["offset_x_um"] = value(0, m.offset_m[0], um);
   entry["offset_y_um"] = value(1, m.offset_m[1], um);
-  if (is_bar) {
-    entry["encoder_zero_deg"] = value(2, m.rotation_rad, units::deg);
+  if (first.is_bar) {
+    if (first.has_angle) entry["encoder_zero_deg"] = value(2, m.rotation_rad, units::deg);
     entry["length_error_um"] = value(3, m.length_m, um);
   } else {
     entry["rotation_arcsec"] = value(2, m.rotation_rad, units::arcsec);
@@ -67,11 +68,11 @@ json SetupsJson(const CircleAnalysis& a) {
     if (numbers.empty() || numbers.back() != p.setup) numbers.push_back(p.setup);
   }
   for (const int setup : numbers) {
-    const bool is_bar = IsBarSetup(a, setup);
+    const CirclePoint& first = FirstOf(a, setup);
     json entry = {
-        {"setup", setup}, {"instrument", is_bar ? "bar" : "grid"}, {"radius_mm", RadiusOf_m(a, setup) / units::mm}};
-    if (a.IsFitted()) AddMounting(a.fit, setup, is_bar, entry);
-    if (is_bar) {
+        {"setup", setup}, {"instrument", InstrumentOf(first.is_bar, first.has_angle)}, {"radius_mm", first.radius_m / units::mm}};
+    if (a.IsFitted()) AddMounting(a.fit, first, entry);
+    if (first.is_bar) {
       const Eigen::Vector2d& offset_m = a.published_offset_m.at(setup);
       entry["published_offset_um"] = {offset_m.x() / um, offset_m.y() / um};
     }
@@ -82,11 +83,13 @@ json SetupsJson(const CircleAnalysis& a) {
 
 json ErrorsJson(const std::vector<ErrorValue>& errors) {
   json all = json::object();
-  for (const ErrorValue& e : errors)
+  for (const ErrorValue& e : errors) {
+    if (!std::isfinite(e.u)) continue;  // the readings do not show it
     all[e.key] = {{"value", In(1.0, e.value)},
                   {"u", In(1.0, e.u)},
                   {"unit", e.unit},
                   {"u_parts", PartsOf(e.quantisation, e.repeatability, 0.0)}};
+  }
   return all;
 }
 
@@ -110,9 +113,13 @@ double Feed_mm_min(double feed_m_s) {
   return feed_m_s * 60.0 / units::mm;
 }
 
+std::string FeedText(double feed_m_s) {
+  return feed_m_s > 0.0 ? fmt::format("{:.6g} mm/min", Feed_mm_min(feed_m_s)) : "at rest";
+}
+
 /// What the page draws: the uncertainty is one number a pass, so that thousands of points are no results of their own.
 json RadialJson(const CirclePath& path, const SharedUncertainty& shared) {
-  json entry = {{"setup", path.setup}, {"pass", path.pass}, {"direction", path.direction}, {"instrument", path.is_bar ? "bar" : "grid"},
+  json entry = {{"setup", path.setup}, {"pass", path.pass}, {"direction", path.direction}, {"instrument", InstrumentOf(path.is_bar, path.has_angle)},
                 {"radius_mm", path.radius_m / units::mm}, {"feed_mm_min", In(1.0, Feed_mm_min(path.feed_m_s))}};
   double squares_m2 = 0.0;
   for (const PathPoint& point : path.points) {
@@ -127,8 +134,13 @@ json RadialJson(const CirclePath& path, const SharedUncertainty& shared) {
 json PathJson(const CirclePath& path, const SharedUncertainty& shared) {
   json entry = {{"setup", path.setup}, {"pass", path.pass}};
   for (const PathPoint& point : path.points) {
-    const Eigen::Vector2d u_m = Uncertainty_m(point, shared);
     entry["commanded_deg"].push_back(point.commanded_rad / units::deg);
+    if (!path.has_angle) {
+      entry["radial_um"].push_back(In(um, point.Radial_m()));
+      entry["u_radial_um"].push_back(In(um, RadialUncertainty_m(point, shared)));
+      continue;
+    }
+    const Eigen::Vector2d u_m = Uncertainty_m(point, shared);
     entry["dx_um"].push_back(In(um, point.d_m.x()));
     entry["dy_um"].push_back(In(um, point.d_m.y()));
     entry["u_dx_um"].push_back(In(um, u_m.x()));
@@ -137,9 +149,15 @@ json PathJson(const CirclePath& path, const SharedUncertainty& shared) {
   return entry;
 }
 
-json IsoJson(const Iso230_4& d) {
-  json entry = {{"setup", d.setup}, {"feed_mm_min", Feed_mm_min(d.feed_m_s)}};
+json IsoJson(const CircleAnalysis& a, const Iso230_4& d) {
+  const CirclePoint& first = FirstOf(a, d.setup);
+  json entry = {{"setup", d.setup},
+                {"instrument", InstrumentOf(first.is_bar, first.has_angle)},
+                {"radius_mm", first.radius_m / units::mm},
+                {"feed_mm_min", Feed_mm_min(d.feed_m_s)},
+                {"edition", "ISO 230-4:2022; H as ISO 230-4:1996"}};
   for (const auto& [name, value] : NamedValues(d)) {
+    if (!std::isfinite(value.value_m)) continue;  // a direction is missing
     entry[name + "_um"] = In(um, value.value_m);
     entry["u_" + name + "_um"] = In(um, value.u_m);
     if (std::isfinite(value.u_m)) entry["u_parts"][name + "_um"] = PartsOf(value.quantisation, value.repeatability, value.model);
@@ -175,6 +193,18 @@ std::string BiasText(const CircleAnalysis& a) {
   return text;
 }
 
+/// Of the channels that there are.
+json ResidualsJson(const CircleFit& fit) {
+  json rms = json::object();
+  const auto add = [&rms](const char* key, double value, double unit) {
+    if (std::isfinite(value)) rms[key] = value / unit;
+  };
+  add("bar_um", fit.rms_bar_m, um);
+  add("encoder_arcsec", fit.rms_encoder_rad, units::arcsec);
+  add("grid_um", fit.rms_grid_m, um);
+  return rms;
+}
+
 json SeparationJson(const CircleAnalysis& a) {
   json separation = {{"setups", SetupsJson(a)},
                      {"errors", json::object()},
@@ -184,15 +214,13 @@ json SeparationJson(const CircleAnalysis& a) {
   if (a.IsFitted()) {
     separation["errors"] = ErrorsJson(ErrorsOf(a.fit));
     separation["not_separable"] = a.fit.not_separable;
-    separation["residual_rms"] = {{"bar_um", In(um, a.fit.rms_bar_m)},
-                                  {"encoder_arcsec", report::Arcsec(a.fit.rms_encoder_rad)},
-                                  {"grid_um", In(um, a.fit.rms_grid_m)}};
+    separation["residual_rms"] = ResidualsJson(a.fit);
     separation["dof"] = a.fit.dof;
   }
   for (const CirclePath& path : a.paths) separation["path"].push_back(PathJson(path, a.fit.shared));
-  for (const Iso230_4& d : a.deviations) separation["iso230_4"].push_back(IsoJson(d));
-  const BarAgainstGrid grid = CompareWithGrid(a.paths);
-  separation["comparison"] = {{"radial_max_um", In(um, grid.radial_max_m)},
+  for (const Iso230_4& d : a.deviations) separation["iso230_4"].push_back(IsoJson(a, d));
+  if (const BarAgainstGrid grid = CompareWithGrid(a.paths); grid.pairs > 0)
+    separation["comparison"] = {{"radial_max_um", In(um, grid.radial_max_m)},
                               {"tangential_max_um", In(um, grid.tangential_max_m)}};
   return separation;
 }
@@ -206,11 +234,14 @@ std::string ErrorsText(const CircleAnalysis& a) {
 }
 
 std::string DeviationsText(const CircleAnalysis& a) {
-  std::string text = "ISO 230-4 [um]: mounting, feed [mm/min], G(b), F max, F min, D, H\n";
-  for (const Iso230_4& d : a.deviations)
-    text += fmt::format("{:3d} {:8.1f} {:10.3f} {:10.3f} {:10.3f} {:10.3f} {:10.3f}\n", d.setup,
-                        Feed_mm_min(d.feed_m_s), d.G_b.value_m / um, d.Fmax_b.value_m / um, d.Fmin_b.value_m / um,
-                        d.D.value_m / um, d.H.value_m / um);
+  std::string text = "ISO 230-4:2022 (H: 1996) [µm], F about the least-squares circle's centre:\n";
+  for (const Iso230_4& d : a.deviations) {
+    text += fmt::format("  mounting {}, {}:", d.setup, FeedText(d.feed_m_s));
+    for (const auto& [name, value] : NamedValues(d)) {
+      if (std::isfinite(value.value_m)) text += fmt::format(" {} {:.3f}", name, value.value_m / um);
+    }
+    text += "\n";
+  }
   return text;
 }
 
@@ -226,8 +257,7 @@ std::string PolarOf(const std::vector<CirclePath>& all, const Iso230_4& of) {
       s.value.push_back(point.Radial_m() / um);
     }
     title = fmt::format("mounting {}, {}, R = {:.3f} mm, {}: radial deviation, + counter-clockwise, o clockwise\n",
-                        path.setup, path.is_bar ? "bar" : "grid", path.radius_m / units::mm,
-                        of.feed_m_s > 0.0 ? fmt::format("{:.6g} mm/min", Feed_mm_min(of.feed_m_s)) : "at rest");
+                        path.setup, InstrumentOf(path.is_bar, path.has_angle), path.radius_m / units::mm, FeedText(of.feed_m_s));
   }
   return title + report::PolarText(series, "um") + "\n";
 }
@@ -249,11 +279,11 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
                         {"estimator", EstimatorName(estimator)},
                         {"setups", evaluation.separation["setups"]},
                         {"errors", evaluation.separation["errors"]},
-                        {"iso230_4", evaluation.separation["iso230_4"]},
-                        {"comparison", evaluation.separation["comparison"]}};
+                        {"iso230_4", evaluation.separation["iso230_4"]}};
+  if (evaluation.separation.contains("comparison")) evaluation.results["comparison"] = evaluation.separation["comparison"];
   for (const CirclePath& path : a.paths) evaluation.results["radial"].push_back(RadialJson(path, a.fit.shared));
   for (const RadialPart& part : RadialPartsOf(a)) evaluation.results["radial_parts"].push_back({{"errors", part.keys}, {"rms_um", In(um, part.rms_m)}});
-  evaluation.summary = fmt::format("{} of {} readings have radius and angle\n", a.points.size(), readings.size());
+  evaluation.summary = fmt::format("{} of {} readings have a radius\n", a.points.size(), readings.size());
   if (a.IsFitted()) evaluation.summary += ErrorsText(a);
   if (!a.method_bias.empty()) evaluation.results["method_bias"] = BiasJson(a.method_bias);
   evaluation.summary += BiasText(a);

@@ -17,11 +17,27 @@ using nlohmann::json;
 
 /// Estimated minus true path, all passes together.
 struct PathScore {
-  int readings = 0;
+  int readings = 0, values = 0;
   double sum_m2 = 0.0, largest_m = 0.0, sum_normed = 0.0;
 
-  double Rms_m() const { return std::sqrt(sum_m2 / (2.0 * readings)); }
+  double Rms_m() const { return std::sqrt(sum_m2 / values); }
 };
+
+/// One number of a point of a path.
+struct PathValue {
+  const char* key;
+  double value_m, u_m, truth_m;
+};
+
+/// Along x and y, or along the radius where that is all that was read.
+std::vector<PathValue> ValuesOf(const CirclePath& path, std::size_t i, const json& truth, const SharedUncertainty& shared) {
+  const PathPoint& point = path.points[i];
+  PathPoint actual = point;
+  actual.d_m = units::um * Eigen::Vector2d(truth.at("dx_um")[i].get<double>(), truth.at("dy_um")[i].get<double>());
+  if (!path.has_angle) return {{"radial_um", point.Radial_m(), RadialUncertainty_m(point, shared), actual.Radial_m()}};
+  const Eigen::Vector2d u_m = Uncertainty_m(point, shared);
+  return {{"dx_um", point.d_m.x(), u_m.x(), actual.d_m.x()}, {"dy_um", point.d_m.y(), u_m.y(), actual.d_m.y()}};
+}
 
 /// Some of the points of a pass, one by one.
 void AddValues(std::size_t pass, const CirclePath& path, const json& truth, const SharedUncertainty& shared,
@@ -30,25 +46,22 @@ void AddValues(std::size_t pass, const CirclePath& path, const json& truth, cons
   if (truth.at("dx_um").size() != path.points.size()) return;
   const std::size_t every = std::max<std::size_t>(1, path.points.size() / kPoints);
   for (std::size_t i = 0; i < path.points.size(); i += every) {
-    const Eigen::Vector2d d_um = path.points[i].d_m / units::um, u_um = Uncertainty_m(path.points[i], shared) / units::um;
-    for (Eigen::Index c = 0; c < 2; ++c) {
-      const std::string key = c == 0 ? "dx_um" : "dy_um";
-      scored.values.push_back(
-          {fmt::format("path[{}].{}[{}]", pass, key, i), d_um[c], u_um[c], truth.at(key)[i].get<double>()});
-    }
+    for (const PathValue& v : ValuesOf(path, i, truth, shared))
+      scored.values.push_back({fmt::format("path[{}].{}[{}]", pass, v.key, i), v.value_m / units::um, v.u_m / units::um, v.truth_m / units::um});
   }
 }
 
 void AddPass(const CirclePath& path, const json& truth, const SharedUncertainty& shared, PathScore& score) {
-  const json &x_um = truth.at("dx_um"), &y_um = truth.at("dy_um");
-  if (x_um.size() != path.points.size()) return;  // readings that are missing shift the rest
+  if (truth.at("dx_um").size() != path.points.size()) return;  // readings that are missing shift the rest
   for (std::size_t i = 0; i < path.points.size(); ++i) {
-    const Eigen::Vector2d error_m =
-        path.points[i].d_m - units::um * Eigen::Vector2d(x_um[i].get<double>(), y_um[i].get<double>());
     ++score.readings;
-    score.sum_m2 += error_m.squaredNorm();
-    score.largest_m = std::max(score.largest_m, error_m.cwiseAbs().maxCoeff());
-    score.sum_normed += error_m.cwiseQuotient(Uncertainty_m(path.points[i], shared)).squaredNorm();
+    for (const PathValue& v : ValuesOf(path, i, truth, shared)) {
+      const double error_m = v.value_m - v.truth_m;
+      ++score.values;
+      score.sum_m2 += error_m * error_m;
+      score.largest_m = std::max(score.largest_m, std::abs(error_m));
+      score.sum_normed += std::pow(error_m / v.u_m, 2);
+    }
   }
 }
 
@@ -97,7 +110,7 @@ report::ScoredRun ScoreOf(const CircleAnalysis& a, const json& truth) {
   scored.json["path"] = {{"readings", path.readings},
                          {"rms_error_um", path.Rms_m() / units::um},
                          {"largest_error_um", path.largest_m / units::um},
-                         {"mean_normed_square", report::In(1.0, path.sum_normed / (2.0 * path.readings))}};
+                         {"mean_normed_square", report::In(1.0, path.sum_normed / path.values)}};
   scored.text = fmt::format("path: off the truth by {:.4f} um rms, {:.4f} um at most\n", path.Rms_m() / units::um,
                             path.largest_m / units::um);
   if (a.IsFitted()) scored.json["errors"] = ErrorScores(a.fit, truth.at("errors"), scored);

@@ -146,7 +146,7 @@ void AddMounting(Keys& keys, CircularMountingSettings& s) {
 }
 
 void AddSetup(Table& t, CircularSetup& s) {
-  t.Text("instrument", &s.instrument, {"bar", "grid"}, "what measures");
+  t.Text("instrument", &s.instrument, {"bar", "radial_bar", "grid"}, "what measures: a bar on an encoder, a bar alone, a grid plate");
   t.Add("radius", kMm, Positive(10000), &s.radius_m, "of the commanded circle");
 }
 

@@ -100,7 +100,8 @@ struct GridSettings {  // [grid]
   double sde_m = 0.0;  // subdivisional error, amplitude
 };
 
-/// Half width of what every set-up draws anew; free in every estimate.
+/// Half width of what every set-up draws anew; free in every estimate. A bar without an encoder is set to length before it
+/// is used: none is drawn.
 struct CircularMountingSettings {  // [mounting]
   double offset_m = 50.0 * units::um;
   double zero_rad = 0.05 * units::deg;
@@ -109,10 +110,11 @@ struct CircularMountingSettings {  // [mounting]
 };
 
 struct CircularSetup {
-  std::string instrument = "bar";  // bar | grid
+  std::string instrument = "bar";  // bar | radial_bar | grid
   double radius_m = 110.230 * units::mm;
 
-  bool IsBar() const { return instrument == "bar"; }
+  bool IsBar() const { return instrument != "grid"; }
+  bool ShowsAngle() const { return instrument != "radial_bar"; }  // else the radius alone
 };
 
 struct CircularProcedureSettings {  // [circular_procedure]

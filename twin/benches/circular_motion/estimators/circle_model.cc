@@ -31,7 +31,8 @@ AxisMotion MotionOf(const CirclePoint& p, const CircleConstants& known, double l
 double AxisError_m(const CircleErrors& e, const CircleConstants& known, std::size_t k, const AxisMotion& axis,
                    double other_m, double above_K) {
   const double u = other_m / known.span_m;
-  double error_m = (e.scale[k] + e.expansion_per_K[k] * above_K) * axis.at_m + e.drift_m_per_K[k] * above_K;
+  const double scale = e.scale[k] + (k == 0 ? 0.5 : -0.5) * e.scale_mismatch;
+  double error_m = (scale + e.expansion_per_K[k] * above_K) * axis.at_m + e.drift_m_per_K[k] * above_K;
   error_m += e.bow_m[k] * (1.5 * u * u - 0.5) + e.s_shape_m[k] * (2.5 * u * u - 1.5) * u;
   error_m += e.cyclic_sine_m[k] * axis.wave_sine + e.cyclic_cosine_m[k] * axis.wave_cosine;
   const double width_m = std::abs(e.backlash_m[k]);
@@ -46,7 +47,8 @@ Vector2d Position_m(const CirclePoint& p, const CircleErrors& e, const CircleCon
                     CircleMemo::Axes& memo) {
   const double commanded_rad = p.commanded_rad - p.rate_rad_s * before_s;
   const auto motion = [&](std::size_t k) -> const AxisMotion& {
-    return memo[k].At({e.lag_s[k], before_s}, [&] { return MotionOf(p, known, e.lag_s[k], commanded_rad, static_cast<int>(k)); });
+    const double lag_s = e.lag_s[k] + (k == 0 ? 0.5 : -0.5) * e.lag_mismatch_s;
+    return memo[k].At({lag_s, before_s}, [&] { return MotionOf(p, known, lag_s, commanded_rad, static_cast<int>(k)); });
   };
   const AxisMotion &x = motion(0), &y = motion(1);
   return {x.at_m + AxisError_m(e, known, 0, x, y.at_m, p.above_K) - e.squareness_rad * y.at_m,
@@ -132,10 +134,22 @@ Vector2d GridShown_m(const CirclePoint& p, const CircleErrors& e, const CircleMo
   return Turned(shown_m - p.Commanded_m(), -p.commanded_rad);
 }
 
+double Longer_m(const CirclePoint& p, const CircleErrors& e) {
+  return p.radial_m / (1.0 + e.bar_gain + e.bar_cubic_per_m2 * p.radial_m * p.radial_m);
+}
+
+/// Along the radius, at the commanded angle: there the bar's length goes by the angle between the radius and itself. The length
+/// counts as it was set.
+Vector2d FromRadialBar_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m, const CircleConstants& known) {
+  const double length_m = BarLength_m(p, e, {}) + Longer_m(p, e) - BallForm_m(e, p.commanded_rad);
+  const Vector2d offset_m = Turned({m.offset_m[0], m.offset_m[1]}, -p.commanded_rad);
+  const double flat_m = std::sqrt(length_m * length_m - known.height_m * known.height_m - offset_m.y() * offset_m.y());
+  return Turned({flat_m - offset_m.x() - p.radius_m, 0.0}, p.commanded_rad);
+}
+
 Vector2d FromBar_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
                    const CircleConstants& known) {
-  const double shown_m = p.radial_m;
-  const double longer_m = shown_m / (1.0 + e.bar_gain + e.bar_cubic_per_m2 * shown_m * shown_m);
+  const double longer_m = Longer_m(p, e);
   const double shown_rad = p.commanded_rad + p.tangential_m / p.radius_m - m.rotation_rad;
   double azimuth_rad = shown_rad - ScaleError_rad(e, shown_rad);
   azimuth_rad -=
@@ -158,7 +172,7 @@ Vector2d FromGrid_m(const CirclePoint& p, const CircleMounting& m, const CircleC
 void SetNoise(const CircularSettings& s, CirclePoint& p) {
   const StatedNoise noise = StatedNoiseOf(s, p.is_bar, p.radius_m);
   p.u_radial_m = noise.radial_m;
-  p.u_tangential_m = noise.tangential_m;
+  if (p.has_angle) p.u_tangential_m = noise.tangential_m;
   const Eigen::Array2d u(noise.radial_m, noise.tangential_m), steps(noise.radial_steps_m, noise.tangential_steps_m);
   if (!(u > 0.0).all()) return;
   p.of_machine = (s.machine.noise_m / u).square();
@@ -172,12 +186,13 @@ std::vector<CirclePoint> PointsOf(const std::vector<Reading>& readings, const Sc
   std::vector<CirclePoint> points;
   for (const Reading& r : WithAngles(readings)) {
     const Deviation shown = DeviationOf(r);
-    if (r.status != ReadingStatus::kOk || !std::isfinite(shown.radial_m + shown.tangential_m)) continue;
+    if (r.status != ReadingStatus::kOk || !std::isfinite(shown.radial_m)) continue;
     CirclePoint& p = points.emplace_back();
     p.setup = r.setup;
     p.pass = r.pass;
     p.direction = r.direction;
     p.is_bar = IsOfBar(r);
+    p.has_angle = ShowsAngle(r);
     p.commanded_rad = r.target_rad;
     p.radius_m = Radius_m(r);
     p.rate_rad_s = r.velocity_rad_s;
@@ -190,10 +205,28 @@ std::vector<CirclePoint> PointsOf(const std::vector<Reading>& readings, const Sc
   return points;
 }
 
+namespace {
+
+AxisPair WaveOf(double amplitude, double phase_rad) {
+  return {amplitude * std::cos(phase_rad), amplitude * std::sin(phase_rad)};
+}
+
+CircleErrors BarOf(const BarSettings& bar) {
+  CircleErrors errors;
+  errors.bar_gain = bar.gain_error;
+  errors.bar_cubic_per_m2 = bar.cubic_per_m2;
+  errors.bar_expansion_per_K = bar.expansion_per_K;
+  errors.ball2_m = WaveOf(bar.ball_m[0], 2.0 * bar.ball_azimuth_rad[0]);
+  errors.ball3_m = WaveOf(bar.ball_m[1], 3.0 * bar.ball_azimuth_rad[1]);
+  return errors;
+}
+
+}  // namespace
+
 CircleConstants ConstantsOf(const CircularSettings& s) {
   return {s.machine.span_m, s.machine.cyclic_pitch_m, s.machine.spike_time_s, s.bar.height_m,
           s.bar.latency_s,  s.encoder.tilt_rad,       s.grid.scale,           s.grid.shear_rad,
-          s.grid.sde_m,     s.grid.period_m};
+          s.grid.sde_m,     s.grid.period_m,          BarOf(s.bar)};
 }
 
 Vector2d Shown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
@@ -208,7 +241,8 @@ Vector2d Shown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounti
 
 Vector2d Deviation_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
                      const CircleConstants& known) {
-  return p.is_bar ? FromBar_m(p, e, m, known) : FromGrid_m(p, m, known);
+  if (!p.is_bar) return FromGrid_m(p, m, known);
+  return p.has_angle ? FromBar_m(p, e, m, known) : FromRadialBar_m(p, e, m, known);
 }
 
 const std::vector<CircleUnknown>& CircleUnknowns() {
@@ -217,16 +251,18 @@ const std::vector<CircleUnknown>& CircleUnknowns() {
   using E = CircleErrors;
   constexpr double kSmall_m = 0.1 * um, kPpm = 1e-6;
   static const std::vector<CircleUnknown> unknowns = {
-      {"machine.lag_x_s", "s", 1.0, 1e-4, [](E& e) -> double& { return e.lag_s[0]; }, kNothing},
-      {"machine.lag_y_s", "s", 1.0, 1e-4, [](E& e) -> double& { return e.lag_s[1]; }, kNothing},
-      {"machine.scale_x_um_m", "um/m", um, kPpm, [](E& e) -> double& { return e.scale[0]; }, kNothing},
-      {"machine.scale_y_um_m", "um/m", um, kPpm, [](E& e) -> double& { return e.scale[1]; }, kNothing},
+      {"machine.lag_x_s", "s", 1.0, 1e-4, [](E& e) -> double& { return e.lag_s[0]; }, kAngle},
+      {"machine.lag_y_s", "s", 1.0, 1e-4, [](E& e) -> double& { return e.lag_s[1]; }, kAngle},
+      {"machine.scale_x_um_m", "um/m", um, kPpm, [](E& e) -> double& { return e.scale[0]; }, kAngle},
+      {"machine.scale_y_um_m", "um/m", um, kPpm, [](E& e) -> double& { return e.scale[1]; }, kAngle},
       {"machine.squareness_arcsec", "arcsec", arcsec, arcsec, [](E& e) -> double& { return e.squareness_rad; },
        kNothing},
+      {"machine.servo_mismatch_s", "s", 1.0, 1e-4, [](E& e) -> double& { return e.lag_mismatch_s; }, kRadiusOnly},
+      {"machine.scale_mismatch_um_m", "um/m", um, kPpm, [](E& e) -> double& { return e.scale_mismatch; }, kRadiusOnly},
       {"machine.straightness_x_um", "um", um, kSmall_m, [](E& e) -> double& { return e.bow_m[0]; }, kNothing},
       {"machine.straightness_y_um", "um", um, kSmall_m, [](E& e) -> double& { return e.bow_m[1]; }, kNothing},
-      {"machine.straightness3_x_um", "um", um, kSmall_m, [](E& e) -> double& { return e.s_shape_m[0]; }, kNothing},
-      {"machine.straightness3_y_um", "um", um, kSmall_m, [](E& e) -> double& { return e.s_shape_m[1]; }, kNothing},
+      {"machine.straightness3_x_um", "um", um, kSmall_m, [](E& e) -> double& { return e.s_shape_m[0]; }, kAngle},
+      {"machine.straightness3_y_um", "um", um, kSmall_m, [](E& e) -> double& { return e.s_shape_m[1]; }, kAngle},
       {"machine.backlash_x_um", "um", um, kSmall_m, [](E& e) -> double& { return e.backlash_m[0]; }, kNothing},
       {"machine.backlash_y_um", "um", um, kSmall_m, [](E& e) -> double& { return e.backlash_m[1]; }, kNothing},
       {"machine.spike_x_um", "um", um, kSmall_m, [](E& e) -> double& { return e.spike_m[0]; }, kNothing},

@@ -16,22 +16,36 @@ namespace twinbench::separate::circular {
 /// One reading with a value.
 struct CirclePoint {
   int setup = 0, pass = 0, direction = 1;
-  bool is_bar = true;
+  bool is_bar = true, has_angle = true;  // of a bar without an encoder the radius is all
   double commanded_rad = kNaN, radius_m = kNaN;
   double rate_rad_s = 0.0;  // of the commanded angle; 0: at rest
   double feed_m_s = 0.0;
   double above_K = 0.0;                         // temperature above that of reference
   double radial_m = kNaN, tangential_m = kNaN;  // shown, from the commanded point
-  double u_radial_m = kNaN, u_tangential_m = kNaN;
+  double u_radial_m = kNaN, u_tangential_m = kNaN;  // NaN: not shown
   Eigen::Vector2d of_machine{0.0, 0.0}, of_steps{0.0, 0.0};  // shares of both variances
 
   Eigen::Vector2d Commanded_m() const {
     return {radius_m * std::cos(commanded_rad), radius_m * std::sin(commanded_rad)};
   }
+  /// What was shown; 0 and no weight where nothing was.
+  Eigen::Vector2d Values_m() const { return {radial_m, has_angle ? tangential_m : 0.0}; }
+  Eigen::Vector2d Weights() const { return {1.0 / u_radial_m, has_angle ? 1.0 / u_tangential_m : 0.0}; }
 };
 
-/// The readings with both values, by the scenario's stated noise.
+/// The readings with a radius, by the scenario's stated noise.
 std::vector<CirclePoint> PointsOf(const std::vector<Reading>& readings, const Scenario& scenario);
+
+/// What is unknown of machine and instruments. Waves are cosine and sine. A mismatch is x less y, half of it each: what a
+/// radius shows of two axes of which it does not show what they have in common.
+struct CircleErrors {
+  AxisPair lag_s{}, scale{}, bow_m{}, s_shape_m{}, backlash_m{}, spike_m{};
+  AxisPair cyclic_sine_m{}, cyclic_cosine_m{}, expansion_per_K{}, drift_m_per_K{};
+  double squareness_rad = 0.0, lag_mismatch_s = 0.0, scale_mismatch = 0.0;
+  double bar_gain = 0.0, bar_cubic_per_m2 = 0.0, bar_expansion_per_K = 0.0;
+  AxisPair ball2_m{}, ball3_m{}, eccentricity_rad{}, ellipticity_rad{};
+  double encoder_latency_s = 0.0;
+};
 
 /// What a scenario states and no reading is asked for. The grid is the standard: as it was calibrated.
 struct CircleConstants {
@@ -40,20 +54,11 @@ struct CircleConstants {
   AxisPair tilt_rad{};    // of the encoder's axis
   AxisPair grid_scale{};  // shows too much in proportion
   double grid_shear_rad = 0.0, grid_sde_m = 0.0, grid_period_m = 1.0;
+  CircleErrors bar = {};  // gain and form of its balls: a radius alone would take them for the machine's
 };
 CircleConstants ConstantsOf(const CircularSettings& settings);
 
-/// What is unknown of machine and instruments. Waves are cosine and sine.
-struct CircleErrors {
-  AxisPair lag_s{}, scale{}, bow_m{}, s_shape_m{}, backlash_m{}, spike_m{};
-  AxisPair cyclic_sine_m{}, cyclic_cosine_m{}, expansion_per_K{}, drift_m_per_K{};
-  double squareness_rad = 0.0;
-  double bar_gain = 0.0, bar_cubic_per_m2 = 0.0, bar_expansion_per_K = 0.0;
-  AxisPair ball2_m{}, ball3_m{}, eccentricity_rad{}, ellipticity_rad{};
-  double encoder_latency_s = 0.0;
-};
-
-/// And of every set-up.
+/// What is unknown of every set-up.
 struct CircleMounting {
   AxisPair offset_m{};        // of the commanded centre, as bar or grid sees it
   double rotation_rad = 0.0;  // zero of the encoder, or rotation of the grid
@@ -117,8 +122,9 @@ struct CircleUnknown {
   double to_SI;
   double step;  // SI, over which slopes are differenced
   double& (*in)(CircleErrors&);
-  /// kBarShown: its slope is in proportion to what the bar shows, and nothing before the set-ups are known.
-  enum class Needs { kNothing, kTemperature, kBar, kBarShown, kBarAndTemperature } needs;
+  /// kRadiusOnly: stands for those that need an angle where there is none. kBarShown: its slope is in proportion to what the
+  /// bar shows, and nothing before the set-ups are known. Of a bar: one with an encoder.
+  enum class Needs { kNothing, kAngle, kRadiusOnly, kTemperature, kBar, kBarShown, kBarAndTemperature } needs;
 };
 const std::vector<CircleUnknown>& CircleUnknowns();
 

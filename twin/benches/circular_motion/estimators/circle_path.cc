@@ -15,7 +15,7 @@ std::vector<CirclePath> Paths(const std::vector<CirclePoint>& points,
   std::vector<CirclePath> paths;
   for (const CirclePoint& p : points) {
     if (paths.empty() || paths.back().setup != p.setup || paths.back().pass != p.pass)
-      paths.push_back({p.setup, p.pass, p.direction, p.is_bar, p.radius_m, p.feed_m_s, {}});
+      paths.push_back({p.setup, p.pass, p.direction, p.is_bar, p.radius_m, p.feed_m_s, {}, p.has_angle});
     paths.back().points.push_back(path_point(p));
   }
   return paths;
@@ -41,7 +41,7 @@ struct Difference {
 
 bool SameCircle(const CirclePath& a, const CirclePath& b) {
   constexpr double kSame = 1e-9;
-  return std::abs(a.radius_m - b.radius_m) < kSame && std::abs(a.feed_m_s - b.feed_m_s) < kSame &&
+  return a.has_angle && b.has_angle && std::abs(a.radius_m - b.radius_m) < kSame && std::abs(a.feed_m_s - b.feed_m_s) < kSame &&
          a.direction == b.direction && a.points.size() == b.points.size();
 }
 

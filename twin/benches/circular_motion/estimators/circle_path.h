@@ -10,7 +10,7 @@ namespace twinbench::separate::circular {
 /// Where the spindle was at one reading, against where it was told to be.
 struct PathPoint {
   double commanded_rad = kNaN;
-  Eigen::Vector2d d_m{kNaN, kNaN};      // actual minus commanded, x and y
+  Eigen::Vector2d d_m{kNaN, kNaN};      // actual minus commanded, x and y; along the radius where that is all there is
   Eigen::Vector2d u_own_m{kNaN, kNaN};  // standard uncertainty of radius and tangent that is this reading's own
   Eigen::Vector2d of_machine{0.0, 0.0}, of_steps{0.0, 0.0};  // shares of its squares (CirclePoint)
   Eigen::Matrix2Xd slope = {};          // d_m by the unknowns of the fit; empty: none were fitted
@@ -25,6 +25,7 @@ struct CirclePath {
   bool is_bar = true;
   double radius_m = kNaN, feed_m_s = kNaN;
   std::vector<PathPoint> points;
+  bool has_angle = true;  // false: of the radius alone
 };
 
 /// By the vector form: set-up and instrument taken out as they were fitted.

@@ -1,6 +1,8 @@
 #include "twin/benches/circular_motion/estimators/iso230_4.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "twin/core/linear_algebra.h"
 
@@ -65,8 +67,7 @@ Iso230_4Value Weighted(const Radii& radii, const VectorXd& weight, const SharedU
   variance.all = shared.Variance(slope);
   for (Index i = 0; i < radii.Count(); ++i) {
     const double square = weight[i] * weight[i];
-    const PartedVariance own = radii.Own(i);
-    variance = variance + PartedVariance{square * own.all, square * own.of_steps, square * own.of_machine};
+    variance = variance + radii.Own(i) * square;
   }
   return With(value_m, variance);
 }
@@ -85,31 +86,69 @@ Extremes ExtremesOf(const VectorXd& values) {
   return at;
 }
 
-/// The radii from their least-squares centre.
-VectorXd AboutOwnCentre(const Radii& radii) {
+/// The radii about their least-squares centre, and so what they lean on.
+Radii AboutOwnCentre(Radii radii) {
   Eigen::MatrixXd circle(radii.Count(), 3);
   circle << radii.angle_rad.array().cos(), radii.angle_rad.array().sin(), VectorXd::Ones(radii.Count());
-  const VectorXd fit = SolveLeastSquares(circle, radii.deviation_m);
-  return radii.deviation_m - circle.leftCols(2) * fit.head(2);
+  radii.deviation_m -= circle.leftCols(2) * SolveLeastSquares(circle, radii.deviation_m).topRows(2);
+  if (radii.slope.cols() > 0) radii.slope -= circle.leftCols(2) * SolveLeastSquares(circle, radii.slope).topRows(2);
+  return radii;
 }
 
 /// What the centre takes out of a difference of two radii is left out of its uncertainty: the centre is that of
 /// many readings.
-Iso230_4Value Circular(const Radii& radii, const SharedUncertainty& shared) {
-  if (radii.Count() == 0) return {};
-  const VectorXd about_m = AboutOwnCentre(radii);
-  const Extremes at = ExtremesOf(about_m);
-  const double value_m = about_m[at.largest] - about_m[at.smallest];
-  return shared.IsKnown() ? With(value_m, radii.Own(at.largest) + radii.Own(at.smallest)) : Iso230_4Value{value_m};
+Iso230_4Value RangeOf(const Radii& about, const SharedUncertainty& shared) {
+  const Extremes at = ExtremesOf(about.deviation_m);
+  const double value_m = about.deviation_m[at.largest] - about.deviation_m[at.smallest];
+  return shared.IsKnown() ? With(value_m, about.Own(at.largest) + about.Own(at.smallest)) : Iso230_4Value{value_m};
 }
 
-struct Radial {
-  Iso230_4Value largest, smallest;
+/// Where a convex function of one number is smallest within +- half, by golden sections.
+template <class Function>
+double LowestAt(const Function& of, double half) {
+  constexpr int kSections = 60;
+  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+  double low = -half, high = half, inner = high - golden * (high - low), outer = low + golden * (high - low);
+  double at_inner = of(inner), at_outer = of(outer);
+  for (int k = 0; k < kSections; ++k) {
+    const bool left = at_inner < at_outer;
+    (left ? high : low) = left ? outer : inner;
+    (left ? outer : inner) = left ? inner : outer;
+    (left ? at_outer : at_inner) = left ? at_inner : at_outer;
+    double& probe = left ? inner : outer;
+    probe = left ? high - golden * (high - low) : low + golden * (high - low);
+    (left ? at_inner : at_outer) = of(probe);
+  }
+  return 0.5 * (low + high);
+}
+
+/// About the centre of the minimum zone: the range is a convex function of where the centre is, first one way, then the other.
+Radii AboutMinimumZone(Radii about) {
+  const VectorXd c = about.angle_rad.array().cos(), s = about.angle_rad.array().sin();
+  const auto range_m = [](const VectorXd& r) { return r.maxCoeff() - r.minCoeff(); };
+  const double half_m = range_m(about.deviation_m);
+  const auto best_y_m = [&](const VectorXd& r) { return LowestAt([&](double y_m) { return range_m(r - y_m * s); }, half_m); };
+  const double x_m = LowestAt(
+      [&](double at_m) {
+        const VectorXd r = about.deviation_m - at_m * c;
+        return range_m(r - best_y_m(r) * s);
+      },
+      half_m);
+  about.deviation_m -= x_m * c;
+  about.deviation_m -= best_y_m(about.deviation_m) * s;
+  return about;
+}
+
+/// Of one or both directions, about one centre.
+struct Figures {
+  Iso230_4Value G, G_mz, largest, smallest;
 };
-Radial RadialOf(const Radii& radii, const SharedUncertainty& shared) {
+Figures FiguresOf(const Radii& radii, const SharedUncertainty& shared) {
   if (radii.Count() == 0) return {};
-  const Extremes at = ExtremesOf(radii.deviation_m);
-  return {Weighted(radii, Only(radii, at.largest), shared), Weighted(radii, Only(radii, at.smallest), shared)};
+  const Radii about = AboutOwnCentre(radii);
+  const Extremes at = ExtremesOf(about.deviation_m);
+  return {RangeOf(about, shared), RangeOf(AboutMinimumZone(about), shared), Weighted(about, Only(about, at.largest), shared),
+          Weighted(about, Only(about, at.smallest), shared)};
 }
 
 Iso230_4Value MeanOf(const Radii& radii, const SharedUncertainty& shared) {
@@ -117,20 +156,59 @@ Iso230_4Value MeanOf(const Radii& radii, const SharedUncertainty& shared) {
   return Weighted(radii, VectorXd::Constant(radii.Count(), 1.0 / static_cast<double>(radii.Count())), shared);
 }
 
-double Apart_rad(double a_rad, double b_rad) {
-  return std::abs(std::remainder(a_rad - b_rad, units::turn));
+/// The readings of a pass by their angle within a turn.
+std::vector<std::pair<double, Index>> ByAngle(const Radii& radii) {
+  std::vector<std::pair<double, Index>> order;
+  for (Index i = 0; i < radii.Count(); ++i) {
+    const double turned_rad = std::fmod(radii.angle_rad[i], units::turn);
+    order.emplace_back(turned_rad < 0.0 ? turned_rad + units::turn : turned_rad, i);
+  }
+  std::ranges::sort(order);
+  return order;
 }
 
-/// Readings of both directions at the same angle.
-Iso230_4Value Hysteresis(const Radii& ccw, const Radii& cw, const SharedUncertainty& shared) {
+/// Between which two readings an angle lies, and how far on the way from the first to the second.
+struct Between {
+  Index before, after;
+  double share;
+};
+std::optional<Between> BetweenAt(const std::vector<std::pair<double, Index>>& order, double angle_rad) {
+  constexpr double kWidest_rad = 15.0 * units::deg;  // an arc that was left out is no straight line
   constexpr double kSame_rad = 1e-6;
+  const auto next = std::ranges::lower_bound(order, angle_rad - kSame_rad, {}, &std::pair<double, Index>::first);
+  const auto& [after_rad, after] = next == order.end() ? order.front() : *next;
+  const auto& [before_rad, before] = next == order.begin() ? order.back() : *std::prev(next);
+  if (std::abs(std::remainder(after_rad - angle_rad, units::turn)) < kSame_rad) return Between{after, after, 1.0};
+  const double from_rad = std::remainder(angle_rad - before_rad, units::turn);
+  const double way_rad = from_rad + std::remainder(after_rad - angle_rad, units::turn);
+  if (from_rad < 0.0 || way_rad > kWidest_rad || way_rad < from_rad) return std::nullopt;
+  return Between{before, after, from_rad / way_rad};
+}
+
+/// What the readings of one pass differ by from the other pass, between whose readings it is taken linearly.
+void RaiseHysteresis(const Radii& at, const Radii& other, const SharedUncertainty& shared, Iso230_4Value& largest) {
+  const auto order = ByAngle(other);
+  for (const auto& [angle_rad, i] : ByAngle(at)) {
+    const auto between = BetweenAt(order, angle_rad);
+    if (!between) continue;
+    const auto& [j, k, share] = *between;
+    const double apart_m = std::abs(at.deviation_m[i] - (1.0 - share) * other.deviation_m[j] - share * other.deviation_m[k]);
+    if (apart_m <= largest.value_m) continue;
+    const PartedVariance own = at.Own(i) + other.Own(j) * std::pow(1.0 - share, 2) + other.Own(k) * std::pow(share, 2);
+    largest = shared.IsKnown() ? With(apart_m, own) : Iso230_4Value{apart_m};
+  }
+}
+
+/// Of any two passes of opposite directions.
+Iso230_4Value Hysteresis(const std::vector<const CirclePath*>& ccw, const std::vector<const CirclePath*>& cw,
+                         const SharedUncertainty& shared) {
   Iso230_4Value largest;
-  for (Index i = 0; i < ccw.Count(); ++i) {
-    for (Index j = 0; j < cw.Count(); ++j) {
-      if (Apart_rad(ccw.angle_rad[i], cw.angle_rad[j]) > kSame_rad) continue;
-      const double apart_m = std::abs(ccw.deviation_m[i] - cw.deviation_m[j]);
-      if (apart_m <= largest.value_m) continue;
-      largest = shared.IsKnown() ? With(apart_m, ccw.Own(i) + cw.Own(j)) : Iso230_4Value{apart_m};
+  for (const CirclePath* one : ccw) {
+    const Radii of_one = RadiiOf({one});
+    for (const CirclePath* other : cw) {
+      const Radii of_other = RadiiOf({other});
+      RaiseHysteresis(of_one, of_other, shared, largest);
+      RaiseHysteresis(of_other, of_one, shared, largest);
     }
   }
   return largest;
@@ -143,21 +221,24 @@ Iso230_4 DeviationsOf(const std::vector<const CirclePath*>& paths, const SharedU
   Iso230_4 d;
   d.setup = paths.front()->setup;
   d.feed_m_s = paths.front()->feed_m_s;
-  d.G_ccw = Circular(ccw, shared);
-  d.G_cw = Circular(cw, shared);
-  const Radial of_ccw = RadialOf(ccw, shared), of_cw = RadialOf(cw, shared);
+  const Figures of_ccw = FiguresOf(ccw, shared), of_cw = FiguresOf(cw, shared);
+  d.G_ccw = of_ccw.G;
+  d.G_cw = of_cw.G;
+  d.G_mz_ccw = of_ccw.G_mz;
+  d.G_mz_cw = of_cw.G_mz;
   d.Fmax_ccw = of_ccw.largest;
   d.Fmin_ccw = of_ccw.smallest;
   d.Fmax_cw = of_cw.largest;
   d.Fmin_cw = of_cw.smallest;
   if (counter.empty() || clockwise.empty()) return d;
   const Radii both = RadiiOf(paths);
-  const Radial of_both = RadialOf(both, shared);
-  d.G_b = Circular(both, shared);
+  const Figures of_both = FiguresOf(both, shared);
+  d.G_b = of_both.G;
+  d.G_mz_b = of_both.G_mz;
   d.Fmax_b = of_both.largest;
   d.Fmin_b = of_both.smallest;
   d.D = MeanOf(both, shared);
-  d.H = Hysteresis(ccw, cw, shared);
+  d.H = Hysteresis(counter, clockwise, shared);
   return d;
 }
 
@@ -167,6 +248,9 @@ std::vector<std::pair<std::string, Iso230_4Value>> NamedValues(const Iso230_4& d
   return {{"G_ccw", d.G_ccw},
           {"G_cw", d.G_cw},
           {"G_b", d.G_b},
+          {"G_mz_ccw", d.G_mz_ccw},
+          {"G_mz_cw", d.G_mz_cw},
+          {"G_mz_b", d.G_mz_b},
           {"Fmax_ccw", d.Fmax_ccw},
           {"Fmin_ccw", d.Fmin_ccw},
           {"Fmax_cw", d.Fmax_cw},

@@ -6,7 +6,7 @@
 
 #include "twin/benches/circular_motion/estimators/circle_path.h"
 
-/// Circular deviations as ISO 230-4 has them.
+/// Circular deviations as ISO 230-4:2022 has them (H: as the edition of 1996).
 namespace twinbench::separate::circular {
 
 struct Iso230_4Value {
@@ -19,11 +19,12 @@ struct Iso230_4Value {
 struct Iso230_4 {
   int setup = 0;
   double feed_m_s = 0.0;
-  Iso230_4Value G_ccw, G_cw, G_b;    // circular deviation: range of the radius from the least-squares centre
-  Iso230_4Value Fmax_ccw, Fmin_ccw;  // radial deviation from the commanded centre
+  Iso230_4Value G_ccw, G_cw, G_b;           // circular deviation: range of the radius from the least-squares centre
+  Iso230_4Value G_mz_ccw, G_mz_cw, G_mz_b;  // from the centre that makes it smallest: the minimum zone
+  Iso230_4Value Fmax_ccw, Fmin_ccw;         // radial deviation from the least-squares centre: radius less the commanded one
   Iso230_4Value Fmax_cw, Fmin_cw, Fmax_b, Fmin_b;
   Iso230_4Value D;  // mean radial deviation of both paths
-  Iso230_4Value H;  // largest difference between the directions at one angle
+  Iso230_4Value H;  // largest difference between the directions at one angle, linearly between the readings
 };
 
 /// Its values by their names: "G_ccw", "Fmax_b", ...

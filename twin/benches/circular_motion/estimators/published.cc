@@ -4,7 +4,7 @@ namespace twinbench::separate::circular {
 namespace {
 
 double Encoder_rad(const CirclePoint& p) {
-  return p.commanded_rad + p.tangential_m / p.radius_m;
+  return p.has_angle ? p.commanded_rad + p.tangential_m / p.radius_m : p.commanded_rad;
 }
 
 }  // namespace

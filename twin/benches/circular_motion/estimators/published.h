@@ -7,7 +7,7 @@
 namespace twinbench::separate::circular {
 
 /// Eqs 8 to 15: the centre (a, b) that leaves the least of DR - a cos th - b sin th, without a constant, th as the
-/// encoder shows it.
+/// encoder shows it; commanded where there is none.
 /// @param points  Of one set-up of the bar.
 Eigen::Vector2d PublishedOffset_m(const std::vector<CirclePoint>& points);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "twin/core/errors.h"
@@ -27,25 +28,50 @@ bool TemperatureChanged(const std::vector<CirclePoint>& points) {
   return warmest->above_K - coldest->above_K >= kLeast_K;
 }
 
-bool CanBeSeen(const CircleUnknown& unknown, bool warm, bool bar) {
+/// What a run has to show by.
+struct Shows {
+  bool warm, angle, bar;  // of the bar: with an encoder
+};
+
+bool CanBeSeen(const CircleUnknown& unknown, const Shows& run) {
   using enum CircleUnknown::Needs;
-  if (unknown.needs == kTemperature) return warm;
-  if (unknown.needs == kBar || unknown.needs == kBarShown) return bar;
-  if (unknown.needs == kBarAndTemperature) return bar && warm;
+  if (unknown.needs == kAngle) return run.angle;
+  if (unknown.needs == kRadiusOnly) return !run.angle;
+  if (unknown.needs == kTemperature) return run.warm;
+  if (unknown.needs == kBar || unknown.needs == kBarShown) return run.bar;
+  if (unknown.needs == kBarAndTemperature) return run.bar && run.warm;
   return unknown.needs == kNothing;
 }
 
-CircleFit Begin(const std::vector<CirclePoint>& points) {
+bool NeedsBar(CircleUnknown::Needs needs) {
+  using enum CircleUnknown::Needs;
+  return needs == kBar || needs == kBarShown || needs == kBarAndTemperature;
+}
+
+/// As bars are used the machine's part of these is the larger one by far.
+void NameWhatARadiusHides(CircleFit& fit) {
+  std::ranges::copy(std::array{"mean scale of both axes, length of the bar: D and F hold for the length as it was set",
+                               "squareness, scale mismatch, form of the balls twice per turn, straightness of both axes by P3: taken "
+                               "as the machine's squareness and scales",
+                               "straightness, form of the balls three times per turn: taken as the machine's straightness",
+                               "lag of both axes alike, rotation of the circle: a radius does not show it"},
+                    std::back_inserter(fit.not_separable));
+}
+
+CircleFit Begin(const std::vector<CirclePoint>& points, const CircleConstants& known) {
   CircleFit fit;
-  const bool warm = TemperatureChanged(points), bar = std::ranges::any_of(points, &CirclePoint::is_bar);
+  const Shows run{TemperatureChanged(points), std::ranges::any_of(points, &CirclePoint::has_angle),
+                  std::ranges::any_of(points, [](const CirclePoint& p) { return p.is_bar && p.has_angle; })};
+  if (!run.bar) fit.errors = known.bar;
   for (std::size_t k = 0; k < CircleUnknowns().size(); ++k) {
-    if (CanBeSeen(CircleUnknowns()[k], warm, bar)) fit.fitted.push_back(k);
+    if (CanBeSeen(CircleUnknowns()[k], run)) fit.fitted.push_back(k);
   }
   std::set<int> setups;
   for (const CirclePoint& p : points) setups.insert(p.setup);
   fit.setups.assign(setups.begin(), setups.end());
   fit.mountings.resize(fit.setups.size());
-  if (!warm) fit.not_separable.push_back("thermal errors: the temperature hardly changed");
+  if (!run.warm) fit.not_separable.push_back("thermal errors: the temperature hardly changed");
+  if (!run.angle) NameWhatARadiusHides(fit);
   return fit;
 }
 
@@ -83,13 +109,12 @@ std::vector<Index> OfWhatTheBarShows(const CircleFit& fit) {
 /// @param of  A function of errors and mounting; a grid knows nothing of bar and encoder.
 template <class Function>
 Eigen::Matrix2Xd SlopeOf(const Function& of, const CirclePoint& p, const CircleFit& fit) {
-  using enum CircleUnknown::Needs;
   Eigen::Matrix2Xd slope = Eigen::Matrix2Xd::Zero(2, UnknownsOf(fit));
   const CircleMounting& mounting = fit.MountingOf(p.setup);
   CircleErrors errors = fit.errors;
   for (std::size_t k = 0; k < fit.fitted.size(); ++k) {
     const CircleUnknown& unknown = CircleUnknowns()[fit.fitted[k]];
-    if (!p.is_bar && unknown.needs != kNothing && unknown.needs != kTemperature) continue;
+    if (!p.is_bar && NeedsBar(unknown.needs)) continue;
     double& one = unknown.in(errors);
     const double at = one;
     one = at + unknown.step;
@@ -126,9 +151,8 @@ Equations EquationsAt(const std::vector<CirclePoint>& points, const CircleFit& f
   for (std::size_t i = 0; i < points.size(); ++i) {
     const CirclePoint& p = points[i];
     const Index row = 2 * static_cast<Index>(i);
-    const Eigen::Vector2d weight(1.0 / p.u_radial_m, 1.0 / p.u_tangential_m);
-    const Eigen::Vector2d shown_m = Shown_m(p, fit.errors, fit.MountingOf(p.setup), known);
-    left.segment<2>(row) = weight.cwiseProduct(Eigen::Vector2d(p.radial_m, p.tangential_m) - shown_m);
+    const Eigen::Vector2d weight = p.Weights(), shown_m = Shown_m(p, fit.errors, fit.MountingOf(p.setup), known);
+    left.segment<2>(row) = weight.cwiseProduct(p.Values_m() - shown_m);
     of_machine.segment<2>(row) = p.of_machine;
     of_steps.segment<2>(row) = p.of_steps;
     slope.middleRows<2>(row) = weight.asDiagonal() * SlopeOfShown(p, fit, known);
@@ -183,18 +207,19 @@ void NameHidden(const MatrixXd& hidden, CircleFit& fit) {
 
 void SetResiduals(const std::vector<CirclePoint>& points, const CircleConstants& known, CircleFit& fit) {
   double bar = 0.0, encoder = 0.0, grid = 0.0;
-  int of_bar = 0, of_grid = 0;
+  int of_bar = 0, of_encoder = 0, of_grid = 0;
   for (const CirclePoint& p : points) {
-    const Eigen::Vector2d left_m =
-        Eigen::Vector2d(p.radial_m, p.tangential_m) - Shown_m(p, fit.errors, fit.MountingOf(p.setup), known);
+    const Eigen::Vector2d left_m = p.Values_m() - Shown_m(p, fit.errors, fit.MountingOf(p.setup), known);
     ++(p.is_bar ? of_bar : of_grid);
     if (!p.is_bar) grid += 0.5 * left_m.squaredNorm();
     if (!p.is_bar) continue;
     bar += left_m.x() * left_m.x();
+    if (!p.has_angle) continue;
+    ++of_encoder;
     encoder += std::pow(left_m.y() / p.radius_m, 2);
   }
   if (of_bar > 0) fit.rms_bar_m = std::sqrt(bar / of_bar);
-  if (of_bar > 0) fit.rms_encoder_rad = std::sqrt(encoder / of_bar);
+  if (of_encoder > 0) fit.rms_encoder_rad = std::sqrt(encoder / of_encoder);
   if (of_grid > 0) fit.rms_grid_m = std::sqrt(grid / of_grid);
 }
 
@@ -231,12 +256,12 @@ Eigen::Matrix2Xd SlopeOfDeviation(const CirclePoint& p, const CircleFit& fit, co
 
 CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstants& known) {
   constexpr int kRounds = 6, kSetupsFirst = 2;
-  if (points.empty()) throw InputError("readings", "none has radius and angle", "readings of a bar or a grid");
-  CircleFit fit = Begin(points);
+  if (points.empty()) throw InputError("readings", "none has a radius", "readings of a bar or a grid");
+  CircleFit fit = Begin(points, known);
   const Index unknowns = UnknownsOf(fit);
-  if (2 * std::ssize(points) <= unknowns)
-    throw InputError("readings", fmt::format("{} values for {} unknowns", 2 * points.size(), unknowns),
-                     "more readings with radius and angle");
+  const Index values = std::ssize(points) + std::ranges::count(points, true, &CirclePoint::has_angle);
+  if (values <= unknowns)
+    throw InputError("readings", fmt::format("{} values for {} unknowns", values, unknowns), "more readings of the circle");
   Solved solved;
   Equations equations;
   for (int k = 0; k <= kRounds; ++k) {
@@ -244,7 +269,7 @@ CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstan
     solved = Solve(equations);
     if (k < kRounds) Add((solved.inverse * equations.right).cwiseQuotient(equations.scale), fit);
   }
-  fit.dof = 2 * std::ssize(points) - unknowns + solved.hidden.cols() + equations.empty;
+  fit.dof = values - unknowns + solved.hidden.cols() + equations.empty;
   fit.chi = std::sqrt(equations.chi2 / static_cast<double>(fit.dof));
   const MatrixXd unscale = equations.scale.cwiseInverse().asDiagonal();
   const double widening = std::pow(std::max(1.0, fit.chi), 2);

@@ -4,7 +4,8 @@
 
 #include "twin/benches/circular_motion/estimators/circle_model.h"
 
-/// The vector form: every unknown of machine, instruments and set-ups in one least-squares fit of radius and angle.
+/// The vector form: every unknown of machine, instruments and set-ups in one least-squares fit of radius and angle, or of the
+/// radius alone where a bar without an encoder measured.
 namespace twinbench::separate::circular {
 
 /// A variance, and what of it the instruments' quanta make, and what does not repeat: the machine's stated noise, and whatever is left over beyond all
@@ -15,6 +16,7 @@ struct PartedVariance {
   PartedVariance operator+(const PartedVariance& other) const {
     return {all + other.all, of_steps + other.of_steps, of_machine + other.of_machine};
   }
+  PartedVariance operator*(double factor) const { return {factor * all, factor * of_steps, factor * of_machine}; }
 };
 
 /// What results share: the unknowns behind them.

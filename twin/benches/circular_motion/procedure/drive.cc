@@ -36,8 +36,8 @@ std::vector<Pass> PassesOf(const std::vector<Reading>& plan) {
 }
 
 std::string InWords(const CircularSetup& setup) {
-  return fmt::format("{}, radius {:.6g} mm", setup.IsBar() ? "ball bar with its encoder" : "grid plate",
-                     setup.radius_m / units::mm);
+  const char* const bar = setup.ShowsAngle() ? "ball bar with its encoder" : "ball bar";
+  return fmt::format("{}, radius {:.6g} mm", setup.IsBar() ? bar : "grid plate", setup.radius_m / units::mm);
 }
 
 /// The counter goes on from pass to pass; readings are told in the turn of the commanded angle.

@@ -46,7 +46,7 @@ std::vector<CircleExtra> MountedOf(const Scenario& scenario) {
     m.offset_x_m = draw(s.mounting.offset_m);
     m.offset_y_m = draw(s.mounting.offset_m);
     m.rotation_rad = draw(setup.IsBar() ? s.mounting.zero_rad : s.mounting.grid_rotation_rad);
-    m.length_m = draw(s.mounting.length_m);
+    m.length_m = draw(setup.ShowsAngle() ? s.mounting.length_m : 0.0);
   }
   return mounted;
 }
@@ -56,11 +56,11 @@ double Quantised(double value, double step) {
 }
 
 /// What the instrument shows of a deviation.
-void Show(const Deviation& shown, bool is_bar, Reading& r) {
+void Show(const Deviation& shown, const CircularSetup& setup, Reading& r) {
   const double radius_m = Radius_m(r), c = std::cos(r.target_rad), s = std::sin(r.target_rad);
-  if (is_bar) {
+  if (setup.IsBar()) {
     kBar_m(r) = shown.radial_m;
-    kEncoder_rad(r) = r.target_rad + shown.tangential_m / radius_m;
+    if (setup.ShowsAngle()) kEncoder_rad(r) = r.target_rad + shown.tangential_m / radius_m;
     return;
   }
   kGridX_m(r) = kCommandedX_m(r) + c * shown.radial_m - s * shown.tangential_m;
@@ -80,8 +80,8 @@ CircleRun::CircleRun(const Scenario& scenario)
   }
 }
 
-bool CircleRun::IsBar(const Reading& r) const {
-  return CircularOf(scenario_).procedure.setups[static_cast<std::size_t>(r.setup)].IsBar();
+const CircularSetup& CircleRun::SetupOf(const Reading& r) const {
+  return CircularOf(scenario_).procedure.setups[static_cast<std::size_t>(r.setup)];
 }
 
 /// The mounting, and chance where there is any.
@@ -91,7 +91,7 @@ CircleExtra CircleRun::Chance(const Reading& r) const {
   const CircularSettings& s = CircularOf(scenario_);
   Stream stream(scenario_.RunSeed(), "circular.noise");
   stream.Seek(2 * static_cast<std::uint64_t>(r.reading));  // a block has two normal numbers
-  const bool is_bar = IsBar(r);
+  const bool is_bar = SetupOf(r).IsBar();
   extra.x_m = s.machine.noise_m * stream.Normal();
   extra.y_m = s.machine.noise_m * stream.Normal();
   extra.radial_m = (is_bar ? s.bar.noise_m : s.grid.noise_m) * stream.Normal();
@@ -104,7 +104,7 @@ CircleExtra CircleRun::Chance(const Reading& r) const {
 }
 
 Deviation CircleRun::Digitised(const Reading& r, Deviation shown) const {
-  if (scenario_.noise_free || !IsBar(r)) return shown;
+  if (scenario_.noise_free || !SetupOf(r).IsBar()) return shown;
   const CircularSettings& s = CircularOf(scenario_);
   const double step_rad = units::turn / s.encoder.lines / s.encoder.interpolation;
   const double angle_rad = r.target_rad + shown.tangential_m / Radius_m(r);
@@ -115,7 +115,7 @@ Deviation CircleRun::Digitised(const Reading& r, Deviation shown) const {
 
 Reading CircleRun::Shown(const Reading& r, const CircleTwin& twin, std::size_t at) const {
   Reading shown = r;
-  Show(Digitised(r, twin.At(at, Chance(r))), IsBar(r), shown);
+  Show(Digitised(r, twin.At(at, Chance(r))), SetupOf(r), shown);
   return shown;
 }
 
@@ -167,7 +167,7 @@ nlohmann::json SetupJson(int number, const CircularSetup& setup, const CircularS
                          {"offset_x_um", (offset_m[0] + m.offset_x_m) / um},
                          {"offset_y_um", (offset_m[1] + m.offset_y_m) / um}};
   if (is_bar) {
-    json["encoder_zero_deg"] = (s.encoder.zero_rad + m.rotation_rad) / units::deg;
+    if (setup.ShowsAngle()) json["encoder_zero_deg"] = (s.encoder.zero_rad + m.rotation_rad) / units::deg;
     json["length_error_um"] = (s.bar.length_error_m + m.length_m) / um;
   } else {
     json["rotation_arcsec"] = (s.grid.rotation_rad + m.rotation_rad) / units::arcsec;

@@ -30,7 +30,7 @@ class CircleRun {
   nlohmann::json Truth() const;
 
  private:
-  bool IsBar(const Reading& r) const;
+  const CircularSetup& SetupOf(const Reading& r) const;
   CircleExtra Chance(const Reading& r) const;
   Reading Shown(const Reading& r, const CircleTwin& twin, std::size_t at) const;
   benches::circular::Deviation Digitised(const Reading& r, benches::circular::Deviation shown) const;

@@ -1,0 +1,195 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/thresholds.h"
+#include "twin/benches/circular_motion/analysis.h"
+#include "twin/benches/circular_motion/bench.h"
+#include "twin/benches/circular_motion/columns.h"
+#include "twin/core/stream.h"
+
+// A bar without an encoder. Its readings are written here from what each error does to the path.
+namespace twinbench::benches::circular {
+namespace {
+
+using namespace separate::circular;
+using units::deg, units::mm, units::um, units::arcsec;
+
+constexpr double kRadius_m = 150.0 * mm;
+
+struct Machine {
+  double squareness_rad = 0.0, scale_x = 0.0, scale_y = 0.0, backlash_x_m = 0.0;
+  double centre_x_m = 0.0, centre_y_m = 0.0;
+};
+
+/// The spindle's distance from ball 1, which stands off the commanded centre, less the radius. The angle from +X to +Y is 90 deg +
+/// squareness; X stays half its backlash behind the way it goes, but for the stretch in which that is taken up.
+double Radial_m(const Machine& m, double a, int direction) {
+  const double x_m = kRadius_m * std::cos(a), y_m = kRadius_m * std::sin(a);
+  // X turns round at 0 and at 180 deg; since then it has come R (1 - |cos a|).
+  const double sense = y_m * direction > 0.0 ? -1.0 : 1.0;
+  const double along_rad = std::remainder(direction * a, units::kPi);
+  const double since_m = kRadius_m * (1.0 - std::cos(along_rad >= 0.0 ? along_rad : along_rad + units::kPi));
+  const double behind_m = sense * (0.5 * m.backlash_x_m - std::min(since_m, m.backlash_x_m));
+  return std::hypot(m.centre_x_m + x_m * (1.0 + m.scale_x) - m.squareness_rad * y_m + behind_m,
+                    m.centre_y_m + y_m * (1.0 + m.scale_y)) -
+         kRadius_m;
+}
+
+/// One circle each way, of the angles of `from_deg` and on.
+std::vector<Reading> Readings(const Machine& m, double noise_m = 0.0, double arc_deg = 360.0) {
+  Stream stream(5, "bar");
+  std::vector<Reading> readings;
+  for (const int direction : {1, -1}) {
+    for (double at_deg = 0.25; at_deg < arc_deg; at_deg += 1.0) {
+      Reading& r = readings.emplace_back();
+      r.reading = static_cast<int>(readings.size()) - 1;
+      r.time = Time(FromSeconds(0.15 * r.reading));
+      r.pass = direction > 0 ? 0 : 1;
+      r.direction = direction;
+      r.position = static_cast<int>(at_deg);
+      const double a = (direction > 0 ? at_deg : arc_deg - at_deg) * deg;
+      kCommandedX_m(r) = kRadius_m * std::cos(a);
+      kCommandedY_m(r) = kRadius_m * std::sin(a);
+      kFeed_m_s(r) = 1000.0 * mm / 60.0;
+      kBar_m(r) = Radial_m(m, a, direction) + noise_m * stream.Normal();
+    }
+  }
+  return readings;
+}
+
+Scenario Usual(const std::vector<std::string>& set = {}) {
+  return ParseScenario("bench = \"circular_motion\"\n[machine]\nlag_x_s = 0.0\nlag_y_s = 0.0\n[circular_procedure]\n"
+                       "setups = [{instrument = \"radial_bar\", radius_mm = 150.0}]\n",
+                       "usual", ".", set);
+}
+
+ErrorValue Found(const CircleAnalysis& a, const std::string& key) {
+  for (const ErrorValue& e : ErrorsOf(a.fit)) {
+    if (e.key == key) return e;
+  }
+  return {};
+}
+
+TEST(RadialBar, ShowsTheErrorsOfTheMachineThatItsReadingsWereMadeWith) {
+  const Machine machine{6.0 * arcsec, 20e-6, -10e-6, 5.0 * um, 12.0 * um, -7.0 * um};
+  const CircleAnalysis a = Analyse(Usual(), Readings(machine), Estimator::kRigorous);
+  // Without noise; products of errors are neglected, 1e-4 of each.
+  EXPECT_NEAR(Found(a, "machine.squareness_arcsec").value, 6.0, 1e-3);
+  EXPECT_NEAR(Found(a, "machine.scale_mismatch_um_m").value, 30.0, 0.02);
+  EXPECT_NEAR(Found(a, "machine.backlash_x_um").value, 5.0, 0.01);
+  EXPECT_NEAR(Found(a, "machine.backlash_y_um").value, 0.0, 0.01);
+  EXPECT_NEAR(a.fit.mountings[0].offset_m[0] / um, 12.0, 0.02);
+  EXPECT_NEAR(a.fit.mountings[0].offset_m[1] / um, -7.0, 0.02);
+  for (const char* key : {"machine.scale_x_um_m", "machine.lag_x_s", "encoder.eccentricity_arcsec", "bar.gain_error"})
+    EXPECT_TRUE(Found(a, key).key.empty()) << key << " is not to be seen by a radius";
+}
+
+TEST(RadialBar, OfSquarenessAloneHasTheCircularDeviationsOfAnEllipse) {
+  const double s = 10.0 * arcsec;
+  for (const double centre_um : {0.0, 80.0}) {
+    const CircleAnalysis a =
+        Analyse(Usual(), Readings({s, 0.0, 0.0, 0.0, centre_um * um, 0.0}), Estimator::kRigorous);
+    ASSERT_EQ(a.deviations.size(), 1U);
+    const Iso230_4& d = a.deviations[0];
+    // Along the radius squareness is -s R / 2 sin 2a: half axes R +- s R / 2. Of the angles none is that of an extreme, which
+    // lowers them by 2 (0.25 deg)^2; s and the centre over the radius are neglected beside 1.
+    const double half_um = 0.5 * s * kRadius_m / um;
+    const double off_um = half_um * (2.0 * std::pow(0.25 * deg, 2) + s + 2.0 * centre_um * um / kRadius_m);
+    EXPECT_NEAR(d.G_b.value_m / um, 2.0 * half_um, 2.0 * off_um);
+    EXPECT_NEAR(d.G_mz_b.value_m / um, 2.0 * half_um, 2.0 * off_um) << "by symmetry its centre is the same";
+    EXPECT_NEAR(d.Fmax_b.value_m / um, half_um, off_um);
+    EXPECT_NEAR(d.Fmin_b.value_m / um, -half_um, off_um);
+    EXPECT_NEAR(d.D.value_m / um, 0.0, 1e-3);
+    EXPECT_NEAR(d.H.value_m / um, 0.0, 1e-3);
+  }
+}
+
+TEST(RadialBar, OnAPartialArcIsEvaluatedAboutTheCentreOfThatArc) {
+  const Machine machine{6.0 * arcsec, 0.0, 0.0, 0.0, 30.0 * um, -20.0 * um};
+  const CircleAnalysis a = Analyse(Usual(), Readings(machine, 0.0, 230.0), Estimator::kRigorous);
+  EXPECT_NEAR(Found(a, "machine.squareness_arcsec").value, 6.0, 1e-3);
+  EXPECT_NEAR(a.fit.mountings[0].offset_m[0] / um, 30.0, 0.03);
+  const double range_m = a.deviations[0].Fmax_b.value_m - a.deviations[0].Fmin_b.value_m;
+  EXPECT_NEAR(range_m, a.deviations[0].G_b.value_m, 1e-12);
+}
+
+TEST(RadialBar, KeepsTheBallsFormAndTheGainThatTheScenarioStates) {
+  std::vector<Reading> readings = Readings({6.0 * arcsec});
+  for (Reading& r : readings) {
+    const double a = std::atan2(kCommandedY_m(r), kCommandedX_m(r));
+    kBar_m(r) = 1.02 * (kBar_m(r) + 0.5 * um * std::cos(2.0 * (a - 20.0 * deg)));
+  }
+  const Scenario scenario = Usual({"bar.gain_error=0.02", "bar.ball2_um=0.5", "bar.ball2_azimuth_deg=20"});
+  const CircleAnalysis a = Analyse(scenario, readings, Estimator::kRigorous);
+  EXPECT_NEAR(Found(a, "machine.squareness_arcsec").value, 6.0, 1e-3);
+  EXPECT_NEAR(Found(a, "machine.scale_mismatch_um_m").value, 0.0, 0.02);
+}
+
+TEST(RadialBar, StatesUncertaintiesThatMatchItsErrors) {
+  const Machine machine{6.0 * arcsec, 0.0, 0.0, 5.0 * um};
+  const double noise_m = StatedNoiseOf(CircularOf(Usual()), true, kRadius_m).radial_m;
+  const CircleAnalysis a = Analyse(Usual(), Readings(machine, noise_m), Estimator::kRigorous);
+  // 720 values less some 15 unknowns: chi scatters by 1 / sqrt(2 * 705) = 0.027.
+  EXPECT_NEAR(a.fit.chi, 1.0, 0.1);
+  for (const auto& [key, value] : {std::pair{"machine.squareness_arcsec", 6.0}, {"machine.backlash_x_um", 5.0}, {"machine.servo_mismatch_s", 0.0}})
+    EXPECT_NEAR(Found(a, key).value, value, 4.0 * Found(a, key).u) << key;
+}
+
+/// A path of radial deviations alone.
+CirclePath PathOf(int direction, double first_deg, const std::function<double(double)>& radial_m) {
+  CirclePath path{0, direction > 0 ? 0 : 1, direction, true, kRadius_m, 0.01, {}, false};
+  for (int k = 0; k < 360; ++k) {
+    PathPoint& point = path.points.emplace_back();
+    point.commanded_rad = (first_deg + k) * deg;
+    point.d_m = radial_m(point.commanded_rad) * Eigen::Vector2d(std::cos(point.commanded_rad), std::sin(point.commanded_rad));
+  }
+  return path;
+}
+
+TEST(CircularDeviations, HaveTheHysteresisBetweenReadingsAtOtherAngles) {
+  const auto wave = [](double a) { return 3.0 * um * std::cos(3.0 * a); };
+  const auto above = [&](double a) { return wave(a) + 1.5 * um; };
+  const Iso230_4 d = CircularDeviations({PathOf(1, 0.0, wave), PathOf(-1, 0.37, above)}, {})[0];
+  // A chord of 1 deg leaves the wave by (3 deg)^2 / 8 of it at most.
+  EXPECT_NEAR(d.H.value_m / um, 1.5, 3.0 * std::pow(3.0 * deg, 2) / 8.0);
+}
+
+TEST(CircularDeviations, OfTheMinimumZoneAreThoseOfTheBestCentreOfAll) {
+  const auto pear = [](double a) { return um * (std::cos(2.0 * a) + 0.8 * std::cos(3.0 * a + 0.4) + 2.0 * std::exp(-8.0 * std::pow(std::sin(0.5 * a - 0.3), 2))); };
+  const CirclePath path = PathOf(1, 0.0, pear);
+  double best_um = 1e9;  // by looking everywhere, every 0.01 um
+  for (double x = -1.0; x <= 1.0; x += 0.01) {
+    for (double y = -1.0; y <= 1.0; y += 0.01) {
+      double low = 1e9, high = -1e9;
+      for (const PathPoint& p : path.points) {
+        const double r = p.Radial_m() / um - x * std::cos(p.commanded_rad) - y * std::sin(p.commanded_rad);
+        low = std::min(low, r);
+        high = std::max(high, r);
+      }
+      best_um = std::min(best_um, high - low);
+    }
+  }
+  const Iso230_4 d = CircularDeviations({path}, {})[0];
+  EXPECT_NEAR(d.G_mz_ccw.value_m / um, best_um, 0.02);
+  EXPECT_GT(d.G_ccw.value_m, d.G_mz_ccw.value_m + 0.01 * um);
+  EXPECT_TRUE(std::isnan(d.G_b.value_m)) << "one direction is missing";
+}
+
+TEST(RadialBar, IsDiagnosedByItsRadiusAlone) {
+  diagnose::DiagnoseOptions options;
+  options.null_runs = 200;
+  options.cache_folder = test::ThresholdsFolder();
+  const double noise_m = StatedNoiseOf(CircularOf(Usual()), true, kRadius_m).radial_m;
+  const diagnose::DiagnosisRun of_none = Diagnose(Readings({}, noise_m), Usual(), options);
+  EXPECT_EQ(of_none.diagnosis.verdict, diagnose::Verdict::kNone);
+  EXPECT_THAT(of_none.run.channels, testing::ElementsAre("radial"));
+  const diagnose::Diagnosis d = Diagnose(Readings({3.0 * arcsec}, noise_m), Usual(), options).diagnosis;
+  ASSERT_FALSE(d.causes.empty());
+  EXPECT_EQ(d.causes[0].effect, "squareness");
+  EXPECT_NEAR(d.causes[0].parameters[0].value / arcsec, 3.0, 4.0 * d.causes[0].parameters[0].u / arcsec);
+}
+
+}  // namespace
+}  // namespace twinbench::benches::circular
