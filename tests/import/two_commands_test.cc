@@ -102,6 +102,25 @@ TEST_F(TwoCommands, TakeTwoColumnsToTheOffCentreScale) {
   EXPECT_THAT(story_, HasSubstr("unwrapped"));
 }
 
+/// scenarios/samples/ball_bar.py says what it hid.
+TEST_F(TwoCommands, TakeABallBarToTheErrorsOfTheMachine) {
+  const std::set<std::string> named = Named("bar.csv", Contents(std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/samples/ball_bar.csv"), {});
+  EXPECT_THAT(named, testing::IsSupersetOf({"squareness", "backlash", "scale"}));
+  EXPECT_NEAR(Parameter("squareness", "angle"), 8.25, 0.15);
+  EXPECT_NEAR(Parameter("backlash", "width"), 4.0, 0.1);
+  const nlohmann::json results = nlohmann::json::parse(Read("run/results.json"));
+  const nlohmann::json& errors = results.at("errors");
+  EXPECT_NEAR(errors.at("machine.squareness_arcsec").at("value").get<double>(), 8.25, 0.1);
+  EXPECT_NEAR(errors.at("machine.scale_mismatch_um_m").at("value").get<double>(), 17.0, 1.0);
+  EXPECT_FALSE(errors.contains("machine.scale_x_um_m")) << "a radius does not show it";
+  // Squareness s alone makes an ellipse of half axes R +- s R / 2, backlash alone lowers one half of each circle by half of it and
+  // raises the other.
+  std::map<std::string, double> alone_um;
+  for (const auto& ranked : results.at("ranked")) alone_um[ranked.at("error")] = ranked.at("share_um");
+  EXPECT_NEAR(alone_um["squareness"], 4.0, 0.05);
+  EXPECT_NEAR(alone_um["backlash x"], 4.0, 0.1);
+}
+
 TEST_F(TwoCommands, LookBeforeAnythingIsWritten) {
   Write("hal.txt", HalSamples(DriveAxis({.turns = 0.1}, LostMotion)));
   const std::string text = Succeed({"import", "hal.txt", "--look", "--map", "halsampler"});

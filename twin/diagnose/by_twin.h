@@ -28,6 +28,7 @@ struct TwinComparison {
     std::string harmonics = "harmonic";   // sort of its whole orders
     int first_unfree = 1;                 // the first whole order that no constant of the run takes up
     bool is_turned_by_motion = true;      // false: direction and speed are of another angle
+    int lowest_order = 1;  // of waves without a name; those below are causes of the catalogue, together, whatever their phase
   };
 
   /// A point whose value at each reading is a sum of stated courses times constants that all set-ups share: an

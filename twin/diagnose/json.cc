@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/shown.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -68,6 +71,45 @@ json ArrayOf(const List& list) {
   return out;
 }
 
+/// Peak to valley of what a term shows along the radius of a circle, about the centre of each mounting: what it adds to G(b) by
+/// itself. NaN on a bench that has no radii.
+double ShareOfG_m(const DiagnosisRun& found, const Accepted& term) {
+  const LinearRun& run = found.run;
+  if (run.channels.front() != "radial") return kNaN;
+  const auto radii = Eigen::seq(0, Eigen::last, run.Channels());
+  const Eigen::VectorXd shown = (term.columns * term.amplitudes)(radii);
+  const Eigen::MatrixXd free = Eigen::MatrixXd(run.nuisance.jacobian)(radii, Eigen::all);
+  const Eigen::VectorXd about = shown - free * SolveLeastSquares(free, shown);
+  double largest_m = 0.0;
+  for (const int setup : std::set<int>(run.schedule.setup.begin(), run.schedule.setup.end())) {
+    double low_m = kNaN, high_m = kNaN;
+    for (Eigen::Index i = 0; i < about.size(); ++i) {
+      if (run.schedule.setup[static_cast<std::size_t>(i)] != setup) continue;
+      low_m = std::fmin(low_m, about[i]);
+      high_m = std::fmax(high_m, about[i]);
+    }
+    largest_m = std::max(largest_m, high_m - low_m);
+  }
+  return largest_m;
+}
+
+/// What each cause explains, and of circles what it adds to G(b); of a tie what its fitted member does.
+json CausesJson(const DiagnosisRun& found) {
+  json causes = ArrayOf(found.diagnosis.causes);
+  if (found.run.Rows() == 0 || found.accepted.empty()) return causes;
+  const std::vector<double> share = ShownBy(found).share;
+  for (std::size_t k = 0; k < causes.size(); ++k) {
+    if (std::isfinite(share[k])) causes[k]["share"] = share[k];
+    for (const Accepted& term : found.accepted) {
+      const double G_m = term.family.effect == found.diagnosis.causes[k].effect && term.family.where == found.diagnosis.causes[k].where
+                             ? ShareOfG_m(found, term)
+                             : kNaN;
+      if (std::isfinite(G_m)) causes[k]["share_um"] = G_m / units::um;
+    }
+  }
+  return causes;
+}
+
 /// Metres on the PSD that one radian of the grating's yaw makes, at most; 1 on a bench that reads angles, NaN on
 /// one that reads neither.
 double ShownByYaw(const LinearRun& run) {
@@ -115,7 +157,7 @@ json ToJson(const DiagnosisRun& run, const std::string& extended_scenario) {
   const Diagnosis& d = run.diagnosis;
   return {{"verdict", VerdictName(d.verdict)},
           {"alarm_p", Number(d.alarm_p)},
-          {"causes", ArrayOf(d.causes)},
+          {"causes", CausesJson(run)},
           {"unknown", {{"probability", Number(d.unknown.probability)}, {"signature", d.unknown.signature}}},
           {"gain", GainJson(d.gain, run.run)},
           {"invisible", ArrayOf(d.invisible)},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/candidates.h"
@@ -26,6 +27,16 @@ Eigen::ArrayXd Along(const std::vector<Reading>& readings, const std::function<d
   return at;
 }
 
+/// Fewer readings of a mounting before a step, or behind it, are readings that are far off and no place where it stays.
+bool IsAtAnEnd(const std::vector<Reading>& readings, double onset) {
+  constexpr int kFewest = 4;
+  const auto first = std::ranges::lower_bound(readings, onset, {}, &Reading::reading);
+  if (first == readings.end()) return true;
+  const auto before = std::count_if(readings.begin(), first, [&](const Reading& r) { return r.setup == first->setup; });
+  const auto behind = std::count_if(first, readings.end(), [&](const Reading& r) { return r.setup == first->setup; });
+  return before < kFewest || behind < kFewest;
+}
+
 }  // namespace
 
 TwinComparison::Product WaveAlong(const std::string& effect, const std::string& where, const std::string& point,
@@ -43,7 +54,9 @@ TwinComparison::Product WaveAlong(const std::string& effect, const std::string& 
 
 TwinComparison::Product SlipAt(const std::string& where, const std::string& point) {
   const auto onsets = [](const std::vector<Reading>& readings) {
-    return OnsetsOf(model::CourseOf(readings)).at_reading;
+    std::vector<double> at_reading = OnsetsOf(model::CourseOf(readings)).at_reading;
+    std::erase_if(at_reading, [&readings](double onset) { return IsAtAnEnd(readings, onset); });
+    return at_reading;
   };
   const auto step = [](const std::vector<Reading>& readings, double at_reading) {
     return Eigen::MatrixXd(model::Step(model::CourseOf(readings).reading, at_reading));

@@ -11,7 +11,7 @@ TwinComparison::Product WaveAlong(const std::string& effect, const std::string& 
                                   const std::string& period, std::function<double(const Reading&)> along,
                                   double shortest, double longest);
 
-/// "step" at a point from "at_reading" on; the first reading of a set-up is none, its constants are free.
+/// "step" at a point from "at_reading" on, with a few readings of its set-up before and behind it.
 TwinComparison::Product SlipAt(const std::string& where, const std::string& point);
 
 /// 0, and from shorter than a room needs to longer than a machine does.

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "twin/core/bench_format.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/at.h"
 #include "twin/diagnose/bins.h"
@@ -90,11 +91,12 @@ Eigen::VectorXd InOneTurn(const Eigen::VectorXd& x_deg) {
   return InTurn_deg(x_deg);
 }
 
-/// What the angles of the course are told in: those of a linear axis, which is its one channel too, as lengths.
+/// What the angles of the course are told in: those of a linear axis, which is compared with its one channel, as lengths.
 ChannelUnit UnitAlong(const LinearRun& run) {
   const ChannelUnit shown = run.UnitOf(0);
   const bool is_angle = shown.name == "deg" || shown.name == "arcsec";
-  return run.Channels() == 1 && !is_angle ? shown : ChannelUnit{"deg", units::deg};
+  const BenchFormat* const bench = FindFormat(run.bench);
+  return bench && bench->compared && run.Channels() == 1 && !is_angle ? shown : ChannelUnit{"deg", units::deg};
 }
 
 /// Where each reading stood: the first angle of the course that is there, else its number.

@@ -51,6 +51,10 @@ int LastOrder(const Compared& c, const Eigen::VectorXd& angle_rad) {
   return last;
 }
 
+bool NamesLowOrders(const TwinComparison& comparison) {
+  return !comparison.angles.empty() && comparison.angles.front().lowest_order > 1;
+}
+
 unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, const TimeSeries& series) {
   constexpr double kPlausibleShare = 0.01;
   const LinearRun& run = c.run;
@@ -64,8 +68,8 @@ unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, co
     const Eigen::VectorXd rad = OfReadings(c.used, known.rad);
     if (!rad.allFinite()) continue;
     design.angles.push_back({known.words.empty() ? known.name + " angle" : known.words, rad, LastOrder(c, rad),
-                             known.first_unfree, known.harmonics, known.name,
-                             known.is_turned_by_motion && design.angles.empty()});
+                             std::max(known.first_unfree, known.lowest_order), known.harmonics, known.name,
+                             known.is_turned_by_motion && design.angles.empty(), known.lowest_order});
   }
   if (!design.angles.empty()) design.continued_rad = design.angles.front().rad;
   design.moved = Eigen::VectorXd::Ones(readings.Readings());
@@ -77,7 +81,8 @@ unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, co
     design.above_K = T_degC.array() - T_degC.mean();
   }
   design.series = series;
-  if (!comparison.shows_errors) {
+  // Where low orders have names, what goes with the reading as a whole does so for their sake.
+  if (!comparison.shows_errors && !NamesLowOrders(comparison)) {
     design.shown = run.Predicted().reshaped<Eigen::RowMajor>(run.schedule.Readings(), run.Channels());
     design.shown_name = "reading";
   }
@@ -221,7 +226,10 @@ TwinCandidates CandidatesOf(const Compared& compared, const std::vector<Reading>
     if (comparison.sizes_by_trace) SetSizesByTrace(c.run.Channels(), PlausibleOf(c.run, comparison), family);
     if (comparison.listed) family.listed = comparison.listed(family.effect, family.where);
   }
-  std::ranges::move(unknown::Families(DesignOf(c, comparison, series)), std::back_inserter(candidates.families));
+  std::vector<Family> shapes = unknown::Families(DesignOf(c, comparison, series));
+  // At one speed time goes as the angle does: a wander would take what low orders have names for.
+  if (NamesLowOrders(comparison)) std::erase_if(shapes, [](const Family& family) { return family.goes_by_time; });
+  std::ranges::move(shapes, std::back_inserter(candidates.families));
   AddAtPoints(c, comparison, candidates.families);
   return candidates;
 }

@@ -63,8 +63,10 @@ std::set<std::string> WordsOf(const std::string& name) {
   return words;
 }
 
-/// Words of scripts without blanks between them stand anywhere in a name.
+/// Words of scripts without blanks between them stand anywhere in a name; of several words all have to be there.
 bool Has(const std::set<std::string>& own, const std::string& name, const std::string& word) {
+  if (const std::size_t blank = word.find(' '); blank != std::string::npos)
+    return own.contains(word.substr(0, blank)) && Has(own, name, word.substr(blank + 1));
   const bool is_foreign = static_cast<unsigned char>(word[0]) >= 0xE0;
   return own.contains(word) || (is_foreign && name.find(word) != std::string::npos);
 }
@@ -78,11 +80,15 @@ bool HasAny(const std::string& name, const std::array<const char*, n>& words) {
 }  // namespace
 
 int Clearness(const std::string& name, Speaks of) {
+  return ClearnessBy(name, WordsFor(of));
+}
+
+int ClearnessBy(const std::string& name, const std::vector<std::string>& words) {
   const std::set<std::string> own = WordsOf(name);
-  const std::vector<std::string>& words = WordsFor(of);
+  const std::string small = SmallLetters(name);
   int clearest = 0, count = 0;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (!Has(own, name, words[i])) continue;
+    if (!Has(own, name, words[i]) && small != words[i]) continue;
     ++count;
     if (clearest == 0) clearest = static_cast<int>(words.size() - i);
   }
@@ -104,6 +110,31 @@ bool IsCalledDirection(const std::string& name) {
   return HasAny(name, std::array{"direction", "dir", "sense", "approach", "richtung", "side", "sens", "dirección"});
 }
 
+int TurnIn(const std::string& text) {
+  std::string small = SmallLetters(text);
+  const auto take = [&small](const auto& words) {
+    bool found = false;
+    for (const std::string_view word : words) {
+      for (std::size_t at = 0; (at = small.find(word, at)) != std::string::npos;) {
+        const auto is_letter = [&](std::size_t i) { return i < small.size() && (IsPartOfWord(small[i]) || std::isdigit(static_cast<unsigned char>(small[i]))); };
+        const bool whole = static_cast<unsigned char>(word[0]) >= 0x80 || (!(at > 0 && is_letter(at - 1)) && !is_letter(at + word.size()));
+        if (!whole) {
+          at += word.size();
+          continue;
+        }
+        small.replace(at, word.size(), " ");
+        found = true;
+      }
+    }
+    return found;
+  };
+  // The longer ones first: what is taken is not looked at again.
+  const bool counter = take(std::array<std::string_view, 14>{"counter-clockwise", "counter clockwise", "counterclockwise", "anti-clockwise", "anticlockwise", "ccw", "acw",
+                                  "gegen den uhrzeigersinn", "gegen uhrzeigersinn", "gegenuhrzeigersinn", "linkslauf", "g03", "g3", "逆时针"});
+  const bool clockwise = take(std::array<std::string_view, 8>{"clockwise", "cw", "im uhrzeigersinn", "uhrzeigersinn", "rechtslauf", "g02", "g2", "顺时针"});
+  return counter == clockwise ? 0 : counter ? 1 : -1;
+}
+
 int DirectionOfWord(std::string_view word) {
   const std::string small = SmallLetters(Trimmed(word));
   const auto is_one_of = [&small](const auto& words) { return std::ranges::find(words, small) != words.end(); };
@@ -113,7 +144,7 @@ int DirectionOfWord(std::string_view word) {
   if (is_one_of(std::array{"-", "−", "backward", "backwards", "bwd", "back", "down", "negative", "neg", "cw", "reverse", "rev",
                            "zurück", "rückwärts", "ab", "left", "links", "minus", "b", "r", "↓", "←", "decreasing"}))
     return -1;
-  return 0;
+  return TurnIn(small);
 }
 
 bool IsOtherQuantity(const Column& column) {

@@ -26,6 +26,13 @@ bool IsCalledDirection(const std::string& name);
 /// +1, -1, or 0 for a word that is no direction: "forward", "down", "cw", "+".
 int DirectionOfWord(std::string_view word);
 
+/// The way round that a text speaks of, seen against the axis: +1 counter-clockwise, -1 clockwise, 0 for none, or for both. "Run 2 CW",
+/// "gegen den Uhrzeigersinn", "G02".
+int TurnIn(const std::string& text);
+
+/// How clearly a name speaks of a quantity by these words, the clearest first; 0: not at all. Of "cmd x" it has to have both parts.
+int ClearnessBy(const std::string& name, const std::vector<std::string>& words);
+
 /// A speed, a current, a temperature by its name or unit: neither where the axis should stand nor where it does.
 bool IsOtherQuantity(const Column& column);
 

@@ -53,6 +53,7 @@ constexpr std::array kTwo =
                                {"/", [](double a, double b) { return a / b; }},
                                {"^", [](double a, double b) { return std::pow(a, b); }},
                                {"atan2", [](double a, double b) { return std::atan2(a, b); }},
+                               {"only", [](double a, double b) { return a <= b ? 0.0 : std::nan(""); }},
                                {"min", [](double a, double b) { return std::min(a, b); }},
                                {"max", [](double a, double b) { return std::max(a, b); }}});
 
@@ -63,7 +64,8 @@ auto Find(const Table& table, std::string_view name) {
 }
 
 std::size_t ArgumentsOf(std::string_view function) {
-  if (function == "before" || function == "turns" || function == "correction" || Find(kOne, function)) return 1;
+  constexpr std::array kOfColumns = std::to_array<std::string_view>({"before", "turns", "correction", "parts", "step", "sense", "whole", "middle", "span"});
+  if (std::ranges::count(kOfColumns, function) > 0 || Find(kOne, function)) return 1;
   return function == "is" || Find(kTwo, function) ? 2 : 0;
 }
 
@@ -214,6 +216,11 @@ class Evaluator {
     if (node.text == "before") return Before(node);
     if (node.text == "turns") return Turns(node);
     if (node.text == "correction") return Correction(node);
+    if (node.text == "parts") return Parts(node);
+    if (node.text == "step") return Step(node);
+    if (node.text == "sense") return Sense(node);
+    if (node.text == "middle" || node.text == "span") return OfEnds(node);
+    if (node.text == "whole") return Whole(node);
     std::vector<double> a = Of(*node.arguments[0]);
     if (const auto* one = Find(kOne, node.text)) {
       std::ranges::transform(a, a.begin(), one->function);
@@ -281,6 +288,52 @@ class Evaluator {
                        "--map lookup_table for a table of angles");
     for (double& value : x) value = of_16_bit ? (value - 32768.0) / 65536.0 : value / units::turn;
     return x;
+  }
+
+  std::vector<double> Parts(const Node& node) const {
+    const std::vector<double> x = Of(*node.arguments[0]);
+    std::vector<double> part(x.size(), 0.0);
+    for (std::size_t i = 1; i < x.size(); ++i) part[i] = part[i - 1] + (x[i] != x[i - 1] ? 1.0 : 0.0);
+    return part;
+  }
+
+  /// The first row has that of the second.
+  std::vector<double> Step(const Node& node) const {
+    const std::vector<double> x = Of(*node.arguments[0]);
+    std::vector<double> step(x.size(), 0.0);
+    for (std::size_t i = 1; i < x.size(); ++i) step[i] = x[i] - x[i - 1];
+    if (x.size() > 1) step[0] = step[1];
+    return step;
+  }
+
+  std::vector<double> OfEnds(const Node& node) const {
+    const std::vector<double> x = Of(*node.arguments[0]);
+    const auto [low, high] = std::ranges::minmax(x);
+    return {node.text == "middle" ? 0.5 * (low + high) : high - low};
+  }
+
+  /// Of the steps before and behind a row that one counts which is more like the others: the other one may be a way back.
+  std::vector<double> Sense(const Node& node) const {
+    constexpr double kTurn_deg = 360.0;
+    const std::vector<double> x = Of(*node.arguments[0]);
+    std::vector<double> steps, sizes;
+    for (std::size_t i = 1; i < x.size(); ++i) {
+      steps.push_back(std::remainder(x[i] - x[i - 1], kTurn_deg));
+      sizes.push_back(std::abs(steps.back()));
+    }
+    const double usual = MedianOf(sizes);
+    std::vector<double> sense(x.size(), 1.0);
+    for (std::size_t i = 0; i < x.size() && !steps.empty(); ++i) {
+      const double before = steps[i == 0 ? 0 : i - 1], behind = steps[std::min(i, steps.size() - 1)];
+      sense[i] = std::copysign(1.0, std::abs(std::abs(behind) - usual) < std::abs(std::abs(before) - usual) ? behind : before);
+    }
+    return sense;
+  }
+
+  std::vector<double> Whole(const Node& node) const {
+    const double middle = MedianOf(Of(*node.arguments[0]));
+    const double step = std::pow(10.0, std::floor(std::log10(std::abs(middle))) - 2.0);
+    return {middle == 0.0 ? 0.0 : step * std::round(middle / step)};
   }
 
   std::vector<double> Is(const Node& node) const {

@@ -20,6 +20,7 @@ class Gatherer {
 
   void Take(std::string_view field, bool decimal_comma);
   Kind kind() const { return kind_; }
+  std::size_t size() const { return values_.size(); }
   bool HasDate() const { return has_date_; }
   std::vector<double> TakeValues() { return std::move(values_); }
   std::vector<std::string> TakeWords() { return std::move(words_); }

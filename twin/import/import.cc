@@ -10,6 +10,7 @@
 #include "twin/import/guess.h"
 #include "twin/import/join.h"
 #include "twin/import/make_readings.h"
+#include "twin/import/sought.h"
 #include "twin/import/source.h"
 #include "twin/import/story.h"
 #include "twin/import/unnamed_clock.h"
@@ -42,12 +43,22 @@ std::string CostOf(const std::vector<LeftOut>& left_out) {
   return cost;
 }
 
-std::vector<Recording> ReadAll(const std::vector<std::string>& files, const Map& map) {
+/// Where nothing was said: the ready map of whose kind the files are by their columns.
+void TakeReadyMap(const std::vector<std::string>& files, Map& map) {
+  if (!map.name.empty() || !map.columns.empty() || !map.bench.empty()) return;
+  if (const auto ready = ReadyMapOf(BeginOfTable(files.front()))) map = *ready;
+}
+
+std::vector<Recording> ReadAll(const std::vector<std::string>& files, Map& map) {
+  const bool was_said = !map.name.empty();
+  TakeReadyMap(files, map);
   std::vector<Recording> recordings;
   Layout layout = map.file;
   layout.columns_are_open = map.columns.empty() && map.bench.empty();
   for (const std::string& file : files) {
     recordings.push_back(ReadRecording(file, layout, map.clock));
+    if (!was_said && !map.name.empty()) recordings.back().remarks.push_back(fmt::format("by its columns a {}: taken as --map {}", map.title, map.name));
+    TakeSought(map, recordings.back());
     TakeUnnamedClock(map, recordings.back());
   }
   return recordings;
@@ -110,15 +121,18 @@ Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
 }  // namespace
 
 Imported Import(const std::vector<std::string>& files, const Map& map) {
-  return MakeReadings(ReadAll(files, map), map);
+  Map taken = map;
+  const std::vector<Recording> recordings = ReadAll(files, taken);
+  return MakeReadings(recordings, taken);
 }
 
 Seen Look(const std::vector<std::string>& files, const Map& map) {
-  const std::vector<Recording> recordings = ReadAll(files, map);
+  Map taken = map;
+  const std::vector<Recording> recordings = ReadAll(files, taken);
   Seen seen;
   for (const Recording& recording : recordings) seen.text += Describe(recording);
   try {
-    seen.imported = MakeReadings(recordings, map);
+    seen.imported = MakeReadings(recordings, taken);
     seen.text += "\nIt would be imported like this:\n" + seen.imported->story;
   } catch (const InputError& needs) {
     for (const Recording& recording : recordings) seen.text += RemarksOn(recording);

@@ -98,6 +98,18 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
   Table average(keys, "average");
   average.Add("most_readings", kPure, {12, 1000000}, &map.average.most_readings,
               "longer recordings are averaged in blocks (5000 where two quantities are compared, else all rows are kept)");
+  top.Records(
+      "sought", map.sought,
+      [](Table& t, Sought& s) {
+        t.Text("name", &s.name, {}, "of a quantity, with its unit, as formulas have it");
+        t.Text("kind", &s.kind, {"value", "condition", "any", "turn"}, "changes from row to row | holds for many rows | either | a way round");
+        t.Add("words", kPure, {}, &s.words, "what it is called in columns and lines of text, the clearest first");
+        t.Add("otherwise", kPure, {}, &s.otherwise, "formulas where it is not found; the first whose names are known");
+        t.Text("note", &s.note, {}, "what is said then");
+      },
+      "quantities that are looked for by their names");
+  Table guess(keys, "guess");
+  guess.Add("by", kPure, {}, &map.guess_by, "lists of quantities sought, \"angle_deg, deviation_um\": a file with such columns is of this kind");
   Table scenario(keys, "scenario");
   scenario.Add("set", kPure, {}, &map.set, "keys of the scenario, as --set has them: \"device.teeth=144\"");
   Table columns_table(keys, "columns");
@@ -169,13 +181,40 @@ bool SetClock(const std::string& key, const std::string& column, Map& map) {
 
 }  // namespace
 
+namespace {
+
+/// "radius_mm=100": a quantity that this map seeks, or a ready one where none was said.
+bool SetSought(const std::string& key, const std::string& formula, Map& map) {
+  const auto unit = UnitAtEnd(key);
+  const auto seeks = [&](Sought& s) {
+    const auto own = UnitAtEnd(s.name);
+    const bool same = s.name == key || (unit && own && unit->dimension == own->dimension && BaseOf(s.name) == BaseOf(key));
+    if (!same) return false;
+    s.words.clear();
+    s.note.clear();
+    s.otherwise = {unit && own ? fmt::format("({}) * {:.17g}", formula, unit->to_SI / own->to_SI) : formula};
+    return true;
+  };
+  if (std::ranges::any_of(map.sought, seeks)) return true;
+  if (!map.name.empty() || !map.columns.empty()) return false;
+  for (const ReadyMap& ready : ReadyMaps()) {
+    Map other = ParseMap(ready.text, ready.name);
+    if (!std::ranges::any_of(other.sought, seeks)) continue;
+    map = std::move(other);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 void SetColumn(const std::string& assignment, Map& map) {
   const std::string where = "--column " + assignment;
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos)
     throw InputError(where, "there is no =", "QUANTITY=COLUMN, as in reference_deg=angle");
   const std::string key = assignment.substr(0, equals);
-  if (SetClock(key, assignment.substr(equals + 1), map)) return;
+  if (SetClock(key, assignment.substr(equals + 1), map) || SetSought(key, assignment.substr(equals + 1), map)) return;
   const ColumnKeys columns(map.bench.empty() ? BenchFormats() : std::vector{&FormatOf(map.bench)});
   const auto found =
       std::ranges::find_if(columns.entries, [&key](const MappedColumn& e) { return ColumnKeys::Key(e) == key; });

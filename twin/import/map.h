@@ -32,6 +32,15 @@ struct AverageSettings {
   int most_readings = 0;  // longer recordings are averaged in blocks; 0: 5000 where two quantities are compared, else none is
 };
 
+/// A quantity that formulas need and files give under many names: in a column, or in a line of text above its rows.
+struct Sought {
+  std::string name;                    // as formulas have it, with its unit: "angle_deg"
+  std::string kind = "value";          // value: another in most rows | condition: holds for many rows, also in a line | any | turn: a way round
+  std::vector<std::string> words;      // what it is called, in small letters, the clearest first
+  std::vector<std::string> otherwise;  // where it is not found: the first formula of which every name is known
+  std::string note;                    // what is said then; {}: the value
+};
+
 struct Map {
   std::string name;  // of the file or the ready map, for messages; empty: none was given
   std::string title;
@@ -41,7 +50,9 @@ struct Map {
   std::vector<MappedColumn> columns;
   CourseSettings course;
   AverageSettings average;
-  std::vector<std::string> set;  // keys of the scenario, as in --set
+  std::vector<Sought> sought;
+  std::vector<std::string> guess_by;  // lists of names that are sought: a file that has the columns of one is of this kind
+  std::vector<std::string> set;       // keys of the scenario, as in --set; {name}: what was found of a quantity that is sought
 };
 
 /// @param name_or_path  "" (nothing is said), the name of a ready map, or a TOML file.

@@ -19,6 +19,12 @@ struct Column {
   bool IsNumber() const { return words.empty(); }
 };
 
+/// A line of text between or above the rows.
+struct TextLine {
+  std::size_t row = 0;  // behind it
+  std::string text;
+};
+
 /// Columns that were read at the same instants.
 struct Track {
   std::string name;            // of the file, or of the part of it
@@ -28,6 +34,7 @@ struct Track {
   std::vector<double> time_s;  // one a row; without a clock the row's number
   std::vector<Column> columns;
   std::map<std::string, double> numbers;  // named in the text above the rows: "Pixel scale", "Dec"
+  std::vector<TextLine> lines;
 
   bool HasClock() const { return clock != "none"; }
   std::size_t Rows() const { return columns.empty() ? time_s.size() : columns.front().value.size(); }

@@ -105,6 +105,27 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
   return recording;
 }
 
+Recording BeginOfTable(const std::string& path) {
+  Recording recording;
+  recording.file = path;
+  const std::string text = LoadText(path);
+  const std::vector<std::string_view> lines = FirstLines(text);
+  std::string begin;
+  for (const std::string_view line : lines) begin += std::string(line) + "\n";
+  try {
+    if (FindKind(lines, false) == "records")
+      ReadRecords(text, {}, {}, recording);
+    else
+      ReadTable(begin, {}, {}, recording);
+  } catch (const InputError&) {
+    recording.tracks.clear();
+  }
+  for (Track& track : recording.tracks) {
+    for (Column& column : track.columns) WordsToDirections(column);
+  }
+  return recording;
+}
+
 std::string ClockText(const Track& track) {
   if (!track.HasClock()) return "no clock: rows in order";
   const std::vector<double> steps = StepsOf(track.time_s);

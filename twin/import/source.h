@@ -11,6 +11,10 @@ namespace twinbench::imports {
 /// @throws InputError with the file's name for what cannot be understood, and what to say in the map.
 Recording ReadRecording(const std::string& path, const Layout& layout, const ClockSettings& clock);
 
+/// The first rows of a table, or all records of JSON; of another file it has no tracks.
+/// @throws InputError if it is no text.
+Recording BeginOfTable(const std::string& path);
+
 /// Says what a text gives away itself: columns with units, clock, rate, gaps; a few lines.
 std::string Describe(const Recording& recording);
 

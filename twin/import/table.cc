@@ -38,6 +38,7 @@ class TableReader {
     heading_ = {};
     above_.clear();
     waiting_.clear();
+    waiting_lines_.clear();
     gatherers_.clear();
     open_ = layout_.section.empty();
     named_ = layout_.header.empty();
@@ -55,7 +56,7 @@ class TableReader {
     if (IsComment(line)) return TakeAside(line);
     Split(line, how_.separator, fields_);
     if (IsRow(fields_, how_) && (!heading_.found || fields_.size() > 1 || heading_.columns.size() == 1))
-      return TakeRow();
+      return TakeRow(line);
     TakeAside(line);
   }
 
@@ -70,31 +71,51 @@ class TableReader {
 
   /// A line that is no row: above the rows it may hold names, units or numbers; between them it is text.
   void TakeAside(std::string_view line) {
+    if (waiting_.empty()) KeepLine(line);
     if (Gathering()) {
       if (!IsComment(line)) ++text_lines_;
       return;
     }
     if (!waiting_.empty() && !IsHeadingBehindRows(line)) {
+      KeepLine(line);
       if (!IsComment(line)) ++text_lines_;
       return;
     }
+    if (!waiting_.empty()) {
+      for (const std::string_view statement : waiting_lines_) track_.lines.push_back({0, std::string(statement)});
+      KeepLine(line);
+    }
     waiting_.clear();
+    waiting_lines_.clear();
     above_.emplace_back(line);
     AddNumbers(WithoutMark(line), track_);
   }
 
+  void KeepLine(std::string_view line) {
+    constexpr std::size_t kMostLines = 2000;
+    if (track_.lines.size() >= kMostLines) return;
+    const std::size_t row = Gathering() ? gatherers_.front().size() : waiting_.size();
+    track_.lines.push_back({row, std::string(WithoutMark(line))});
+  }
+
+  /// "Radius;150", "Feed;1000": names with values are no rows of a table whose names come below.
+  bool AreStatements() const {
+    return std::ranges::all_of(waiting_, [this](const auto& row) { return !CellOf(row.front(), how_.decimal_comma); });
+  }
+
   /// What looked like a few rows stood above the names of the table.
   bool IsHeadingBehindRows(std::string_view line) {
-    if (!layout_.header.empty() || waiting_.size() >= 5) return false;
+    if (!layout_.header.empty() || (waiting_.size() >= 5 && !AreStatements())) return false;
     Split(WithoutMark(line), how_.separator, fields_);
     return fields_.size() > 1 && fields_.size() >= waiting_.back().size();
   }
 
   bool Gathering() const { return !gatherers_.empty(); }
 
-  void TakeRow() {
+  void TakeRow(std::string_view line) {
     if (Gathering()) return Append(fields_);
     waiting_.push_back(fields_);
+    waiting_lines_.push_back(line);
     if (waiting_.size() >= 50) Settle();
   }
 
@@ -113,6 +134,7 @@ class TableReader {
     for (const Kind kind : KindsOf(rows, heading_, how_)) gatherers_.emplace_back(kind);
     const auto held = std::move(waiting_);
     waiting_.clear();
+    waiting_lines_.clear();
     for (const auto& row : held) Append(row);
   }
 
@@ -203,7 +225,7 @@ class TableReader {
   Track track_;
   Heading heading_;
   bool open_ = true, named_ = true, unnamed_ = false;
-  std::vector<std::string_view> above_, fields_;
+  std::vector<std::string_view> above_, fields_, waiting_lines_;
   std::vector<std::vector<std::string_view>> waiting_;
   std::vector<Gatherer> gatherers_;
   std::size_t width_ = 0, rows_ = 0, misfits_ = 0, text_lines_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <utility>
 
 #include "twin/core/units.h"
 #include "twin/import/common.h"
@@ -75,6 +76,37 @@ std::optional<NamedUnit> PlainUnit(std::string_view name) {
   return *found;
 }
 
+/// An angle or a length over a time, by the name of its key: "mm_min".
+const std::vector<std::pair<std::string, NamedUnit>>& Rates() {
+  static const auto rates = [] {
+    std::vector<std::pair<std::string, NamedUnit>> all;
+    for (const NamedUnit& over : kUnits) {
+      for (const NamedUnit& unit : kUnits) {
+        const bool is_length = unit.dimension == Dimension::kLength;
+        if (over.dimension != Dimension::kTime || (!is_length && unit.dimension != Dimension::kAngle)) continue;
+        all.push_back({std::string(unit.name) + "_" + std::string(over.name),
+                       {"", is_length ? Dimension::kSpeed : Dimension::kTurning, unit.to_SI / over.to_SI}});
+      }
+    }
+    for (auto& [name, rate] : all) rate.name = name;  // none is moved any more
+    return all;
+  }();
+  return rates;  // constant
+}
+
+std::optional<NamedUnit> RateNamed(std::string_view name) {
+  const auto found = std::ranges::find(Rates(), name, [](const auto& rate) { return std::string_view(rate.first); });
+  return found == Rates().end() ? std::nullopt : std::optional(found->second);
+}
+
+/// "mm/min", "°/s".
+std::optional<NamedUnit> OverATime(std::string_view text) {
+  const std::size_t slash = text.rfind('/');
+  if (slash == std::string_view::npos) return RateNamed(text);
+  const auto unit = UnitNamed(text.substr(0, slash)), over = UnitNamed(text.substr(slash + 1));
+  return unit && over ? RateNamed(std::string(unit->name) + "_" + std::string(over->name)) : std::nullopt;
+}
+
 /// What stands inside a pair of brackets at the end.
 std::optional<NameAndUnit> InBrackets(std::string_view field, char open, char close) {
   if (field.size() < 2 || field.back() != close) return std::nullopt;
@@ -130,17 +162,24 @@ std::optional<NamedUnit> UnitNamed(std::string_view text) {
   for (const NamedUnit& unit : kUnits) {
     if (SmallLetters(unit.name) == small && small != "mv" && small.size() > 1) return unit;
   }
-  return std::nullopt;
+  return OverATime(text);
 }
 
 std::optional<NamedUnit> UnitAtEnd(std::string_view name) {
   const std::size_t at = name.rfind('_');
   if (at == std::string_view::npos || at == 0) return std::nullopt;
+  const std::size_t before = name.rfind('_', at - 1);
+  if (before != std::string_view::npos && before > 0) {
+    if (const auto rate = RateNamed(name.substr(before + 1))) return rate;
+  }
   return PlainUnit(name.substr(at + 1));
 }
 
 std::vector<NamedUnit> UnitsOf(Dimension dimension) {
   std::vector<NamedUnit> units;
+  for (const auto& [name, rate] : Rates()) {
+    if (rate.dimension == dimension) units.push_back(rate);
+  }
   std::ranges::copy_if(kUnits, std::back_inserter(units),
                        [dimension](const NamedUnit& unit) { return unit.dimension == dimension; });
   return units;

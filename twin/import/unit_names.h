@@ -8,7 +8,7 @@
 /// The names that people give to units in files of their own.
 namespace twinbench::imports {
 
-enum class Dimension { kAngle, kLength, kTime, kVoltage, kTemperature, kPure };
+enum class Dimension { kAngle, kLength, kTime, kSpeed, kTurning, kVoltage, kTemperature, kPure };
 
 struct NamedUnit {
   std::string_view name;  // "mm"
@@ -16,10 +16,11 @@ struct NamedUnit {
   double to_SI = 1.0;
 };
 
-/// Also knows the names that are written otherwise: "°", "degrees", "µm", "revs", "\"".
+/// Also knows the names that are written otherwise: "°", "degrees", "µm", "revs", "\"", and an angle or a length over a time: "mm/min",
+/// "deg/s", "mm_min".
 std::optional<NamedUnit> UnitNamed(std::string_view text);
 
-/// The unit with which a key or a column ends: "deg" of "reference_deg"; nothing if it ends in none.
+/// The unit with which a key or a column ends: "deg" of "reference_deg", "mm_min" of "feed_mm_min"; nothing if it ends in none.
 std::optional<NamedUnit> UnitAtEnd(std::string_view name);
 
 /// Every plain name of a unit of that dimension, for keys: "deg", "rad", "arcsec", ...

@@ -90,13 +90,6 @@ std::string SizeKey(const std::string& unknown) {
   return wave == Waves().end() ? unknown : wave->amplitude;
 }
 
-CircleErrors Without(const CircleFit& fit, const std::vector<std::string>& keys) {
-  CircleErrors others = fit.errors;
-  for (const std::size_t k : fit.fitted)
-    if (std::ranges::count(keys, SizeKey(CircleUnknowns()[k].key)) > 0) CircleUnknowns()[k].in(others) = 0.0;
-  return others;
-}
-
 double RadialRms_m(const CircleAnalysis& a, const CircleErrors& others) {
   double squares_m2 = 0.0;
   for (const CirclePoint& p : a.points) {
@@ -212,6 +205,13 @@ std::vector<ErrorValue> ErrorsOf(const CircleFit& fit) {
   return errors;
 }
 
+CircleErrors ErrorsWithout(const CircleFit& fit, const std::vector<std::string>& keys) {
+  CircleErrors others = fit.errors;
+  for (const std::size_t k : fit.fitted)
+    if (std::ranges::count(keys, SizeKey(CircleUnknowns()[k].key)) > 0) CircleUnknowns()[k].in(others) = 0.0;
+  return others;
+}
+
 std::vector<RadialPart> RadialPartsOf(const CircleAnalysis& a) {
   std::map<std::string, RadialPart> kinds;
   for (const std::size_t k : a.fit.fitted) {
@@ -221,7 +221,7 @@ std::vector<RadialPart> RadialPartsOf(const CircleAnalysis& a) {
     if (std::ranges::count(keys, key) == 0) keys.push_back(key);
   }
   std::vector<RadialPart> parts;
-  for (auto& [kind, part] : kinds) parts.push_back({part.keys, RadialRms_m(a, Without(a.fit, part.keys))});
+  for (auto& [kind, part] : kinds) parts.push_back({part.keys, RadialRms_m(a, ErrorsWithout(a.fit, part.keys))});
   std::ranges::stable_sort(parts, std::greater(), &RadialPart::rms_m);
   return parts;
 }

@@ -48,6 +48,9 @@ struct ErrorValue {
 /// Waves as amplitude and azimuth, as the scenario has them.
 std::vector<ErrorValue> ErrorsOf(const separate::circular::CircleFit& fit);
 
+/// What was fitted, but for these keys of ErrorsOf.
+separate::circular::CircleErrors ErrorsWithout(const separate::circular::CircleFit& fit, const std::vector<std::string>& keys);
+
 /// What errors of one kind, those of both axes together, make of the radial deviation that the instruments show. Together, because what lags
 /// on both axes alike is hardly seen on a circle, however much it is.
 struct RadialPart {

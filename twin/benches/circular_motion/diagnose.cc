@@ -1,11 +1,16 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
+#include <utility>
 
+#include "twin/benches/circular_motion/analysis.h"
 #include "twin/benches/circular_motion/bench.h"
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/settings.h"
 #include "twin/benches/circular_motion/twin/factory.h"
+#include "twin/core/errors.h"
+#include "twin/core/reading_clock.h"
 #include "twin/diagnose/products.h"
 
 namespace twinbench::benches::circular {
@@ -20,14 +25,42 @@ bool HasAngles(const std::vector<Reading>& readings) {
   return std::ranges::any_of(readings, [](const Reading& r) { return std::isfinite(DeviationOf(r).tangential_m); });
 }
 
-/// The bench where its readings show the radius alone.
-const BenchFormat& OfRadii() {
-  static const BenchFormat format = [] {
-    BenchFormat f = Format();
-    f.channels = f.points = {f.channels.front()};
-    return f;
-  }();
-  return format;
+BenchFormat OfRadii(bool has_clock) {
+  BenchFormat f = Format();
+  f.channels = f.points = {f.channels.front()};
+  std::erase_if(f.effects, [has_clock](const EffectEntry& e) {
+    return e.name == "ball_form" || e.name == "bar_gain" || e.name == "bar_nonlinearity" || (e.name == "tone" && !has_clock);
+  });
+  constexpr double kLongestSpike_s = 1.0;  // one as long as the way to the next reversal would be backlash and more
+  for (EffectEntry& e : f.effects) {
+    for (EffectParameter& p : e.parameters) {
+      if (e.name == "reversal_spike" && p.name == "time") p.upper_SI = kLongestSpike_s;
+    }
+  }
+  return f;
+}
+
+/// What one way round, one feed and one plane leave open.
+std::vector<std::string> LeftOpen(const std::vector<Reading>& readings) {
+  std::vector<std::string> open = {
+      "the radius alone does not separate mean scale of both axes from the bar's length, squareness, scales and straightness from form of the balls and gain of the "
+      "bar (taken as the scenario states them), nor lag that both axes share; one plane shows nothing of the third axis"};
+  std::set<int> directions;
+  std::set<double> feeds_m_s;
+  for (const Reading& r : readings) {
+    directions.insert(r.direction);
+    feeds_m_s.insert(kFeed_m_s(r));
+  }
+  if (directions.size() < 2) open.push_back("one way round does not separate squareness from servo mismatch: measure the other way round too");
+  if (feeds_m_s.size() < 2) open.push_back("one feed does not separate what goes with speed from what does not: measure at another feed too");
+  return open;
+}
+
+/// The bench where its readings show the radius alone. Gain and balls are the instrument's, which users have certified, and no shape of their
+/// own; what goes on in time has no name where none is known.
+const BenchFormat& OfRadii(const std::vector<Reading>& readings) {
+  static const BenchFormat timed = OfRadii(true), without = OfRadii(false);
+  return HasClock(readings) ? timed : without;
 }
 
 /// The twin's radius alone.
@@ -78,32 +111,64 @@ diagnose::TwinComparison Comparison(const Scenario& scenario) {
   return comparison;
 }
 
-/// Of the radius alone: what turns the circle is not free, for it is not seen.
-diagnose::TwinComparison OfRadiiAlone(diagnose::TwinComparison comparison) {
-  comparison.format = &OfRadii();
-  comparison.follow = [whole = comparison.follow](const Scenario& scenario, const std::vector<Reading>& record) {
-    return std::make_unique<FollowRadii>(whole(scenario, record));
+/// Readings that come so soon behind a reversal that the play is still being taken up, by the play that fits: there a reading is not
+/// in proportion to it, and a diagnosis takes every cause for proportional to its size.
+std::set<int> TakingUpPlay(const std::vector<Reading>& readings, const Scenario& scenario) {
+  constexpr double kBeyond = 1.2;
+  std::set<int> numbers;
+  std::vector<ErrorValue> errors;
+  try {
+    errors = ErrorsOf(Analyse(scenario, readings, Estimator::kRigorous).fit);
+  } catch (const InputError&) {
+    return numbers;  // too few to fit, and too few for any play to be named
+  }
+  for (const auto& [key, quarters] : {std::pair{"machine.backlash_x_um", 0}, {"machine.backlash_y_um", 1}}) {
+    const auto play = std::ranges::find(errors, key, &ErrorValue::key);
+    if (play == errors.end() || !(std::abs(play->value) > 2.0 * play->u)) continue;
+    for (const Reading& r : readings) {
+      const double along_rad = std::remainder(r.direction * (r.target_rad - 0.5 * units::kPi * quarters), units::kPi);
+      const double since_m = Radius_m(r) * (1.0 - std::cos(along_rad < 0.0 ? along_rad + units::kPi : along_rad));
+      if (since_m < kBeyond * std::abs(play->value) * units::um) numbers.insert(r.reading);
+    }
+  }
+  return numbers;
+}
+
+/// Of the radius alone: what turns the circle is not free, for it is not seen. Waves of order 1 are the centre, of order 2
+/// squareness and scales, of order 3 straightness.
+diagnose::TwinComparison OfRadiiAlone(diagnose::TwinComparison comparison, const Scenario& scenario, const std::vector<Reading>& readings) {
+  comparison.format = &OfRadii(readings);
+  comparison.angles.front().lowest_order = 4;
+  comparison.follow = [whole = comparison.follow](const Scenario& believed, const std::vector<Reading>& record) {
+    return std::make_unique<FollowRadii>(whole(believed, record));
   };
   comparison.free_points = {"offset_x", "offset_y", "length"};
-  comparison.shown = [](const Reading& r) { return Eigen::VectorXd(Shown_m(r).head(1)); };
-  comparison.noise_of = [](const Scenario& scenario, const Reading& r) { return Eigen::VectorXd(Noise_m(scenario, r).head(1)); };
-  comparison.tones = {{"", Eigen::VectorXd::Ones(1)}};
+  comparison.shown = [left_out = TakingUpPlay(readings, scenario)](const Reading& r) {
+    return left_out.contains(r.reading) ? Eigen::VectorXd::Constant(1, kNaN) : Eigen::VectorXd(Shown_m(r).head(1));
+  };
+  comparison.noise_of = [](const Scenario& stated, const Reading& r) { return Eigen::VectorXd(Noise_m(stated, r).head(1)); };
+  comparison.tones.clear();
+  if (HasClock(readings)) comparison.tones = {{"", Eigen::VectorXd::Ones(1)}};
   return comparison;
 }
 
 diagnose::TwinComparison Comparison(const Scenario& scenario, const std::vector<Reading>& readings) {
-  return HasAngles(readings) ? Comparison(scenario) : OfRadiiAlone(Comparison(scenario));
+  return HasAngles(readings) ? Comparison(scenario) : OfRadiiAlone(Comparison(scenario), scenario, readings);
 }
 
 }  // namespace
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  return diagnose::DiagnoseByTwin(WithAngles(readings), scenario, options, Comparison(scenario, readings));
+  const std::vector<Reading> with_angles = WithAngles(readings);
+  diagnose::DiagnosisRun found = diagnose::DiagnoseByTwin(with_angles, scenario, options, Comparison(scenario, with_angles));
+  if (!HasAngles(readings)) std::ranges::move(LeftOpen(readings), std::back_inserter(found.diagnosis.notes));
+  return found;
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
-  return diagnose::CompareWithTwin(WithAngles(readings), scenario, Comparison(scenario, readings));
+  const std::vector<Reading> with_angles = WithAngles(readings);
+  return diagnose::CompareWithTwin(with_angles, scenario, Comparison(scenario, with_angles));
 }
 
 }  // namespace twinbench::benches::circular

@@ -6,6 +6,7 @@
 
 #include "twin/benches/circular_motion/analysis.h"
 #include "twin/benches/circular_motion/bench.h"
+#include "twin/benches/circular_motion/ranked.h"
 #include "twin/report/json_units.h"
 #include "twin/report/polar_text.h"
 #include "twin/report/uncertainty_parts.h"
@@ -205,6 +206,35 @@ json ResidualsJson(const CircleFit& fit) {
   return rms;
 }
 
+json RankedJson(const std::vector<RankedError>& ranked) {
+  json list = json::array();
+  for (const RankedError& e : ranked)
+    list.push_back({{"setup", e.setup},
+                    {"feed_mm_min", Feed_mm_min(e.feed_m_s)},
+                    {"error", e.name},
+                    {"key", e.size.key},
+                    {"value", In(1.0, e.size.value)},
+                    {"u", In(1.0, e.size.u)},
+                    {"unit", e.size.unit},
+                    {"share_um", In(um, e.alone_m)},
+                    {"share", In(1.0, e.share)}});
+  return list;
+}
+
+/// Those that stand out of their uncertainty.
+std::string RankedText(const std::vector<RankedError>& ranked) {
+  std::string text;
+  const RankedError* last = nullptr;
+  for (const RankedError& e : ranked) {
+    if (!e.IsSignificant()) continue;
+    if (!last || last->setup != e.setup || last->feed_m_s != e.feed_m_s)
+      text += fmt::format("Ranked by G(b) of each alone, mounting {}, {}; the centre is no error:\n", e.setup, FeedText(e.feed_m_s));
+    text += fmt::format("  {:<26} {:>10.4g} ± {:.2g} {:<8} {:8.3f} µm {:4.0f} %\n", e.name, e.size.value, e.size.u, e.size.unit, e.alone_m / um, 100.0 * e.share);
+    last = &e;
+  }
+  return text;
+}
+
 json SeparationJson(const CircleAnalysis& a) {
   json separation = {{"setups", SetupsJson(a)},
                      {"errors", json::object()},
@@ -283,11 +313,13 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   if (evaluation.separation.contains("comparison")) evaluation.results["comparison"] = evaluation.separation["comparison"];
   for (const CirclePath& path : a.paths) evaluation.results["radial"].push_back(RadialJson(path, a.fit.shared));
   for (const RadialPart& part : RadialPartsOf(a)) evaluation.results["radial_parts"].push_back({{"errors", part.keys}, {"rms_um", In(um, part.rms_m)}});
+  const std::vector<RankedError> ranked = RankedErrors(a);
+  if (!ranked.empty()) evaluation.results["ranked"] = RankedJson(ranked);
   evaluation.summary = fmt::format("{} of {} readings have a radius\n", a.points.size(), readings.size());
   if (a.IsFitted()) evaluation.summary += ErrorsText(a);
   if (!a.method_bias.empty()) evaluation.results["method_bias"] = BiasJson(a.method_bias);
   evaluation.summary += BiasText(a);
-  evaluation.summary += DeviationsText(a);
+  evaluation.summary += DeviationsText(a) + RankedText(ranked);
   evaluation.tables = {{"polar.txt", PolarsOf(a)}};
   if (a.IsFitted() && a.fit.dof > 0) evaluation.misfits = {{"the joint fit of the circles", a.fit.chi}};
   if (a.IsFitted()) evaluation.joints = [fit = a.fit] { return std::vector<uncertainty::Joint>{JointOf(fit)}; };

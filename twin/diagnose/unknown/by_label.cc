@@ -30,11 +30,13 @@ Eigen::MatrixXd WhereMoved(const Design& design, const std::vector<int>& label) 
 void AddWaves(Collector& collect, const std::string& what, const Eigen::MatrixXd& which, int last) {
   if (!IsTold(which, tuning::kMostWaves) || collect.design().angles.empty()) return;
   const Angle& angle = collect.design().angles.front();
+  const int first = angle.first_by_label, orders = std::min(last, angle.last_order) + 1 - first;
+  if (orders < 1) return;
   collect.Add(
-      what + " harmonic", std::min(last, angle.last_order),
-      [rad = angle.rad, which](int g) { return model::InEach(model::Wave((g + 1) * rad), which); },
-      [what, name = angle.name](int g) {
-        return fmt::format("order {} synchronous with {} that differs from {} to {}", g + 1, name, what, what);
+      what + " harmonic", orders,
+      [rad = angle.rad, which, first](int g) { return model::InEach(model::Wave((g + first) * rad), which); },
+      [what, name = angle.name, first](int g) {
+        return fmt::format("order {} synchronous with {} that differs from {} to {}", g + first, name, what, what);
       });
 }
 

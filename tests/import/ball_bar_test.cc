@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "tests/import/importing.h"
+#include "twin/core/reading_column.h"
+
+// Recordings of ball bars as people have them: other names, units, marks and orders of the same circle.
+namespace twinbench::imports {
+namespace {
+
+using testing::HasSubstr, testing::Not;
+
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+/// An ellipse, 2 um higher counter-clockwise: what a reading is tells which it is.
+double Deviation_um(double angle_deg, int direction) {
+  return 3.0 * std::sin(2.0 * angle_deg * kDeg) + (direction > 0 ? 2.0 : 0.0) + 0.01 * angle_deg;
+}
+
+using Row = std::function<std::string(double angle_deg, int direction)>;
+
+/// Once round each way, or part of it.
+std::string Circles(const Row& row, const std::function<std::string(int direction)>& above = [](int) { return ""; }, int arc_deg = 360) {
+  std::string text;
+  for (const int direction : {1, -1}) {
+    text += above(direction);
+    for (int k = 0; k < arc_deg; k += 5) text += row(direction > 0 ? k + 0.5 : arc_deg - k - 0.5, direction);
+  }
+  return text;
+}
+
+class BallBar : public Importing {
+ protected:
+  /// Every reading is the one that the file has, on a circle of this radius at this feed.
+  static void Expect(const Imported& taken, double radius_mm, double feed_mm_min, std::size_t readings = 144) {
+    const Quantity x_m{"commanded_x_mm"}, y_m{"commanded_y_mm"}, feed_m_s{"feed_mm_min"}, bar_m{"bar_um"};
+    EXPECT_EQ(taken.bench, "circular_motion");
+    ASSERT_EQ(taken.readings.size(), readings) << taken.story;
+    for (const Reading& r : taken.readings) {
+      const double angle_deg = std::atan2(y_m(r), x_m(r)) / kDeg;
+      EXPECT_NEAR(std::hypot(x_m(r), y_m(r)) / units::mm, radius_mm, 1e-9);
+      EXPECT_NEAR(feed_m_s(r) * 60.0 / units::mm, feed_mm_min, 1e-9);
+      ASSERT_NEAR(bar_m(r) / units::um, Deviation_um(angle_deg < 0.0 ? angle_deg + 360.0 : angle_deg, r.direction), 2e-3) << angle_deg << taken.story;
+    }
+    EXPECT_NE(taken.readings.front().pass, taken.readings.back().pass);
+  }
+};
+
+TEST_F(BallBar, IsGuessedByAnAngleAndADeviationInALength) {
+  const Imported taken = Take("run,direction,angle_deg,deviation_um\n" + Circles([](double a, int d) {
+                                return fmt::format("{},{},{},{:.4f}\n", d > 0 ? 1 : 2, d, a, Deviation_um(a, d));
+                              }));
+  Expect(taken, 150.0, 1000.0);
+  EXPECT_THAT(taken.story, HasSubstr("taken as --map ball_bar"));
+  EXPECT_THAT(taken.story, HasSubstr("the radius is not stated: taken as 150 mm"));
+  EXPECT_THAT(taken.story, HasSubstr("the feed is not stated: taken as 1000 mm/min"));
+}
+
+TEST_F(BallBar, MayBeGermanWithConditionsAboveAndDirectionsInWords) {
+  const auto comma = [](std::string text) {
+    std::ranges::replace(text, '.', ',');
+    return text;
+  };
+  const Imported taken = Take("Kreisformtest\nRadius [mm];100,000\nVorschub [mm/min];500,0\nEbene;XY\nTemperatur [°C];20,3\nKoeffizient;11,5\nMaschine;7\n\n"
+                              "Winkel [°];Abweichung [mm];Richtung\n" +
+                              Circles([&](double a, int d) { return comma(fmt::format("{};{:.7f};{}\n", a, Deviation_um(a, d) / 1000.0, d > 0 ? "CCW" : "CW")); }));
+  Expect(taken, 100.0, 500.0);
+  EXPECT_NEAR(taken.readings[0].temperature_degC, 20.3, 1e-12);
+  EXPECT_THAT(taken.story, Not(HasSubstr("is not stated")));
+}
+
+TEST_F(BallBar, MayHaveABlockForEachWayRoundAndItsFeedAboveIt) {
+  const Imported taken = Take(
+      "# ball bar, XY, R = 4 inch\n" +
+      Circles([](double a, int d) { return fmt::format("{:.9f}\t{:.4f}\n", a * kDeg, Deviation_um(a, d)); },
+              [](int d) { return fmt::format("Run {}: {}, feed rate 1 m/min\ntheta (rad)\tdR (um)\n", d > 0 ? 1 : 2, d > 0 ? "counter-clockwise" : "clockwise"); }));
+  Expect(taken, 101.6, 1000.0);
+}
+
+TEST_F(BallBar, MayHaveAColumnForEachWayRound) {
+  std::string text = "nominal radius: 100 mm\nfeed rate: 2000 mm/min\nAngle [deg],CCW [um],CW [um]\n";
+  for (double a = 0.5; a < 360.0; a += 5.0) text += fmt::format("{},{:.4f},{:.4f}\n", a, Deviation_um(a, 1), Deviation_um(a, -1));
+  Expect(Take(text), 100.0, 2000.0);
+}
+
+TEST_F(BallBar, MayShowItsLengthInPlaceOfTheDeviation) {
+  const auto row = [](double a, int d) { return fmt::format("{} {:.7f} {}\n", a, 100.0 + Deviation_um(a, d) / 1000.0, d > 0 ? "+" : "-"); };
+  Expect(Take("angle_deg radius_mm dir\n" + Circles(row)), 100.0, 1000.0);
+}
+
+TEST_F(BallBar, TellsTheWayRoundByTheAngleWhereNothingElseDoes) {
+  const Imported taken = Take("Radius: 100 mm\nTheta (deg)\tError (micron)\n" + Circles([](double a, int d) { return fmt::format("{}\t{:.4f}\n", a, Deviation_um(a, d)); }));
+  Expect(taken, 100.0, 1000.0);
+  EXPECT_THAT(taken.story, HasSubstr("counter-clockwise where it rises"));
+}
+
+TEST_F(BallBar, MayHaveArcsAtSeveralFeeds) {
+  std::string text = "Radius: 100 mm\nfeed [mm/min],direction,angle [deg],deviation [um]\n";
+  for (const int feed : {500, 2000})
+    text += Circles([&](double a, int d) { return fmt::format("{},{},{},{:.4f}\n", feed, d, a, Deviation_um(a, d)); }, [](int) { return ""; }, 220);
+  const Imported taken = Take(text);
+  ASSERT_EQ(taken.readings.size(), 4U * 44U);
+  EXPECT_EQ(taken.readings.back().pass, 3);
+  EXPECT_THAT(taken.set, testing::Contains("circular_procedure.feeds_mm_min=[500, 2000]"));
+}
+
+TEST_F(BallBar, IsToldWhatItsFileDoesNotSay) {
+  const std::string text = "a,b\n" + Circles([](double a, int d) { return fmt::format("{},{:.4f}\n", a, Deviation_um(a, d)); });
+  Expect(Take(text, "ball_bar", {"angle_deg=a", "deviation_um=b", "radius_inch=4", "feed_mm_min=800"}), 101.6, 800.0);
+  EXPECT_THROW(Take(text, "ball_bar"), InputError) << "no column says what it is";
+}
+
+TEST_F(BallBar, LeavesAnEncoderBesideItsErrorAlone) {
+  std::string text = "angle [deg],error [arcsec]\n";
+  for (int k = 0; k < 72; ++k) text += fmt::format("{},{:.3f}\n", 5.0 * k, 10.0 * std::cos(5.0 * k * kDeg));
+  EXPECT_EQ(Take(text).bench, "encoder_comparison");
+}
+
+TEST(UnitsOverATime, AreUnitsInNamesAndInBrackets) {
+  ASSERT_TRUE(UnitAtEnd("feed_mm_min"));
+  EXPECT_EQ(UnitAtEnd("feed_mm_min")->name, "mm_min");
+  EXPECT_NEAR(UnitAtEnd("feed_mm_min")->to_SI, 1e-3 / 60.0, 1e-18);
+  EXPECT_NEAR(UnitAtEnd("velocity_deg_s")->to_SI, kDeg, 1e-15);
+  EXPECT_NEAR(UnitNamed("m/min")->to_SI, 1.0 / 60.0, 1e-15);
+  EXPECT_EQ(UnitAtEnd("time_s")->dimension, Dimension::kTime);
+  EXPECT_FALSE(UnitNamed("mm/px"));
+}
+
+}  // namespace
+}  // namespace twinbench::imports

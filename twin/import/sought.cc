@@ -1,0 +1,269 @@
+#include "twin/import/sought.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "twin/core/errors.h"
+#include "twin/core/units.h"
+#include "twin/import/column_words.h"
+#include "twin/import/common.h"
+#include "twin/import/expression.h"
+#include "twin/import/join.h"
+#include "twin/import/stacked.h"
+#include "twin/import/statements.h"
+
+namespace twinbench::imports {
+namespace {
+
+NamedUnit UnitOf(const Sought& sought) {
+  return UnitAtEnd(sought.name).value_or(NamedUnit{});
+}
+
+/// Whether a column can be the quantity by its unit. Without one it may be; with one that is not known it is something else.
+bool UnitFits(const Column& column, const Sought& sought) {
+  const auto has = UnitNamed(column.unit);
+  return has ? has->dimension == UnitOf(sought).dimension : IsNoUnit(column.unit);
+}
+
+double ShareOfChanges(const Column& column) {
+  std::size_t changes = 0;
+  for (std::size_t i = 1; i < column.value.size(); ++i) changes += column.value[i] != column.value[i - 1] ? 1 : 0;
+  return static_cast<double>(changes) / std::max(1.0, static_cast<double>(column.value.size()) - 1.0);
+}
+
+bool IsTurn(const Column& column) {
+  return column.IsNumber() && std::ranges::all_of(column.value, [](double x) { return x == 1.0 || x == -1.0; });
+}
+
+bool CanBe(const Column& column, const Sought& sought) {
+  constexpr double kSeldom = 0.25;
+  if (sought.kind == "turn") return IsTurn(column);
+  if (!column.IsNumber() || !UnitFits(column, sought)) return false;
+  if (sought.kind == "value") return ShareOfChanges(column) > kSeldom;
+  return sought.kind == "any" || ShareOfChanges(column) <= kSeldom;
+}
+
+/// "{}" is the value that was taken.
+std::string NoteWith(std::string note, const std::vector<double>& values) {
+  const std::size_t at = note.find("{}");
+  return at == std::string::npos || values.empty() ? note : note.replace(at, 2, fmt::format("{:.6g}", values.front()));
+}
+
+/// The quantities of one track, found one after the other.
+class Seeker {
+ public:
+  Seeker(const std::vector<Sought>& all, Track& track) : all_(all), track_(track) {}
+
+  /// Takes those that have a column or a line.
+  void Find() {
+    for (const Sought& sought : all_) {
+      if (const Column* column = ColumnFor(sought)) {
+        taken_.insert(column->name);
+        Put(sought, InUnitOf(sought, *column), column->unit);
+      } else if (const std::vector<double> stated = StatedOf(sought); !stated.empty()) {
+        Put(sought, stated, "");
+      }
+    }
+  }
+
+  /// Makes what is left of others, or of itself.
+  void Make(std::vector<std::string>& remarks) {
+    for (bool more = true; more;) {
+      more = false;
+      for (const Sought& sought : all_) {
+        const std::string* formula = Has(sought) ? nullptr : FormulaOf(sought);
+        if (!formula) continue;
+        const std::vector<double> values = Evaluated(*formula);
+        if (!sought.note.empty()) remarks.push_back(NoteWith(sought.note, values));
+        Put(sought, values, "");
+        more = true;
+      }
+    }
+  }
+
+  bool Has(const Sought& sought) const {
+    return std::ranges::find(found_, sought.name, &Column::name) != found_.end();
+  }
+
+  /// In a column, with a unit that says what it is; an angle needs none.
+  bool HasSurely(const std::string& name) const {
+    const auto found = std::ranges::find(found_, name, &Column::name);
+    const auto unit = UnitAtEnd(name);
+    return found != found_.end() && unit && (unit->dimension == Dimension::kAngle || UnitNamed(found->unit));
+  }
+
+  /// The columns of the track under the names that formulas have.
+  void Finish() {
+    for (Column& column : found_) {
+      for (Column& own : track_.columns) {
+        if (own.name == column.name) own.name += " of the file";
+      }
+      const auto unit = UnitAtEnd(column.name);
+      column.unit = unit ? std::string(unit->name) : "";
+    }
+    std::ranges::move(found_, std::back_inserter(track_.columns));
+  }
+
+  double First(const std::string& name) const {
+    const auto found = std::ranges::find(found_, name, &Column::name);
+    return found == found_.end() || found->value.empty() ? kNaN : found->value.front();
+  }
+  std::vector<double> Distinct(const std::string& name) const {
+    const auto found = std::ranges::find(found_, name, &Column::name);
+    if (found == found_.end()) return {};
+    const std::set<double> distinct(found->value.begin(), found->value.end());
+    return {distinct.begin(), distinct.end()};
+  }
+  const std::vector<std::string>& assumed() const { return assumed_; }
+
+ private:
+  const Column* ColumnFor(const Sought& sought) const {
+    const Column* best = nullptr;
+    int clearness = 0;
+    for (const Column& column : track_.columns) {
+      const int own = taken_.contains(column.name) || !CanBe(column, sought) ? 0 : ClearnessBy(column.name, sought.words);
+      if (own <= clearness) continue;
+      clearness = own;
+      best = &column;
+    }
+    return best;
+  }
+
+  std::vector<double> StatedOf(const Sought& sought) const {
+    if (sought.words.empty() || sought.kind == "value") return {};
+    return sought.kind == "turn" ? StatedTurns(track_) : StatedValues(track_, sought.words, UnitOf(sought));
+  }
+
+  /// A column that says no unit is in that of the name; an angle that stays within a turn of rad, in rad.
+  std::vector<double> InUnitOf(const Sought& sought, const Column& column) {
+    constexpr double kMoreThanATurn_rad = 6.4;
+    const NamedUnit to = UnitOf(sought);
+    auto has = UnitNamed(column.unit);
+    if (!has && to.dimension != Dimension::kPure) {
+      const bool is_rad = to.dimension == Dimension::kAngle && column.value.size() > 20 &&
+                          std::ranges::all_of(column.value, [](double x) { return !(std::abs(x) > kMoreThanATurn_rad); });
+      has = is_rad ? UnitNamed("rad") : to;
+      assumed_.push_back(fmt::format("the unit of \"{}\" is not said and taken as {}", column.name, has->name));
+    }
+    std::vector<double> values = column.value;
+    for (double& x : values) x *= has ? has->to_SI / to.to_SI : 1.0;
+    return values;
+  }
+
+  void Put(const Sought& sought, std::vector<double> values, const std::string& unit) {
+    found_.push_back({sought.name, unit, std::move(values), {}});
+  }
+
+  /// What is sought is what was found of it, not a column that is called so.
+  const std::vector<double>* ValuesOf(const std::string& name) const {
+    if (name == "time_s" && track_.HasClock()) return &track_.time_s;
+    const bool is_sought = std::ranges::find(all_, name, &Sought::name) != all_.end();
+    for (const std::vector<Column>* columns : {&found_, static_cast<const std::vector<Column>*>(&track_.columns)}) {
+      if (is_sought && columns != &found_) break;
+      const auto found = std::ranges::find(*columns, name, &Column::name);
+      if (found != columns->end() && found->IsNumber()) return &found->value;
+    }
+    return nullptr;
+  }
+
+  /// The first formula that can be made of what is there.
+  const std::string* FormulaOf(const Sought& sought) const {
+    for (const std::string& formula : sought.otherwise) {
+      if (ValuesOf(formula)) return &formula;
+      const Expression expression(formula, sought.name);
+      if (std::ranges::all_of(expression.Names(), [this](const std::string& name) { return ValuesOf(name) != nullptr; })) return &formula;
+    }
+    return nullptr;
+  }
+
+  std::vector<double> Evaluated(const std::string& formula) const {
+    if (const auto* values = ValuesOf(formula)) return *values;
+    return Expression(formula, formula).Evaluate(track_.Rows(), [this](const std::string& name) { return Values{*ValuesOf(name), nullptr}; });
+  }
+
+  const std::vector<Sought>& all_;
+  Track& track_;
+  std::vector<Column> found_;
+  std::set<std::string> taken_;  // columns of the file
+  std::vector<std::string> assumed_;
+};
+
+std::vector<std::string> NamesIn(const std::string& list) {
+  std::vector<std::string> names;
+  for (std::string_view rest = list; !rest.empty();) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    names.emplace_back(Trimmed(rest.substr(0, comma)));
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  return names;
+}
+
+bool IsOfKind(const Recording& recording, const Map& map) {
+  return std::ranges::all_of(recording.tracks, [&map](const Track& own) {
+    Track track = own;
+    StackTurns(map, track);
+    Seeker seeker(map.sought, track);
+    seeker.Find();
+    return std::ranges::any_of(map.guess_by, [&seeker](const std::string& list) {
+      return std::ranges::all_of(NamesIn(list), [&seeker](const std::string& name) { return seeker.HasSurely(name); });
+    });
+  });
+}
+
+/// "{radius_mm}" is its first value, "{radius_mm...}" all there are.
+void FillInKey(const Seeker& seeker, const Sought& sought, std::string& key) {
+  const auto replace = [&key](const std::string& what, const std::string& by) {
+    for (std::size_t at = 0; (at = key.find(what, at)) != std::string::npos; at += by.size()) key.replace(at, what.size(), by);
+  };
+  std::string all;
+  for (const double value : seeker.Distinct(sought.name)) all += fmt::format("{}{}", all.empty() ? "" : ", ", value);
+  replace("{" + sought.name + "...}", all);
+  replace("{" + sought.name + "}", fmt::format("{}", seeker.First(sought.name)));
+}
+
+[[noreturn]] void RefuseWithout(const Sought& sought, const Recording& recording) {
+  const std::string called = sought.words.empty() ? sought.name : sought.words.front();
+  throw InputError(recording.file, fmt::format("no column is {} by its name and unit; there are {}", called, ColumnNames({recording})),
+                   fmt::format("a name such as \"{}\", or --column '{}=a column'", called, sought.name));
+}
+
+/// What the map makes of a quantity that is not there.
+void DropWithout(const Sought& sought, Map& map) {
+  std::erase_if(map.columns, [&sought](const MappedColumn& c) {
+    const std::vector<std::string> names = Expression(c.expression, c.where).Names();
+    return std::ranges::count(names, sought.name) > 0;
+  });
+}
+
+}  // namespace
+
+std::optional<Map> ReadyMapOf(const Recording& recording) {
+  if (recording.tracks.empty()) return std::nullopt;
+  for (const ReadyMap& ready : ReadyMaps()) {
+    Map map = ParseMap(ready.text, ready.name);
+    if (!map.guess_by.empty() && IsOfKind(recording, map)) return map;
+  }
+  return std::nullopt;
+}
+
+void TakeSought(Map& map, Recording& recording) {
+  if (map.sought.empty()) return;
+  for (Track& track : recording.tracks) {
+    StackTurns(map, track);
+    Seeker seeker(map.sought, track);
+    seeker.Find();
+    for (const std::string& assumed : seeker.assumed()) recording.remarks.push_back(assumed);
+    seeker.Make(recording.remarks);
+    for (const Sought& sought : map.sought) {
+      if (!seeker.Has(sought) && sought.kind == "value") RefuseWithout(sought, recording);
+      if (!seeker.Has(sought)) DropWithout(sought, map);
+      for (std::string& key : map.set) FillInKey(seeker, sought, key);
+    }
+    seeker.Finish();
+  }
+}
+
+}  // namespace twinbench::imports

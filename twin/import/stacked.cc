@@ -1,0 +1,107 @@
+#include "twin/import/stacked.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/import/column_words.h"
+#include "twin/import/unit_names.h"
+
+namespace twinbench::imports {
+namespace {
+
+bool IsAngle(const Map& map, const Column& column) {
+  if (const auto unit = UnitNamed(column.unit)) return unit->dimension == Dimension::kAngle;
+  return std::ranges::any_of(map.sought, [&column](const Sought& sought) {
+    const auto unit = UnitAtEnd(sought.name);
+    return unit && unit->dimension == Dimension::kAngle && ClearnessBy(column.name, sought.words) > 0;
+  });
+}
+
+/// "CCW [µm]" says a way round and a unit only: it is the quantity that has such a unit.
+std::string OwnNameOf(const Map& map, const Column& column) {
+  for (const Sought& sought : map.sought) {
+    if (ClearnessBy(column.name, sought.words) > 0 && sought.kind == "value") return column.name;
+  }
+  const auto unit = UnitNamed(column.unit);
+  for (const Sought& sought : map.sought) {
+    const auto own = UnitAtEnd(sought.name);
+    const bool is_angle = own && own->dimension == Dimension::kAngle;
+    if (sought.kind == "value" && own && !is_angle && !sought.words.empty() && (!unit || unit->dimension == own->dimension))
+      return sought.words.front();
+  }
+  return column.name;
+}
+
+/// One way round of a table.
+struct Part {
+  const Column* value;
+  const Column* angle;  // null: that of all
+  int turn;
+};
+
+std::vector<Part> PartsOf(const Map& map, const Track& track) {
+  std::vector<Part> parts;
+  for (const Column& column : track.columns) {
+    const int turn = column.IsNumber() ? TurnIn(column.name) : 0;
+    if (turn == 0 || IsAngle(map, column)) continue;
+    const auto angle = std::ranges::find_if(
+        track.columns, [&](const Column& c) { return c.IsNumber() && IsAngle(map, c) && TurnIn(c.name) == turn; });
+    parts.push_back({&column, angle == track.columns.end() ? nullptr : &*angle, turn});
+  }
+  return parts;
+}
+
+/// Columns of the rows in which each part has a value.
+class Stack {
+ public:
+  Stack(const Map& map, const Track& track, const std::vector<Part>& parts) : track_(track), parts_(parts) {
+    for (const Column& column : track.columns) {
+      if (TurnIn(column.name) == 0) shared_.push_back({column.name, column.unit, {}, column.words});
+    }
+    value_ = {OwnNameOf(map, *parts.front().value), parts.front().value->unit, {}, {}};
+    if (parts.front().angle) angle_ = {"angle", parts.front().angle->unit, {}, {}};
+  }
+
+  void Into(Track& track) {
+    for (std::size_t k = 0; k < parts_.size(); ++k) Take(parts_[k], static_cast<double>(k));
+    std::vector<Column> columns = std::move(shared_);
+    for (Column* column : {&angle_, &value_, &direction_, &run_}) {
+      if (!column->value.empty()) columns.push_back(std::move(*column));
+    }
+    track.columns = std::move(columns);
+    track.time_s.resize(track.Rows());
+    for (std::size_t i = 0; i < track.time_s.size(); ++i) track.time_s[i] = static_cast<double>(i);
+    track.clock = "none";  // they were not taken side by side
+  }
+
+ private:
+  void Take(const Part& part, double run) {
+    for (std::size_t row = 0; row < track_.Rows(); ++row) {
+      if (!std::isfinite(part.value->value[row])) continue;
+      std::size_t kept = 0;
+      for (const Column& column : track_.columns) {
+        if (TurnIn(column.name) == 0) shared_[kept++].value.push_back(column.value[row]);
+      }
+      if (part.angle) angle_.value.push_back(part.angle->value[row]);
+      value_.value.push_back(part.value->value[row]);
+      direction_.value.push_back(part.turn);
+      run_.value.push_back(run);
+    }
+  }
+
+  const Track& track_;
+  const std::vector<Part>& parts_;
+  std::vector<Column> shared_;
+  Column angle_, value_, direction_{"direction", "", {}, {}}, run_{"run", "", {}, {}};
+};
+
+}  // namespace
+
+void StackTurns(const Map& map, Track& track) {
+  if (std::ranges::find(map.sought, "turn", &Sought::kind) == map.sought.end()) return;
+  const Track whole = track;
+  const std::vector<Part> parts = PartsOf(map, whole);
+  if (!parts.empty()) Stack(map, whole, parts).Into(track);
+}
+
+}  // namespace twinbench::imports

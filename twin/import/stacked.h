@@ -1,0 +1,13 @@
+#pragma once
+
+#include "twin/import/map.h"
+#include "twin/import/recording.h"
+
+/// Tables that have a column for each way round.
+namespace twinbench::imports {
+
+/// Puts columns whose names say a way round ("CCW [µm]", "run 2 cw") below each other, with a column "direction" and one "run"; an
+/// angle of its own way round goes with each. Of a map that seeks a way round; other tables stay as they are.
+void StackTurns(const Map& map, Track& track);
+
+}  // namespace twinbench::imports
