@@ -86,15 +86,18 @@ Eigen::VectorXd SignalOf(const Term& term) {
   return term.columns * term.amplitudes;
 }
 
-/// What has a name and is like what has none may be no more than a piece of that: a constant beside the same that
-/// follows the temperature.
+/// What has a name and is like what has none may be no more than a piece of that, a constant beside the same that
+/// follows the temperature; and so may what is as small as the rest that a shape without a formula leaves.
 void MarkPieces(const SearchResult& found, Answered& answered) {
   Eigen::VectorXd unnamed = Eigen::VectorXd::Zero(found.terms.front().columns.rows());
   for (std::size_t k = 0; k < answered.answers.size(); ++k) {
     if (answered.answers[k].causes.empty()) unnamed += SignalOf(found.terms[k]);
   }
-  for (std::size_t k = 0; k < answered.answers.size(); ++k)
-    answered.answers[k].may_be_piece = Likeness(SignalOf(found.terms[k]), unnamed) > kAlike;
+  const double rest = tuning::kSmallRest * UnnamedPower(answered);
+  for (std::size_t k = 0; k < answered.answers.size(); ++k) {
+    Answer& answer = answered.answers[k];
+    answer.may_be_piece = answer.weight < rest || Likeness(SignalOf(found.terms[k]), unnamed) > kAlike;
+  }
 }
 
 /// Power of what has a name and is not like what has none.

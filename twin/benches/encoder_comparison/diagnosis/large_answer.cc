@@ -51,7 +51,8 @@ double ChanceOf(const LargeCause& cause, double readings) {
 }
 
 /// What has no name beside the large causes is said; it makes an unknown of the whole only if it explains more than
-/// they do. A cause that is like it may then be no more than a piece of it: it is as sure as it is large beside it.
+/// they do. A cause that is like it, or as small as what it leaves, may then be no more than a piece of it: it is as
+/// sure as it is large beside it.
 void WeighTheRest(const LargeCauses& large, Diagnosis& d, std::vector<Cause>& causes) {
   if (d.verdict != Verdict::kUnknown) return;
   const std::vector<Eigen::VectorXd> shapes = UnnamedOf(large);
@@ -65,8 +66,10 @@ void WeighTheRest(const LargeCauses& large, Diagnosis& d, std::vector<Cause>& ca
   auto at = causes.begin();
   for (const LargeCause& cause : large.causes) {
     const Eigen::VectorXd shown = AboutMean(cause.shown);
-    const bool is_like = std::ranges::any_of(shapes, [&](const Eigen::VectorXd& shape) { return Likeness(shown, shape) > kAlike; });
-    const double share = is_like ? shown.squaredNorm() / (shown.squaredNorm() + unnamed) : 1.0;
+    const bool may_be_piece =
+        shown.squaredNorm() < tuning::kSmallRest * unnamed ||
+        std::ranges::any_of(shapes, [&](const Eigen::VectorXd& shape) { return Likeness(shown, shape) > kAlike; });
+    const double share = may_be_piece ? shown.squaredNorm() / (shown.squaredNorm() + unnamed) : 1.0;
     for (std::size_t k = 0; k < cause.causes.size(); ++k, ++at) at->probability *= share;
   }
 }

@@ -1,0 +1,78 @@
+#include "twin/benches/encoder_comparison/diagnosis/ties.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "twin/diagnose/tuning.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+/// Puts the j-th member of the k-th tie into the twin instead of the first, with the size that the others leave it.
+/// @return false if it cannot be asked about.
+bool LetLead(const TwinFit& fit, std::size_t k, std::size_t j, const AskedAgain& asked,
+             std::vector<LargeCause>& causes) {
+  const LinearRun& plain = fit.Run().run;
+  const auto family = std::ranges::find_if(
+      fit.Families(), [&](const Family& f) { return f.kind == Kind::kNamed && IsOf(causes[k].causes[j], f); });
+  if (family == fit.Families().end()) return false;
+  const Eigen::VectorXd left = plain.residual - fit.Shown(EffectsWithout(k, asked.effects));
+  const double explained = causes[k].explained;
+  causes[k].causes[j].parameters = CauseFrom(*family, 0, left, plain.sigma, fit.projector()).parameters;
+  causes[k].causes.front().parameters.clear();  // it is not what is fitted
+  causes[k] = LedBy(causes[k].causes, j, plain.bench);
+  causes[k].explained = explained;
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    if (i != k) causes[i].effect = asked.effects[i];
+  }
+  return !MovableOf({causes[k]}).empty();
+}
+
+/// With the j-th member of the k-th tie in the twin.
+std::optional<FittedCauses> LedByOther(const TwinFit& fit, std::size_t k, std::size_t j, const FittedCauses& now) {
+  std::vector<LargeCause> causes = now.causes;
+  if (!LetLead(fit, k, j, now.asked, causes)) return {};
+  return fit.Fit(std::move(causes));
+}
+
+/// @param ties  By cause, the members that explain as much as the one that leads it now.
+/// @return the first that is clearly better led by another one.
+std::optional<FittedCauses> BetterLed(const TwinFit& fit, const FittedCauses& now,
+                                      std::vector<std::vector<Cause>>& ties) {
+  ties.clear();
+  const double memory = fit.Memory(now.asked.left);
+  for (std::size_t k = 0; k < now.causes.size(); ++k) {
+    ties.push_back({now.causes[k].causes.front()});
+    for (std::size_t j = 1; j < now.causes[k].causes.size(); ++j) {
+      std::optional<FittedCauses> other = LedByOther(fit, k, j, now);
+      if (!other) continue;
+      const double of_rest = std::max(1.0, std::min(other->power, now.power) / fit.projector().DegreesOfFreedom());
+      const double noise = std::max(memory * of_rest, kAsExact * now.causes[k].explained / kBetter);
+      const double more = other->Costs(noise) - now.Costs(noise);
+      if (more < -0.5 * kBetter) return other;
+      if (more <= kBetter) ties.back().push_back(now.causes[k].causes[j]);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+bool SettleTies(const TwinFit& fit, FittedCauses& now) {
+  constexpr int kMostRounds = 16;  // noise is judged anew each time: two might be better than each other
+  std::vector<std::vector<Cause>> ties;
+  bool is_changed = false;
+  std::optional<FittedCauses> better = BetterLed(fit, now, ties);
+  for (int round = 0; better && round < kMostRounds; ++round) {
+    now = *std::move(better);
+    is_changed = true;
+    better = BetterLed(fit, now, ties);
+  }
+  for (std::size_t k = 0; k < now.causes.size(); ++k) {
+    if (ties[k].size() == 1 && now.causes[k].causes.size() > 1) ties[k].front().probability = tuning::kListed;
+    now.causes[k].causes = std::move(ties[k]);
+  }
+  return is_changed;
+}
+
+}  // namespace twinbench::diagnose::encoder

@@ -1,0 +1,69 @@
+#include "twin/benches/encoder_comparison/diagnosis/twin_fit.h"
+
+#include <algorithm>
+
+#include "twin/benches/encoder_comparison/diagnosis/memory.h"
+#include "twin/benches/encoder_comparison/format.h"
+#include "twin/diagnose/tuning.h"
+
+namespace twinbench::diagnose::encoder {
+
+bool IsHeld(const EffectSettings& effect) {
+  return Deviations(effect) > tuning::kHeadline;
+}
+
+std::vector<EffectSettings> EffectsWithout(std::size_t k, const std::vector<EffectSettings>& effects) {
+  std::vector<EffectSettings> others = effects;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+  return others;
+}
+
+TwinFit::TwinFit(const LargeCauses& large, const Scenario& scenario, const model::FollowMaker& follow)
+    : large_(large), scenario_(scenario), follow_(follow) {
+  const LinearRun& plain = Run().run;
+  const NoiseModel noise{plain.sigma, 0.0};
+  projector_ = std::make_unique<Projector>(noise.Whiten(plain, plain.nuisance.jacobian), plain.nuisance);
+  nothing_ = FollowTwin(Run(), scenario_, follow_).error_rad;
+}
+
+Scenario TwinFit::With(const std::vector<EffectSettings>& effects) const {
+  Scenario scenario = scenario_;
+  scenario.effects.insert(scenario.effects.end(), effects.begin(), effects.end());
+  return scenario;
+}
+
+Eigen::VectorXd TwinFit::Shown(const std::vector<EffectSettings>& effects) const {
+  return FollowTwin(Run(), With(effects), follow_).error_rad - nothing_;
+}
+
+Eigen::VectorXd TwinFit::WhiteOf(const Eigen::VectorXd& rows) const {
+  const Eigen::MatrixXd white = Run().run.sigma.cwiseInverse().asDiagonal() * rows;
+  return Project(*projector_, {}, white).rows.col(0);
+}
+
+double TwinFit::Memory(const Eigen::VectorXd& rows) const {
+  return MemoryOf(WhiteOf(rows), Run().run.schedule.pass);
+}
+
+double TwinFit::PowerWithout(std::size_t k, const AskedAgain& asked) const {
+  return PowerOf(Run().run.residual - Shown(EffectsWithout(k, asked.effects)));
+}
+
+AskedAgain TwinFit::Ask(const std::vector<LargeCause>& causes, const Eigen::VectorXd& rows) const {
+  return AskAgain([this](const auto& effects) { return Shown(effects); }, EffectsOf(causes), MovableOf(causes),
+                  benches::encoder::Format().effects, rows, Run().run.sigma, *projector_);
+}
+
+FittedCauses TwinFit::Fit(std::vector<LargeCause> causes) const {
+  for (;;) {
+    AskedAgain asked = Ask(causes);
+    const std::size_t before = causes.size();
+    TakeOver(asked, causes);
+    std::erase_if(causes, [](const LargeCause& cause) { return !IsHeld(cause.effect); });
+    if (causes.size() < before) continue;
+    const double power = PowerOf(asked.left);
+    return {std::move(causes), std::move(asked), power};
+  }
+}
+
+}  // namespace twinbench::diagnose::encoder
