@@ -300,7 +300,7 @@ TEST(WriteScenario, OfAnAngleComparisonHasNoKeyOfTheRotaryBench) {
   scenario.bench = kEncoderBench;
   const std::string text = WriteScenario(scenario);
   EXPECT_THAT(text, testing::HasSubstr("\n[encoder_procedure]\nkind = \"stops\"\n"));
-  for (const char* table : {"[laser]", "[target]", "[environment]", "[procedure]"})
+  for (const char* table : {"[laser]", "[target]", "[procedure]"})
     EXPECT_THAT(text, testing::Not(testing::HasSubstr(table)));
 }
 

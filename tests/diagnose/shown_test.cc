@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/diagnose/support/synthetic_run.h"
+#include "twin/benches/names.h"
 #include "twin/core/units.h"
 
 namespace twinbench::diagnose {
@@ -101,6 +102,7 @@ TEST(ErrorCurve, HoldsBothDirectionsAtThePlacesOfOneTurn) {
 TEST(ErrorCurve, OfALinearAxisIsAgainstItsPosition) {
   DiagnosisRun found = StopsWithPlay(0.25);
   // A turn of the bench's angle is 2 mm of way: 90 deg are 0.5 mm.
+  found.run.bench = kEncoderBench;
   found.run.unit = "mm";
   found.run.to_SI = 180.0 * units::deg;
   const ErrorCurve curve = ShownBy(found).curve;

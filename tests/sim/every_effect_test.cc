@@ -31,6 +31,7 @@ const QuickBench kQuickBenches[] = {
      1e-4},  // 50 nm on the PSD
     {kEncoderBench,
      [](Scenario& s) {
+       s.environment.drift_K_h = 10.0;
        EncoderOf(s).encoder_procedure.kind = "sweep";
        EncoderOf(s).device.lines = 90;
      },

@@ -215,6 +215,7 @@ json RankedJson(const std::vector<RankedError>& ranked) {
                     {"key", e.size.key},
                     {"value", In(1.0, e.size.value)},
                     {"u", In(1.0, e.size.u)},
+                    {"u_parts", PartsOf(e.size.quantisation, e.size.repeatability, 0.0)},
                     {"unit", e.size.unit},
                     {"share_um", In(um, e.alone_m)},
                     {"share", In(1.0, e.share)}});
