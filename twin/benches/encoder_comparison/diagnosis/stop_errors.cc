@@ -49,8 +49,7 @@ Eigen::VectorXd LeftOver(const LargeCauses& large) {
 
 /// At each reading, the mean at its target.
 Eigen::VectorXd MeansAt(const Eigen::MatrixXd& targets, const Eigen::VectorXd& rows) {
-  const Eigen::VectorXd count = targets.colwise().sum().transpose();
-  return targets * Eigen::VectorXd((targets.transpose() * rows).cwiseQuotient(count));
+  return targets * AtTargets(targets, rows);
 }
 
 /// A shape without a name that goes by the angle.

@@ -7,11 +7,6 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-/// Mean of one value a reading at each target.
-Eigen::VectorXd AtTargets(const Eigen::MatrixXd& targets, const Eigen::VectorXd& values) {
-  return (targets.transpose() * values).cwiseQuotient(targets.colwise().sum().transpose());
-}
-
 /// cos(k pi (angle - begin) / travel), k = 0, 1, ...; the ends lie half a step beyond the outer targets.
 struct HalfPeriods {
   double begin_rad, per_rad;  // of k
@@ -43,6 +38,10 @@ std::vector<Product> ProductsOf(const HalfPeriods& modes, const Eigen::VectorXd&
 }
 
 }  // namespace
+
+Eigen::VectorXd AtTargets(const Eigen::MatrixXd& targets, const Eigen::VectorXd& values) {
+  return (targets.transpose() * values).cwiseQuotient(targets.colwise().sum().transpose());
+}
 
 Accepted CurveThrough(const SignalContext& context, const Eigen::MatrixXd& targets, const Eigen::VectorXd& error_rad) {
   constexpr Eigen::Index kMostWaves = 100;  // of a file that somebody may still read

@@ -5,9 +5,12 @@
 
 namespace twinbench::diagnose::encoder {
 
+/// Mean of one value a reading at each target.
+/// @param targets  Readings x targets: 1 where a reading is at one.
+Eigen::VectorXd AtTargets(const Eigen::MatrixXd& targets, const Eigen::VectorXd& values);
+
 /// Errors of targets as a structure without a name, and as waves of the device's angle that a twin can carry out:
 /// cosines of half periods over the travel, one a target, which pass through all of them.
-/// @param targets    Readings x targets: 1 where a reading is at one.
 /// @param error_rad  One a reading, the same at every visit.
 Accepted CurveThrough(const SignalContext& context, const Eigen::MatrixXd& targets, const Eigen::VectorXd& error_rad);
 
