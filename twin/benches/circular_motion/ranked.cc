@@ -37,11 +37,7 @@ double Alone_m(const CircleAnalysis& a, const Iso230_4& of, const std::string& k
     point.commanded_rad = p.commanded_rad;
     point.d_m = radial_m * p.Commanded_m() / p.radius_m;
   }
-  const Iso230_4 alone = CircularDeviations(paths, {}).front();
-  for (const Iso230_4Value& G : {alone.G_b, alone.G_ccw, alone.G_cw}) {
-    if (std::isfinite(G.value_m)) return G.value_m;
-  }
-  return kNaN;
+  return CircularDeviation_m(paths);
 }
 
 std::vector<RankedError> RankedAt(const CircleAnalysis& a, const Iso230_4& of, const std::vector<ErrorValue>& errors) {

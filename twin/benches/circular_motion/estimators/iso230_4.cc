@@ -261,6 +261,13 @@ std::vector<std::pair<std::string, Iso230_4Value>> NamedValues(const Iso230_4& d
           {"H", d.H}};
 }
 
+double CircularDeviation_m(const std::vector<CirclePath>& paths) {
+  std::vector<const CirclePath*> all;
+  for (const CirclePath& path : paths) all.push_back(&path);
+  const Radii radii = RadiiOf(all);
+  return radii.Count() == 0 ? kNaN : RangeOf(AboutOwnCentre(radii), {}).value_m;
+}
+
 std::vector<Iso230_4> CircularDeviations(const std::vector<CirclePath>& paths, const SharedUncertainty& shared) {
   std::vector<std::vector<const CirclePath*>> groups;
   for (const CirclePath& path : paths) {

@@ -37,4 +37,7 @@ std::vector<std::pair<std::string, Iso230_4Value>> NamedValues(const Iso230_4& d
 /// @param shared  Unknowns behind the paths; empty: no uncertainty is stated.
 std::vector<Iso230_4> CircularDeviations(const std::vector<CirclePath>& paths, const SharedUncertainty& shared);
 
+/// G of all paths about one centre, G(b) where they have both directions: nothing else is worked out. NaN without readings.
+double CircularDeviation_m(const std::vector<CirclePath>& paths);
+
 }  // namespace twinbench::separate::circular
