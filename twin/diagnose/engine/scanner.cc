@@ -82,7 +82,7 @@ double PseudoDegrees(const LinearRun& run) {
 
 Scanner::Scanner(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
                  const std::vector<Family>& families)
-    : run_(run), noise_(noise), projector_(projector), families_(families) {
+    : run_(run), noise_(noise), projector_(projector), families_(families), known_(run_, noise_, bundles_) {
   std::vector<const Base*> bases;
   std::vector<std::vector<int>> sharing;
   for (int k = 0; k < std::ssize(families_); ++k) {
@@ -101,8 +101,26 @@ Scanner::Scanner(const LinearRun& run, const NoiseModel& noise, const Projector&
   }
 }
 
-void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Unwhitened& rows,
-                         const Deflation& deflation, const Unwhitened& removed_rows, Evidence& out) const {
+/// One run is scanned again and again beside the same few causes; of many there is a first time only, and what they
+/// have in common with all signatures fills the memory.
+std::vector<Scanner::Products> Scanner::ProductsOf(const Projected& data, const Deflation& deflation,
+                                                   const Unwhitened& runs) const {
+  const bool is_one = data.rows.cols() == 1, has_causes = deflation.Rank() > 0;
+  const Eigen::MatrixXd& before = has_causes ? data.before : data.rows;
+  const std::vector<RunsByRow> of_data = is_one ? known_.Of(before) : std::vector<RunsByRow>(bundles_.size());
+  const std::vector<RunsByRow> of_causes = known_.Of(has_causes ? deflation.ProjectedColumns() : Eigen::MatrixXd());
+  std::vector<Products> products(bundles_.size());
+  for (std::size_t b = 0; b < bundles_.size(); ++b) {
+    if (has_causes) products[b].removed.noalias() = of_causes[b] * deflation.Transform();
+    products[b].data = of_data[b];
+    if (is_one && has_causes) products[b].data.noalias() -= products[b].removed * data.taken;
+    if (!is_one) products[b].runs = &runs;
+  }
+  return products;
+}
+
+void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Deflation& deflation, Products all,
+                         Evidence& out) const {
   const Eigen::Index runs = data.rows.cols();
   const double nu = PseudoDegrees(run_);
   const double half = 0.5 * (nu + projector_.DegreesOfFreedom() - deflation.Rank());
@@ -116,24 +134,20 @@ void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Unwh
     const Eigen::MatrixXd sd = PriorSds(family).asDiagonal();
     scaled.push_back(family.base ? Eigen::MatrixXd(family.map * sd) : sd);
   }
-  RunsByRow products, removed;  // of the present chunk
-  Eigen::MatrixXd gram;         // of the grid point
+  Eigen::MatrixXd gram;  // of the grid point
   Eigen::ArrayXd log_bayes(runs);
   for (int g = 0; g < bundle.Grid(); ++g) {
-    if (g % bundle.Step() == 0) {
-      products = bundle.Products(g / bundle.Step(), rows);
-      if (deflation.Rank() > 0) removed = bundle.Products(g / bundle.Step(), removed_rows);
-    }
-    const Eigen::Index at = (g % bundle.Step()) * bundle.Columns();
+    if (all.runs && g % bundle.Step() == 0) all.data = bundle.Products(g / bundle.Step(), *all.runs);
+    const auto products = all.data.middleRows((all.runs ? g % bundle.Step() : g) * bundle.Columns(), bundle.Columns());
     gram = bundle.Gram(g);
     if (deflation.Rank() > 0) {
-      const auto r = removed.middleRows(at, bundle.Columns());
+      const auto r = all.removed.middleRows(g * bundle.Columns(), bundle.Columns());
       gram.noalias() -= r * r.transpose();
     }
     for (std::size_t m = 0; m < members.size(); ++m) {
       const Family& family = families_[static_cast<std::size_t>(members[m])];
       const Eigen::MatrixXd& own = scaled[m];
-      const RunsByRow product = own.transpose().lazyProduct(products.middleRows(at, bundle.Columns()));
+      const RunsByRow product = own.transpose().lazyProduct(products);
       const double raw = (own.transpose() * bundle.Raw(g) * own).trace();
       const Spectrum s = SpectrumOf(own.transpose() * gram * own, product, raw);
       const auto row = static_cast<Eigen::Index>(members[m]);
@@ -212,9 +226,10 @@ Evidence Scanner::Scan(const Projected& data, const Deflation& deflation) const 
   out.log_bayes.resize(std::ssize(families_), data.rows.cols());
   out.explained.setZero(std::ssize(families_), data.rows.cols());
   out.grid_point.setZero(std::ssize(families_), data.rows.cols());
-  const Unwhitened rows(run_, noise_, data.rows);
-  const Unwhitened removed(run_, noise_, deflation.BasisOf(run_.Rows()));
-  for (const Bundle& bundle : bundles_) ScanBundle(bundle, data, rows, deflation, removed, out);
+  const Unwhitened runs(run_, noise_, data.rows);
+  std::vector<Products> products = ProductsOf(data, deflation, runs);
+  for (std::size_t b = 0; b < bundles_.size(); ++b)
+    ScanBundle(bundles_[b], data, deflation, std::move(products[b]), out);
   return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include "twin/diagnose/engine/bundle.h"
 #include "twin/diagnose/engine/family.h"
+#include "twin/diagnose/engine/known_products.h"
 #include "twin/diagnose/engine/linear_run.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
@@ -18,24 +19,30 @@ class Deflation {
   /// @param columns  Whitened signatures of the accepted causes, rows x any; dependent ones are dropped.
   Deflation(const Projector& projector, const Eigen::MatrixXd& columns);
 
-  const Eigen::MatrixXd& Basis() const { return basis_; }  // rows x independent columns
+  const Eigen::MatrixXd& Basis() const { return basis_; }  // rows x independent columns: ProjectedColumns() * Transform()
+  const Eigen::MatrixXd& ProjectedColumns() const { return projected_; }
+  const Eigen::MatrixXd& Transform() const { return transform_; }
   /// The same of nothing: no columns, but so many rows.
   Eigen::MatrixXd BasisOf(Eigen::Index rows) const { return Rank() > 0 ? basis_ : Eigen::MatrixXd(rows, 0); }
   /// Takes the causes out of data that were projected with W.
   Eigen::MatrixXd Apply(const Eigen::MatrixXd& projected) const;
+  /// Of them, what Apply takes out along the basis: independent columns x any.
+  Eigen::MatrixXd Along(const Eigen::MatrixXd& projected) const { return dual_.transpose() * projected; }
   /// Coefficients of the causes in projected data, and their covariance for unit noise.
   Eigen::MatrixXd Amplitudes(const Eigen::MatrixXd& projected) const { return solve_ * projected; }
   const Eigen::MatrixXd& Covariance() const { return covariance_; }
   int Rank() const { return static_cast<int>(basis_.cols()); }
 
  private:
-  Eigen::MatrixXd basis_, dual_, solve_, covariance_;
+  Eigen::MatrixXd projected_, transform_, basis_, dual_, solve_, covariance_;
 };
 
 /// Data that the free unknowns have had their share of.
 struct Projected {
-  Eigen::MatrixXd rows;   // W y, rows x runs
-  Eigen::VectorXd power;  // y' W y, one a run
+  Eigen::MatrixXd rows;    // W y, rows x runs
+  Eigen::VectorXd power;   // y' W y, one a run
+  Eigen::MatrixXd before;  // the same before causes were taken out; empty if there were none
+  Eigen::MatrixXd taken;   // what they took, along the deflation's basis
 };
 Projected Project(const Projector& projector, const Deflation& deflation, const Eigen::MatrixXd& white);
 
@@ -91,14 +98,21 @@ class Scanner {
 
  private:
   const Bundle& BundleOf(int family) const;
-  void ScanBundle(const Bundle& bundle, const Projected& data, const Unwhitened& rows, const Deflation& deflation,
-                  const Unwhitened& removed, Evidence& sums) const;
+  /// S'F'Y of one bundle.
+  struct Products {
+    const Unwhitened* runs = nullptr;  // of which they are made by chunks; none: they are all there
+    RunsByRow data, removed;
+  };
+  std::vector<Products> ProductsOf(const Projected& data, const Deflation& deflation, const Unwhitened& runs) const;
+  void ScanBundle(const Bundle& bundle, const Projected& data, const Deflation& deflation, Products products,
+                  Evidence& sums) const;
 
   const LinearRun& run_;
   const NoiseModel noise_;
   const Projector& projector_;
   const std::vector<Family>& families_;
   std::vector<Bundle> bundles_;
+  mutable KnownProducts known_;  // no two scans at a time
 };
 
 }  // namespace twinbench::diagnose
