@@ -1,7 +1,10 @@
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <complex>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -67,17 +70,22 @@ class Search {
     large_.targets = targets;
   }
 
-  /// @param known  Large causes that a part of the readings has shown.
-  LargeCauses Go(std::vector<LargeCause> known) {
+  /// @param known      Large causes that a part of the readings has shown.
+  /// @param most_left  Power that the large causes may leave, or the rest is not looked into.
+  std::optional<LargeCauses> Go(std::vector<LargeCause> known,
+                                double most_left = std::numeric_limits<double>::infinity()) {
     Begin(known.empty() ? kFewCauses : 0);
     if (!TakeKnown(std::move(known))) TakeSignals();
-    TakeAll();
+    TakeLarge();
+    if (power_ - kFewCauses * kLarge * kLarge > most_left) return std::nullopt;  // what is not large has yet to be taken
+    while (SearchOn()) TakeLarge();
     LeaveToLarge();
     DropNeedless();
     EndTies();
     MoveBesideTheRest();
     JudgeUnsure();
     TellWhatEachShows();
+    TellWhatNamesLeave();
     return std::move(large_);
   }
 
@@ -87,8 +95,7 @@ class Search {
     how_.null = &null_;
     Begin(kFewCauses);
     TakeSignals();
-    while (large_.causes.size() < kMostLarge && TakeNext()) {
-    }
+    TakeLarge();
     return large_.causes;
   }
 
@@ -142,11 +149,9 @@ class Search {
     Accept(all.asked, std::move(all.causes), kFewCauses);
   }
 
-  void TakeAll() {
-    do {
-      while (large_.causes.size() < kMostLarge && TakeNext()) {
-      }
-    } while (SearchOn());
+  void TakeLarge() {
+    while (large_.causes.size() < kMostLarge && TakeNext()) {
+    }
   }
 
   /// For all that is left, where the last search ended at the first.
@@ -353,6 +358,18 @@ class Search {
     }
   }
 
+  void TellWhatNamesLeave() {
+    const Searched& last = large_.Last();
+    Eigen::VectorXd rows = large_.first->encoder.run.residual;
+    for (const LargeCause& cause : large_.causes) rows -= cause.shown;
+    for (const Term& term : last.analysis.found.terms) {
+      if (last.families[static_cast<std::size_t>(term.family)].kind == Kind::kNamed) rows -= term.columns * term.amplitudes;
+    }
+    large_.left = power_;
+    large_.named_left = fit_->PowerOf(rows);
+    large_.memory = fit_->Memory(rows);
+  }
+
   const std::vector<Reading>& readings_;
   const Scenario& scenario_;
   const DiagnoseOptions& options_;
@@ -365,6 +382,46 @@ class Search {
   double power_ = 0.0;
 };
 
+/// What stays behind on a reversal, with a course of its own behind it.
+constexpr std::array kLoops = {"backlash", "hysteresis"};
+
+bool HasLoop(const LargeCauses& large) {
+  return std::ranges::any_of(large.causes, [](const LargeCause& cause) {
+    return std::ranges::count(kLoops, cause.effect.name) > 0;
+  });
+}
+
+/// Free numbers of all that has a name.
+double NamedNumbers(const LargeCauses& large) {
+  std::size_t numbers = MovableOf(large.causes).size();
+  const Searched& last = large.Last();
+  for (const Term& term : last.analysis.found.terms) {
+    if (last.families[static_cast<std::size_t>(term.family)].kind != Kind::kNamed) continue;
+    numbers += static_cast<std::size_t>(term.shape.size() + term.amplitudes.size());
+  }
+  return static_cast<double>(numbers);
+}
+
+/// Schwarz's criterion, in the noise that the better of the two leaves.
+bool IsBetterNamed(const LargeCauses& a, const LargeCauses& b) {
+  constexpr double kStrongly = 10.0;
+  const auto readings = static_cast<double>(a.first->encoder.run.Rows());
+  const LargeCauses& better = a.named_left < b.named_left ? a : b;
+  const double noise = better.memory * std::max(1.0, better.named_left / readings);
+  const double more = (a.named_left - b.named_left) / noise + std::log(readings) * (NamedNumbers(a) - NamedNumbers(b));
+  return more < -kStrongly;
+}
+
+/// On the move a loop may stand for several causes at once that are plain: for a lag and a scale, say.
+LargeCauses OrWithoutLoops(LargeCauses found, const std::vector<Reading>& readings, const Scenario& scenario,
+                           DiagnoseOptions options, const model::FollowMaker& follow) {
+  constexpr double kNearly = 1.02;
+  if (!HasLoop(found) || !found.first->encoder.context.Moves()) return found;
+  options.excluded.insert(options.excluded.end(), kLoops.begin(), kLoops.end());
+  std::optional<LargeCauses> plain = Search(readings, scenario, options, follow, {}).Go({}, kNearly * found.left);
+  return plain && IsBetterNamed(*plain, found) ? *std::move(plain) : std::move(found);
+}
+
 }  // namespace
 
 LargeCauses FindLargeCauses(const std::vector<Reading>& readings, const Scenario& scenario,
@@ -372,10 +429,11 @@ LargeCauses FindLargeCauses(const std::vector<Reading>& readings, const Scenario
   const std::vector<Reading> part = PartOf(readings);
   std::vector<LargeCause> known;
   if (part.size() < readings.size()) known = Search(part, scenario, options, follow, {}).Look();
-  LargeCauses plain = Search(readings, scenario, options, follow, {}).Go(known);
+  LargeCauses plain = OrWithoutLoops(*Search(readings, scenario, options, follow, {}).Go(known), readings, scenario,
+                                     options, follow);
   const Eigen::MatrixXd targets = Targets(plain.first->encoder.context);
   if (targets.size() == 0 || !LeaveErrorsOfTargets(plain, targets)) return plain;
-  return Search(readings, scenario, options, follow, targets).Go(known);
+  return *Search(readings, scenario, options, follow, targets).Go(known);
 }
 
 }  // namespace twinbench::diagnose::encoder

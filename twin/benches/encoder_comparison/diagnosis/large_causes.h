@@ -14,6 +14,9 @@ struct LargeCauses {
   std::unique_ptr<Searched> last;   // the large ones in the twin, their parameters free; the same if there is none
   std::vector<LargeCause> causes;   // in the order in which they were found
   Eigen::MatrixXd targets;          // whose errors are free (stop_errors.h): rows x targets; empty: none are
+  double left = 0.0;                // power that they leave, in units of the first noise
+  double named_left = 0.0;          // that all that has a name leaves
+  double memory = 1.0;              // of that (memory.h)
 
   const Searched& Last() const { return last ? *last : *first; }
 };
