@@ -7,6 +7,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 #include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
+#include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/benches/encoder_comparison/estimators/coast_passes.h"
 #include "twin/benches/encoder_comparison/twin/factory.h"
 #include "twin/diagnose/conclusion.h"
@@ -45,9 +46,10 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
   diagnose::encoder::AddLargeCauses(large, result);
   diagnose::encoder::AddErrorsOfTargets(large, result);
   diagnose::encoder::TellEqualSteps(result);
+  diagnose::encoder::TellWander(result);
   result.diagnosis.left_out = searched.encoder.left_out;
   result.diagnosis.harmonics =
-      diagnose::encoder::HarmonicTable(large.first->encoder, {searched.encoder.run.sigma, 0.0});
+      diagnose::encoder::HarmonicTable(large.first->encoder, {searched.encoder.run.sigma, {}});
   const DeviceSettings& device = EncoderOf(scenario).device;
   if (device.turn_m > 0.0) TellLengths(CoarseUnit(device), result.diagnosis);
   return result;

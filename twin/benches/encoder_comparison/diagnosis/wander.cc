@@ -1,0 +1,123 @@
+#include "twin/benches/encoder_comparison/diagnosis/wander.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "twin/diagnose/cause_groups.h"
+#include "twin/diagnose/tuning.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+/// Readings from which a memory as long as a part of them can be seen.
+constexpr Eigen::Index kFewest = 128;
+
+/// Changes of some rows over a lag; a walk goes on from pass to pass, and not over a new mounting.
+std::vector<double> Changes(const Eigen::VectorXd& rows, const std::vector<int>& setup, Eigen::Index lag,
+                            Eigen::Index step) {
+  std::vector<double> changes;
+  for (Eigen::Index i = lag; i < rows.size(); i += step) {
+    if (setup[static_cast<std::size_t>(i)] == setup[static_cast<std::size_t>(i - lag)])
+      changes.push_back(rows[i] - rows[i - lag]);
+  }
+  return changes;
+}
+
+double MeanSquare(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v * v;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+/// What no accepted cause explains.
+struct Walk {
+  Eigen::VectorXd left;
+  const std::vector<int>& setup;  // by reading
+  Eigen::Index lag = 0;           // readings that its steps are told over: the run shows them many times
+
+  double Change(Eigen::Index over) const { return MeanSquare(Changes(left, setup, over, 1)); }
+};
+
+Walk WalkOf(const DiagnosisRun& result) {
+  constexpr Eigen::Index kTimes = 16;
+  Walk walk{result.run.residual, result.run.schedule.setup, result.run.Rows() / kTimes};
+  for (const Accepted& accepted : result.accepted) walk.left -= accepted.columns * accepted.amplitudes;
+  return walk;
+}
+
+/// What it is it has walked to, and it goes on: readings that remember some others alone do not.
+bool IsWalk(const Walk& walk) {
+  constexpr double kFurther = 2.5;  // over eight times the lag: 8 of a walk, 1.5 where readings are correlated by 0.9
+  constexpr double kMost = 4.0;     // from one reading to the next
+  return walk.Change(2 * walk.lag) > kFurther * walk.Change(walk.lag / 4) && walk.Change(walk.lag) > kMost * walk.Change(1);
+}
+
+/// How likely a walk of this kind would not show as much by chance. A wave comes back to where it was after some lags,
+/// and not after all.
+double ChanceBeside(const Walk& walk, const Eigen::VectorXd& shown) {
+  double deviations2 = 0.0;
+  for (const Eigen::Index lag : {Eigen::Index{1}, walk.lag / 4, walk.lag / 2, walk.lag}) {
+    const std::vector<double> changes = Changes(shown, walk.setup, lag, lag);
+    deviations2 = std::max(deviations2, MeanSquare(changes) * static_cast<double>(changes.size()) / walk.Change(lag));
+  }
+  return 1.0 / (1.0 + std::exp(-0.5 * (deviations2 - tuning::kHeadline * tuning::kHeadline)));
+}
+
+double AboutMean(const Eigen::VectorXd& rows) {
+  return (rows.array() - rows.mean()).matrix().squaredNorm();
+}
+
+/// Those that are as sure as what is accepted: it, and what ties with it. Of several of one name the first that is not
+/// in `done`, which it joins.
+CauseGroup GroupOf(const Accepted& accepted, const std::vector<Cause>& causes, std::vector<bool>& done) {
+  for (const CauseGroup& group : GroupsOf(causes)) {
+    const auto is_it = [&](std::size_t k) {
+      return !done[k] && causes[k].effect == accepted.family.effect && causes[k].where == accepted.family.where;
+    };
+    if (std::ranges::none_of(group, is_it)) continue;
+    for (const std::size_t k : group) done[k] = true;
+    return group;
+  }
+  return {};
+}
+
+/// What is no more than a piece of it loses its name.
+/// @return the power of what keeps one.
+double GiveToWander(DiagnosisRun& result, const Walk& walk, Eigen::VectorXd& wander) {
+  std::vector<Cause>& causes = result.diagnosis.causes;
+  const std::vector<Cause> before = causes;
+  std::vector<bool> done(causes.size());
+  double named = 0.0;
+  for (const Accepted& accepted : result.accepted) {
+    if (accepted.family.kind != Kind::kNamed) continue;
+    const Eigen::VectorXd shown = accepted.columns * accepted.amplitudes;
+    const double chance = ChanceBeside(walk, shown);
+    for (const std::size_t k : GroupOf(accepted, before, done)) causes[k].probability *= chance;
+    wander += (1.0 - chance) * shown;
+    named += chance * AboutMean(shown);
+  }
+  return named;
+}
+
+}  // namespace
+
+void TellWander(DiagnosisRun& result) {
+  const LinearRun& run = result.run;
+  if (run.Channels() != 1 || run.Rows() < kFewest) return;
+  const Walk walk = WalkOf(result);
+  if (!IsWalk(walk)) return;
+  Diagnosis& d = result.diagnosis;
+  Eigen::VectorXd wander = walk.left;
+  const double named = GiveToWander(result, walk, wander);
+  const double amplitude = std::sqrt(2.0 * AboutMean(wander) / static_cast<double>(run.Rows()));
+  const std::string words = fmt::format("random walk, function of time, on angle, amplitude {:.2g} {}",
+                                        amplitude / run.to_SI, run.unit);
+  d.unknown.signature += (d.unknown.signature.empty() ? "" : " | ") + words;
+  d.unknown.probability = std::max(d.unknown.probability, tuning::kListed);
+  if (d.verdict == Verdict::kNone || AboutMean(wander) > named) d.verdict = Verdict::kUnknown;
+}
+
+}  // namespace twinbench::diagnose::encoder
