@@ -214,7 +214,7 @@ TEST(ChangeOfTables, IsTheMoveOfEachSeries) {
   run.nuisance.prior_precision = Eigen::VectorXd::Constant(unknowns, 1e-12);
   run.residual = cause.columns.col(0);
   run.sigma = Eigen::VectorXd::Constant(2 * unknowns, 1e-9);
-  const rotary::ChangeOfUnknowns change = rotary::ChangeOfTables(run, {run.sigma, 0.0}, {cause}, kPositions);
+  const rotary::ChangeOfUnknowns change = rotary::ChangeOfTables(run, {run.sigma, {}}, {cause}, kPositions);
   EXPECT_NEAR(change.target_rms[static_cast<std::size_t>(Component::kDy)], 2e-6, 1e-12);
   EXPECT_NEAR(change.reference_rms[static_cast<std::size_t>(Component::kEz)], units::arcsec, 1e-12);
   EXPECT_NEAR(change.target_rms[static_cast<std::size_t>(Component::kEx)], 0.0, 1e-15);

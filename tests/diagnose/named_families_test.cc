@@ -188,7 +188,7 @@ class Against {
 
  private:
   Eigen::MatrixXd White(const Eigen::MatrixXd& rows) const {
-    return NoiseModel{run_.sigma, 0.0}.Whiten(run_, rows);
+    return NoiseModel{run_.sigma, {}}.Whiten(run_, rows);
   }
   Eigen::MatrixXd Projected(const Eigen::MatrixXd& rows) const { return projector_.Apply(White(rows)); }
 

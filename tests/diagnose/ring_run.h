@@ -88,7 +88,7 @@ inline LinearRun MakeRing(const RingShape& shape = {}) {
 }
 
 inline NoiseModel WhiteNoise(const LinearRun& run) {
-  return {run.sigma, 0.0};
+  return {run.sigma, {}};
 }
 
 /// White noise of the stated size.

@@ -7,6 +7,7 @@
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/stream.h"
 #include "twin/diagnose/engine/bundle.h"
+#include "twin/diagnose/engine/known_products.h"
 #include "twin/diagnose/engine/vector_math.h"
 
 namespace twinbench::diagnose {
@@ -67,7 +68,7 @@ constexpr int kGrid = 40, kSeries = 3;
 
 /// Correlated noise of unequal size.
 NoiseModel UnevenNoise(const LinearRun& run) {
-  NoiseModel noise{run.sigma, 0.3};
+  NoiseModel noise{run.sigma, {{0.3}}};
   for (Eigen::Index k = 0; k < noise.sigma.size(); ++k) noise.sigma[k] *= 1.0 + 0.1 * static_cast<double>(k % 7);
   return noise;
 }
@@ -130,6 +131,32 @@ TEST(Bundle, TakesNoMoreMemoryThanGranted) {
   const Bundle bundle(run, noise, projector, families, {0}, left);
   EXPECT_GE(left, 0);
   EXPECT_LT(left, 10'000);
+}
+
+TEST(KnownProducts, AreThoseOfColumnsThatComeAgainInAnotherOrder) {
+  const LinearRun run = SyntheticRun({});
+  const NoiseModel noise = UnevenNoise(run);
+  const Projector projector = ProjectorOf(run, noise);
+  const std::vector<Family> families = {SomeFamily(run, true), SomeFamily(run, false)};
+  std::vector<Bundle> bundles;
+  Eigen::Index kept = 1'000'000'000;
+  for (int k = 0; k < 2; ++k) bundles.emplace_back(run, noise, projector, families, std::vector{k}, kept);
+  KnownProducts known(run, noise, bundles);
+  const Eigen::MatrixXd white = RandomMatrix("white", run.Rows(), 5);
+  known.Of(white.leftCols(3));
+  const Eigen::MatrixXd again = white(Eigen::all, std::vector{4, 1, 3, 0, 1});
+  const std::vector<RunsByRow> products = known.Of(again);
+  ASSERT_EQ(products.size(), 2u);
+  const Unwhitened Y(run, noise, again);
+  for (std::size_t b = 0; b < 2; ++b) {
+    for (int g = 0; g < kGrid; ++g) {
+      const Bundle& bundle = bundles[b];
+      const Eigen::MatrixXd direct =
+          bundle.Products(g / bundle.Step(), Y).middleRows((g % bundle.Step()) * bundle.Columns(), bundle.Columns());
+      EXPECT_LT((products[b].middleRows(g * bundle.Columns(), bundle.Columns()) - direct).norm(), 1e-12 * direct.norm())
+          << b << " " << g;
+    }
+  }
 }
 
 }  // namespace

@@ -144,7 +144,7 @@ Term FindDecay(LinearRun run, std::uint64_t seed, double noise) {
   AddNoise(run, seed);
   run.sigma /= noise;
   const std::vector<Family> families = {Decay(run)};
-  const NoiseModel model{run.sigma, 0.0};
+  const NoiseModel model{run.sigma, {}};
   const Projector projector = ProjectorOf(run, model);
   const Scanner scanner(run, model, projector, families);
   return Search(run, model, projector, scanner, LogPriors(families), kAnything, 1).terms.at(0);

@@ -28,18 +28,20 @@ LinearRun SweepsOf(std::vector<Family>& families) {
   return encoder.run;
 }
 
-Eigen::MatrixXd Dense(const Tridiagonal& T) {
-  const Eigen::Index last = T.diagonal.size() - 1;
+Eigen::MatrixXd Dense(const Banded& T) {
   Eigen::MatrixXd dense = T.diagonal.asDiagonal();
-  dense.diagonal(1) = T.beside.head(last);
-  dense.diagonal(-1) = T.beside.head(last);
+  for (Eigen::Index k = 1; k <= std::ssize(T.beside); ++k) {
+    const Eigen::VectorXd& beside = T.beside[static_cast<std::size_t>(k - 1)];
+    dense.diagonal(k) = beside.head(beside.size() - k);
+    dense.diagonal(-k) = beside.head(beside.size() - k);
+  }
   return dense;
 }
 
 void ExpectSums(const Base& base, const std::string& name, const NoiseModel& noise, const LinearRun& run) {
   const auto sums = base.sums();
   const Eigen::MatrixXd Y = RandomMatrix("Y", run.Rows(), 2), products = sums->Products(Y);
-  const Tridiagonal T = noise.Precision(run);
+  const Banded T = noise.Precision(run);
   const Eigen::MatrixXd dense = Dense(T);
   const std::vector<Eigen::MatrixXd> squares = sums->Squares(T);
   ASSERT_EQ(std::ssize(squares), base.grid);
@@ -57,7 +59,7 @@ void ExpectSums(const Base& base, const std::string& name, const NoiseModel& noi
 TEST(SeriesSums, AreThoseOfTheSeriesThatAreNotWrittenOut) {
   std::vector<Family> families;
   const LinearRun run = SweepsOf(families);
-  NoiseModel noise{run.sigma, 0.4};
+  NoiseModel noise{run.sigma, {{0.4, -0.3, 0.2}}};
   for (int k = 0; k < run.Rows(); ++k) noise.sigma[k] *= 1.0 + 0.1 * (k % 7);
   std::set<std::string> seen;
   for (const Family& family : families) {

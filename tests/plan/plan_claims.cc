@@ -52,7 +52,7 @@ const diagnose::CauseGroup& GroupOf(const std::vector<diagnose::CauseGroup>& gro
 struct Against {
   Against(const Scenario& s, const std::vector<Reading>& readings)
       : linear(BenchOf(s).linear_run(readings, s, Estimator::kRigorous)),
-        noise{linear.sigma, 0.0},
+        noise{linear.sigma, {}},
         projector(noise.Whiten(linear, linear.nuisance.jacobian), linear.nuisance) {}
 
   Eigen::VectorXd Left(const Scenario& s, const std::vector<Reading>& readings) const {

@@ -170,7 +170,7 @@ Gain GainOf(const LinearRun& run, const NoiseModel& noise, const Model& model) {
   }
   if (predicted.blocks.empty()) return gain;
   gain.folds = predicted.folds;
-  FillGain(predicted.blocks, run.sigma_stated, noise.rho, gain);
+  FillGain(predicted.blocks, run.sigma_stated, noise.memory.Correlation(), gain);
   return gain;
 }
 

@@ -79,7 +79,7 @@ SingleOutliers FindSingleOutliers(const Schedule& schedule, const std::string& c
     return others;
   };
   double square = 0.0;
-  for (const NoiseCause& cause : FindNoiseCauses(samples, {alike, 0.0}, rest, without)) {
+  for (const NoiseCause& cause : FindNoiseCauses(samples, {alike, {}}, rest, without)) {
     if (cause.kind != NoiseCause::Kind::kOutliers || cause.log_bayes < kBelieved) continue;
     for (const int i : cause.outliers) {
       if (!StandsAlone(d.before[i], d.behind[i], kFarFromBoth * deviation)) continue;

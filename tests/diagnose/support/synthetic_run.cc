@@ -171,7 +171,7 @@ LinearRun SyntheticSweep(int readings) {
 }
 
 std::vector<ResidualTest> TestsAsStated(const LinearRun& run, int null_runs, std::uint64_t seed) {
-  return TestResiduals(run, {run.sigma, 0.0}, null_runs, seed);
+  return TestResiduals(run, {run.sigma, {}}, null_runs, seed);
 }
 
 const ResidualTest* Find(const std::vector<ResidualTest>& tests, const std::string& name) {

@@ -67,7 +67,7 @@ const NoiseCause* NextRepair(const Analysis& analysis, const NoiseView& view) {
     // Single disturbed values are an effect of their own; other faults of the noise matter only if something was
     // chosen.
     const bool single = cause.kind == NoiseCause::Kind::kOutliers;
-    const bool again = cause.kind == NoiseCause::Kind::kCorrelation && analysis.noise.rho > 0.0;
+    const bool again = cause.kind == NoiseCause::Kind::kCorrelation && !analysis.noise.memory.IsWhite();
     const double limit = single ? tuning::kRefutedBySingle : again ? tuning::kRefutedAgain : tuning::kRefuted;
     if ((single || picked) && cause.log_bayes > limit) return &cause;
   }
@@ -88,7 +88,7 @@ void FindNothing(Analysis& analysis) {
 
 Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, const AnalysisOptions& options) {
   Analysis analysis;
-  analysis.noise = {run.sigma, 0.0};
+  analysis.noise = {run.sigma, {}};
   if (options.design_only) {
     Prepare(run, families, analysis);
     FindNothing(analysis);

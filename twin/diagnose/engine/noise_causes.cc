@@ -202,31 +202,17 @@ NoiseCause Outliers(const LinearRun& run, const NoiseModel& noise, const Standar
   return cause;
 }
 
-bool SamePass(const Schedule& s, std::size_t i) {
-  return s.setup[i] == s.setup[i - 1] && s.pass[i] == s.pass[i - 1] && s.phase[i] == s.phase[i - 1];
-}
-
-/// First-order correlation along each pass. Projection makes white residuals look anticorrelated; the expected
-/// product is taken from the redundancies (a lower bound), so only a positive excess counts.
+/// Correlation along each pass. The expected products are taken from the redundancies, which are a lower bound.
 NoiseCause Correlation(const LinearRun& run, const NoiseModel& noise, const Standardised& s) {
-  const int channels = run.Channels();
-  double products = 0.0, squares = 0.0;
-  int pairs = 0;
-  for (int k = channels; k < run.Rows(); ++k) {
-    if (!SamePass(run.schedule, static_cast<std::size_t>(run.ReadingOf(k)))) continue;
-    const double a = std::clamp(s.z[k], -4.0, 4.0), b = std::clamp(s.z[k - channels], -4.0, 4.0);
-    products += a * b;
-    squares += 0.5 * (a * a + b * b);
-    ++pairs;
-  }
-  const double rho = squares > 0.0 ? std::clamp(products / squares, 0.0, 0.95) : 0.0;
+  constexpr std::size_t kMostApart = 8;
+  const FittedAutoregression found = FitAutoregression(s.z, RowsBefore(run, kMostApart), run.Channels());
   NoiseCause cause{NoiseCause::Kind::kCorrelation,
-                   -0.5 * pairs * std::log1p(-rho * rho) - 0.5 * std::log(std::max(1, pairs)),
-                   fmt::format("neighbouring readings are correlated by {:.2f}", rho),
+                   found.log_bayes,
+                   fmt::format("neighbouring readings are correlated by {:.2f}", found.series.Correlation()),
                    noise,
                    {},
                    0.0};
-  cause.repaired.rho = 1.0 - (1.0 - noise.rho) * (1.0 - rho);
+  cause.repaired.memory = InOne(noise.memory, found.series);
   return cause;
 }
 

@@ -1,6 +1,6 @@
 #include "twin/diagnose/engine/noise_model.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "twin/core/errors.h"
 
@@ -14,80 +14,91 @@ bool Follows(const Schedule& s, int i) {
          s.phase[static_cast<std::size_t>(i)] == s.phase[static_cast<std::size_t>(i - 1)];
 }
 
-/// The whitening of row k: own * row k + before * row k - channels.
-struct Filter {
-  double own = 1.0;
-  double before = 0.0;
-};
-
-std::vector<Filter> FiltersOf(const LinearRun& run, const NoiseModel& noise) {
-  Require(noise.sigma.size() == run.Rows(), "a noise model has as many deviations as the run has rows");
-  const double innovation = std::sqrt(1.0 - noise.rho * noise.rho);
-  std::vector<Filter> filters(static_cast<std::size_t>(run.Rows()));
-  for (int k = 0; k < run.Rows(); ++k) {
-    Filter& f = filters[static_cast<std::size_t>(k)];
-    f.own = 1.0 / noise.sigma[k];
-    if (noise.rho == 0.0 || !Follows(run.schedule, run.ReadingOf(k))) continue;
-    f.before = -noise.rho / (innovation * noise.sigma[k - run.Channels()]);
-    f.own /= innovation;
+/// Whitening as a matrix: row k has a one over what is left of it, and behind it what the rows before say, by how many
+/// of them there are.
+class Filters {
+ public:
+  Filters(const LinearRun& run, const NoiseModel& noise)
+      : channels_(run.Channels()), before_(RowsBefore(run, noise.memory.Order())) {
+    Require(noise.sigma.size() == run.Rows(), "a noise model has as many deviations as the run has rows");
+    for (const Forecast& forecast : ForecastsOf(noise.memory)) {
+      std::vector<double> taps = {1.0 / forecast.left};
+      for (const double weight : forecast.weights) taps.push_back(-weight / forecast.left);
+      taps_.push_back(std::move(taps));
+    }
   }
-  return filters;
-}
+
+  /// @param visit  Gets the row before, k itself first, and its factor.
+  template <class Visit>
+  void ForEach(Eigen::Index k, const Visit& visit) const {
+    const std::vector<double>& taps = taps_[static_cast<std::size_t>(before_[static_cast<std::size_t>(k)])];
+    for (std::size_t j = 0; j < taps.size(); ++j) visit(k - static_cast<Eigen::Index>(j) * channels_, taps[j]);
+  }
+
+ private:
+  Eigen::Index channels_;
+  std::vector<int> before_;
+  std::vector<std::vector<double>> taps_;  // by rows before
+};
 
 }  // namespace
 
-Eigen::MatrixXd NoiseModel::Whiten(const LinearRun& run, const Eigen::MatrixXd& rows) const {
-  if (rho == 0.0) return sigma.cwiseInverse().asDiagonal() * rows;
-  const std::vector<Filter> filters = FiltersOf(run, *this);
-  Eigen::MatrixXd white(rows.rows(), rows.cols());
-  for (int k = 0; k < run.Rows(); ++k) {
-    const Filter& f = filters[static_cast<std::size_t>(k)];
-    white.row(k) = f.own * rows.row(k);
-    if (f.before != 0.0) white.row(k) += f.before * rows.row(k - run.Channels());
+std::vector<int> RowsBefore(const LinearRun& run, std::size_t most) {
+  std::vector<int> before(static_cast<std::size_t>(run.Rows()));
+  for (int k = run.Channels(); k < run.Rows(); ++k) {
+    if (!Follows(run.schedule, run.ReadingOf(k))) continue;
+    const int so_far = before[static_cast<std::size_t>(k - run.Channels())];
+    before[static_cast<std::size_t>(k)] = std::min(so_far + 1, static_cast<int>(most));
   }
+  return before;
+}
+
+Eigen::MatrixXd NoiseModel::Whiten(const LinearRun& run, const Eigen::MatrixXd& rows) const {
+  const Eigen::MatrixXd scaled = sigma.cwiseInverse().asDiagonal() * rows;
+  if (memory.IsWhite()) return scaled;
+  const Filters filters(run, *this);
+  Eigen::MatrixXd white = Eigen::MatrixXd::Zero(rows.rows(), rows.cols());
+  for (Eigen::Index k = 0; k < rows.rows(); ++k)
+    filters.ForEach(k, [&](Eigen::Index at, double factor) { white.row(k) += factor * scaled.row(at); });
   return white;
 }
 
 Eigen::MatrixXd NoiseModel::WhitenTransposed(const LinearRun& run, const Eigen::MatrixXd& white) const {
-  if (rho == 0.0) return sigma.cwiseInverse().asDiagonal() * white;
-  const std::vector<Filter> filters = FiltersOf(run, *this);
+  if (memory.IsWhite()) return sigma.cwiseInverse().asDiagonal() * white;
+  const Filters filters(run, *this);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(white.rows(), white.cols());
-  for (int k = 0; k < run.Rows(); ++k) {
-    const Filter& f = filters[static_cast<std::size_t>(k)];
-    rows.row(k) += f.own * white.row(k);
-    if (f.before != 0.0) rows.row(k - run.Channels()) += f.before * white.row(k);
-  }
-  return rows;
+  for (Eigen::Index k = 0; k < white.rows(); ++k)
+    filters.ForEach(k, [&](Eigen::Index at, double factor) { rows.row(at) += factor * white.row(k); });
+  return sigma.cwiseInverse().asDiagonal() * rows;
 }
 
-Tridiagonal NoiseModel::Precision(const LinearRun& run) const {
+Banded NoiseModel::Precision(const LinearRun& run) const {
   Require(run.Channels() == 1, "neighbouring rows are neighbouring readings only on one channel");
-  const std::vector<Filter> filters = FiltersOf(run, *this);
-  Tridiagonal precision{Eigen::VectorXd(run.Rows()), Eigen::VectorXd::Zero(run.Rows())};
-  for (int k = 0; k < run.Rows(); ++k) {
-    const Filter& f = filters[static_cast<std::size_t>(k)];
-    precision.diagonal[k] = f.own * f.own;
-    if (f.before == 0.0) continue;
-    precision.diagonal[k - 1] += f.before * f.before;
-    precision.beside[k - 1] = f.own * f.before;
+  const Filters filters(run, *this);
+  Banded precision{Eigen::VectorXd::Zero(run.Rows()), {}};
+  precision.beside.assign(memory.Order(), Eigen::VectorXd::Zero(run.Rows()));
+  for (Eigen::Index k = 0; k < run.Rows(); ++k) {
+    filters.ForEach(k, [&](Eigen::Index later, double a) {
+      filters.ForEach(k, [&](Eigen::Index at, double b) {
+        const double product = a * b / (sigma[at] * sigma[later]);
+        if (at == later) precision.diagonal[at] += product;
+        if (at < later) precision.beside[static_cast<std::size_t>(later - at - 1)][at] += product;
+      });
+    });
   }
   return precision;
 }
 
 Eigen::SparseMatrix<double, Eigen::RowMajor> NoiseModel::Whiten(
     const LinearRun& run, const Eigen::SparseMatrix<double, Eigen::RowMajor>& rows) const {
-  const std::vector<Filter> filters = FiltersOf(run, *this);
+  const Filters filters(run, *this);
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(rows.nonZeros()) * 2);
-  for (int k = 0; k < run.Rows(); ++k) {
-    const Filter& f = filters[static_cast<std::size_t>(k)];
-    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(rows, k); it; ++it) {
-      entries.emplace_back(k, it.col(), f.own * it.value());
-    }
-    if (f.before == 0.0) continue;
-    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(rows, k - run.Channels()); it; ++it) {
-      entries.emplace_back(k, it.col(), f.before * it.value());
-    }
+  entries.reserve(static_cast<std::size_t>(rows.nonZeros()) * (1 + memory.Order()));
+  for (Eigen::Index k = 0; k < run.Rows(); ++k) {
+    filters.ForEach(k, [&](Eigen::Index at, double factor) {
+      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(rows, at); it; ++it)
+        entries.emplace_back(static_cast<int>(k), static_cast<int>(it.col()), factor / sigma[at] * it.value());
+    });
   }
   Eigen::SparseMatrix<double, Eigen::RowMajor> white(rows.rows(), rows.cols());
   white.setFromTriplets(entries.begin(), entries.end());

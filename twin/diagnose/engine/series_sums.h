@@ -5,10 +5,10 @@
 
 namespace twinbench::diagnose {
 
-/// A symmetric matrix of which only the diagonal and what stands beside it are not zero.
-struct Tridiagonal {
+/// A symmetric matrix of which only the diagonal and what stands near it are not zero.
+struct Banded {
   Eigen::VectorXd diagonal;
-  Eigen::VectorXd beside;  // entry i joins i and i + 1; the last is zero
+  std::vector<Eigen::VectorXd> beside;  // entry i of the k-th joins i and i + k + 1; the last ones are zero
 };
 
 /// Sums over all readings of the series of a grid, S for all grid points at once, where there is a quicker way to
@@ -21,7 +21,7 @@ class SeriesSums {
   virtual Eigen::MatrixXd Products(const Eigen::MatrixXd& Y) const = 0;
 
   /// S'TS of the columns of each grid point.
-  virtual std::vector<Eigen::MatrixXd> Squares(const Tridiagonal& T) const = 0;
+  virtual std::vector<Eigen::MatrixXd> Squares(const Banded& T) const = 0;
 };
 
 }  // namespace twinbench::diagnose

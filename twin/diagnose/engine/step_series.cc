@@ -28,8 +28,10 @@ class SumsOfSteps : public SeriesSums {
     return products;
   }
 
-  std::vector<Eigen::MatrixXd> Squares(const Tridiagonal& T) const override {
-    const Eigen::MatrixXd squares = Products(T.diagonal + 2.0 * T.beside);
+  std::vector<Eigen::MatrixXd> Squares(const Banded& T) const override {
+    Eigen::MatrixXd with_later = T.diagonal;
+    for (const Eigen::VectorXd& beside : T.beside) with_later += 2.0 * beside;
+    const Eigen::MatrixXd squares = Products(with_later);
     std::vector<Eigen::MatrixXd> by_point;
     for (const double square : squares.reshaped()) by_point.push_back(Eigen::MatrixXd::Constant(1, 1, square));
     return by_point;

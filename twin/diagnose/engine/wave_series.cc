@@ -1,5 +1,6 @@
 #include "twin/diagnose/engine/wave_series.h"
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -11,7 +12,7 @@ namespace twinbench::diagnose {
 namespace {
 
 /// With s = cos or sin of k phase, the sum of d_i s_i^2 is that of waves of twice the phase; the sum of
-/// e_i s_i s_(i+1) is that of waves of the sum and of the difference of neighbouring phases.
+/// e_i s_i s_(i+k) is that of waves of the sum and of the difference of the two phases.
 class SumsOfWaves : public SeriesSums {
  public:
   explicit SumsOfWaves(WaveSeries waves) : waves_(std::move(waves)), sums_(Over(waves_.phase_rad)) {}
@@ -27,18 +28,19 @@ class SumsOfWaves : public SeriesSums {
     return products;
   }
 
-  std::vector<Eigen::MatrixXd> Squares(const Tridiagonal& T) const override {
-    const Eigen::Index last = T.diagonal.size() - 1;
+  std::vector<Eigen::MatrixXd> Squares(const Banded& T) const override {
     const Eigen::VectorXd factor =
         waves_.factor.size() > 0 ? waves_.factor : Eigen::VectorXd::Ones(T.diagonal.size()).eval();
     const Eigen::VectorXd own = T.diagonal.cwiseProduct(factor.cwiseAbs2());
-    const Eigen::VectorXd pair =
-        T.beside.head(last).cwiseProduct(factor.head(last)).cwiseProduct(factor.tail(last));
-    const Eigen::VectorXd &phase_rad = waves_.phase_rad, behind = phase_rad.tail(last);
+    const Eigen::VectorXd& phase_rad = waves_.phase_rad;
     Eigen::VectorXcd doubled = 0.5 * Over(2.0 * phase_rad).Of(own), plain = Constant(0.5 * own.sum());
-    if (!pair.isZero(0.0)) {
-      doubled += Over(phase_rad.head(last) + behind).Of(pair);
-      plain += Over(phase_rad.head(last) - behind).Of(pair);
+    for (std::size_t k = 0; k < T.beside.size(); ++k) {
+      const Eigen::Index last = std::max<Eigen::Index>(0, T.diagonal.size() - 1 - static_cast<Eigen::Index>(k));
+      const Eigen::VectorXd pair =
+          T.beside[k].head(last).cwiseProduct(factor.head(last)).cwiseProduct(factor.tail(last));
+      if (pair.isZero(0.0)) continue;
+      doubled += Over(phase_rad.head(last) + phase_rad.tail(last)).Of(pair);
+      plain += Over(phase_rad.head(last) - phase_rad.tail(last)).Of(pair);
     }
     std::vector<Eigen::MatrixXd> squares;
     for (const int number : waves_.numbers) {

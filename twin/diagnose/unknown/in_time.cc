@@ -113,6 +113,22 @@ Eigen::VectorXd FadingSums(const Eigen::VectorXd& values, double left) {
   return sums;
 }
 
+/// What each reading of a fading series has in common with itself and with those behind it.
+Eigen::VectorXd WithLater(const Banded& T, double left) {
+  Eigen::VectorXd all = T.diagonal;
+  double share = 2.0;
+  for (const Eigen::VectorXd& beside : T.beside) all += (share *= left) * beside;
+  return all;
+}
+
+/// What joins a touch and what is left of it, of readings `apart`.
+double AcrossEnd(const Eigen::VectorXd& beside, Eigen::Index from, Eigen::Index end, Eigen::Index apart, double left) {
+  double sum = 0.0;
+  for (Eigen::Index i = from; i < end && i + apart < beside.size(); ++i)
+    sum += beside[i] * std::pow(left, static_cast<double>(i + apart - end));
+  return sum;
+}
+
 /// Running sums, once for all touches that fade alike.
 class SumsOfTouches : public SeriesSums {
  public:
@@ -133,16 +149,21 @@ class SumsOfTouches : public SeriesSums {
     return products;
   }
 
-  std::vector<Eigen::MatrixXd> Squares(const Tridiagonal& T) const override {
-    const Eigen::VectorXd behind = FadingSums(T.diagonal, 1.0), pairs = FadingSums(T.beside, 1.0);
+  std::vector<Eigen::MatrixXd> Squares(const Banded& T) const override {
+    const Eigen::VectorXd behind = FadingSums(T.diagonal, 1.0);
+    std::vector<Eigen::VectorXd> pairs;
+    for (const Eigen::VectorXd& beside : T.beside) pairs.push_back(FadingSums(beside, 1.0));
     Eigen::VectorXd fading;
     std::vector<Eigen::MatrixXd> squares;
     ForEach([&](Eigen::Index, const Touch& touch, double left, bool is_new) {
-      if (is_new) fading = FadingSums(T.diagonal + 2.0 * left * T.beside, left * left);
-      const double last = T.beside[touch.end - 1];  // joins the touch and what is left of it
-      const double on =
-          behind[touch.first] - behind[touch.end] + 2.0 * (pairs[touch.first] - pairs[touch.end] - last);
-      squares.push_back(Eigen::Matrix2d{{on, last}, {last, fading[touch.end]}});
+      if (is_new) fading = FadingSums(WithLater(T, left), left * left);
+      double on = behind[touch.first] - behind[touch.end], both = 0.0;
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const Eigen::Index from = std::max<Eigen::Index>(touch.first, touch.end - 1 - static_cast<Eigen::Index>(k));
+        on += 2.0 * (pairs[k][touch.first] - pairs[k][from]);
+        both += AcrossEnd(T.beside[k], from, touch.end, static_cast<Eigen::Index>(k) + 1, left);
+      }
+      squares.push_back(Eigen::Matrix2d{{on, both}, {both, fading[touch.end]}});
     });
     return squares;
   }

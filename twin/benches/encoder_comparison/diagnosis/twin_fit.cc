@@ -21,7 +21,7 @@ std::vector<EffectSettings> EffectsWithout(std::size_t k, const std::vector<Effe
 TwinFit::TwinFit(const LargeCauses& large, const Scenario& scenario, const model::FollowMaker& follow)
     : large_(large), scenario_(scenario), follow_(follow) {
   const LinearRun& plain = Run().run;
-  const NoiseModel noise{plain.sigma, 0.0};
+  const NoiseModel noise{plain.sigma, {}};
   projector_ = std::make_unique<Projector>(noise.Whiten(plain, plain.nuisance.jacobian), plain.nuisance);
   nothing_ = FollowTwin(Run(), scenario_, follow_).error_rad;
 }

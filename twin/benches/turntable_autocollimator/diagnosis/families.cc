@@ -16,7 +16,7 @@ namespace {
 /// catalogue's default, until it leaves a trace.
 void WidenPriors(const LinearRun& run, std::vector<Family>& families) {
   constexpr double kTrace = 20.0, kMost = 10.0;  // in units of noise; of the default
-  const NoiseModel noise{run.sigma, 0.0};
+  const NoiseModel noise{run.sigma, {}};
   const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
   for (Family& family : families) {
     const Eigen::MatrixXd S = noise.Whiten(run, family.ColumnsAt(family.grid / 2));

@@ -55,7 +55,7 @@ bool StandsAlone(const LinearRun& run, const Eigen::VectorXd& z, Eigen::Index ro
 
 std::optional<NoiseCause> FindOutliers(const LinearRun& run) {
   if (run.noise_free) return std::nullopt;
-  NoiseCause cause{NoiseCause::Kind::kOutliers, 0.0, "", {run.sigma, 0.0}, {}, 0.0};
+  NoiseCause cause{NoiseCause::Kind::kOutliers, 0.0, "", {run.sigma, {}}, {}, 0.0};
   const Eigen::Index most = run.Rows() / 20;
   double sum2 = 0.0;
   Eigen::VectorXd found = Eigen::VectorXd::Zero(run.Rows());  // of the rows taken out, as they were

@@ -101,7 +101,7 @@ Slopes FitTwin(const Followed& twin, TurntableRun& turntable) {
   constexpr double kClose_rad = 1e-3 * arcsec;
   LinearRun& run = turntable.run;
   const Eigen::Index readings = run.schedule.Readings();
-  const NoiseModel noise{run.sigma, 0.0};
+  const NoiseModel noise{run.sigma, {}};
   // What the mirror does for each unknown, and what is shown of that.
   const Nuisance moved = FreeUnknowns(turntable.places, StraightSlopes(readings), run.schedule);
   Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(moved.jacobian.cols());
