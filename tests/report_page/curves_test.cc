@@ -8,6 +8,7 @@
 #include <random>
 
 #include "twin/report/page/circles.h"
+#include "twin/report/page/direction_curves.h"
 #include "twin/report/page/harmonics_of.h"
 #include "twin/report/page/scored.h"
 #include "twin/report/page/tiles.h"
@@ -71,6 +72,73 @@ TEST(TilesOf, SayTheLargestErrorWithItsUncertaintyAndHowErrorsCompareWithIt) {
   EXPECT_EQ(tiles[2].tone, VerdictTone::kBad);
   EXPECT_EQ(tiles[3].value, "1");
   EXPECT_TRUE(TilesOf(json::object(), {}, {}).empty());
+}
+
+TEST(TilesOf, SayTheLargestErrorOfAnyDirectionNotOfTheirMean) {
+  const json results = {{"device", {{"position_deg", {0, 120, 240}}, {"ez_arcsec", {2.0, -1.0, -1.0}}, {"u_ez_arcsec", {0.3, 0.3, 0.3}}}},
+                        {"reversal", {{"position_deg", {0, 120, 240}}, {"reversal_arcsec", {-36.0, -36.0, -38.0}}, {"u_reversal_arcsec", {0.8, 0.8, 0.8}}}}};
+  std::vector<Figure> curves = CurveFigures(results, {});
+  ShowDirections(results, curves);
+  ASSERT_EQ(curves[0].series.size(), 2u);
+  EXPECT_EQ(curves[0].series[0].name, "forward");
+  EXPECT_THAT(curves[0].series[0].y, ElementsAre(-16.0, -19.0, -20.0));
+  EXPECT_THAT(curves[0].series[1].y, ElementsAre(20.0, 17.0, 18.0));
+  const std::vector<PageTile> tiles = TilesOf(results, {}, curves);
+  EXPECT_EQ(tiles[0].value, "−20.0 ± 1.0 arcsec");  // twice hypot(0.3, 0.4)
+  EXPECT_EQ(tiles[0].note, "Device under test: index error EZ, forward, at 240°");
+}
+
+TEST(ShowDirections, KeepsTheMeanBesideItsTruthAndWhatHasNoReversal) {
+  const json device = {{"position_deg", {0, 120, 240}}, {"ez_arcsec", {2.0, -1.0, -1.0}}};
+  const json score = {{"values", ScoredValuesJson({{"device.ez_arcsec[0]", 2.0, 0.1, 1.0}, {"device.ez_arcsec[2]", -1.0, 0.1, -2.0}})}};
+  json results = {{"device", device}};
+  std::vector<Figure> plain = CurveFigures(results, {});
+  ShowDirections(results, plain);
+  EXPECT_EQ(plain[0].series.size(), 1u);
+  results["reversal"] = {{"position_deg", {0, 120, 240}}, {"reversal_arcsec", {4.0, 4.0, 4.0}}, {"u_reversal_arcsec", {1.0, 1.0, 1.0}}};
+  std::vector<Figure> scored = CurveFigures(results, score);
+  ShowDirections(results, scored);
+  ASSERT_EQ(scored[0].series.size(), 4u);
+  EXPECT_EQ(scored[0].series[0].name, "mean of both directions");
+  EXPECT_EQ(scored[0].series[1].role, SeriesRole::kTruth);
+  EXPECT_THAT(scored[0].series[3].y, ElementsAre(0.0, -3.0, -3.0));
+}
+
+TEST(SummedCurves, AreTheWavesOfASeparationADirectionEach) {
+  const json one = {{"direction", 1}, {"order", {1, 2}}, {"amplitude_arcsec", {3.0, 4.0}}, {"phase_deg", {0.0, 0.0}}, {"u_amplitude_arcsec", {0.3, 0.4}}};
+  json back = one;
+  back["direction"] = -1;
+  back["phase_deg"] = {180.0, 180.0};
+  const json results = {{"separation", {{"table_encoder", one}, {"transmission", {one, back}}}}, {"positions", one}};
+  const std::vector<Figure> curves = SummedCurves(results);
+  ASSERT_EQ(curves.size(), 2u) << "of what was separated";
+  EXPECT_EQ(curves[0].title, "Transmission: error");
+  ASSERT_EQ(curves[0].series.size(), 2u);
+  EXPECT_NEAR(curves[0].series[0].y[0], 7.0, 1e-12);
+  EXPECT_NEAR(curves[0].series[1].y[0], -7.0, 1e-12);
+  EXPECT_NEAR(curves[0].series[0].y[360], 1.0, 1e-12) << "at half a turn the first order is against the second";
+  EXPECT_NEAR(curves[0].series[0].u[0], 0.5, 1e-12);
+  EXPECT_EQ(TilesOf(results, {}, curves)[0].value, "7.0 ± 1.0 arcsec");
+}
+
+TEST(TilesOf, SayTheLargestComponentOfAMap) {
+  const json results = {{"error_map", {{"x_mm", {1, 2}}, {"y_mm", {3, 4}}, {"z_mm", {5, 6}}, {"dx_um", {0.5, -0.75}}, {"u_dx_um", {0.1, 0.2}},
+                                       {"dz_um", {-2.5, 1.0}}, {"u_dz_um", {0.15, 0.1}}}}};
+  const std::vector<PageTile> tiles = TilesOf(results, {}, {});
+  ASSERT_EQ(tiles.size(), 1u);
+  EXPECT_EQ(tiles[0].value, "−2.50 ± 0.30 µm");
+  EXPECT_EQ(tiles[0].note, "Error map: dz, at x 1, y 3, z 5 mm");
+}
+
+TEST(TilesOf, SayTheLargestCircularDeviationOfBothDirections) {
+  const auto circle = [](int setup, double G_um) {
+    return json{{"setup", setup}, {"instrument", "bar"}, {"feed_mm_min", 1000.0}, {"G_b_um", G_um}, {"u_G_b_um", 0.25}};
+  };
+  const std::vector<PageTile> tiles = TilesOf({{"iso230_4", {circle(0, 1.5), circle(1, 2.5)}}}, {}, {});
+  ASSERT_EQ(tiles.size(), 1u);
+  EXPECT_EQ(tiles[0].name, "Circular deviation G(b)");
+  EXPECT_EQ(tiles[0].value, "2.50 ± 0.50 µm");
+  EXPECT_EQ(tiles[0].note, "ISO 230-4, mounting 1 (bar), 1000 mm/min");
 }
 
 TEST(CurveFigures, BeginWithTheTurnOfWhatIsUnderTest) {

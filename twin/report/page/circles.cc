@@ -21,6 +21,11 @@ std::string FeedOf(const json& pass) {
   return feed_mm_min > 0.0 ? NumberText(feed_mm_min) + " mm/min" : "at rest";
 }
 
+/// "0 (bar)".
+std::string SetupOf(const json& pass) {
+  return fmt::format("{:g} ({})", NumberAt(pass, "setup"), TextAt(pass, "instrument"));
+}
+
 /// Once round from 0° on, whichever way the pass went.
 FigureSeries SeriesOfPass(const json& pass) {
   FigureSeries series{NumberAt(pass, "direction") < 0.0 ? "clockwise" : "counter-clockwise", SeriesRole::kEstimate, {}, {}, {}};
@@ -85,15 +90,19 @@ std::vector<RankedErrors> Ranked(const json& results) {
 
 }  // namespace
 
+std::string CircleInWords(const json& circle) {
+  return fmt::format("mounting {}, {}", SetupOf(circle), FeedOf(circle));
+}
+
 PageChoice CircleChoice(const json& results) {
   PageChoice choice{"Circles", "", {"mounting", "feed"}, {}, {}};
   for (const json& pass : ListAt(results, "radial")) {
-    const std::string setup = fmt::format("{:g} ({})", NumberAt(pass, "setup"), TextAt(pass, "instrument"));
+    const std::string setup = SetupOf(pass);
     const std::vector<std::string> answer = {setup, FeedOf(pass)};
     auto at = std::ranges::find(choice.answers, answer) - choice.answers.begin();
     if (at == std::ssize(choice.answers)) {
       const double radius_mm = NumberAt(pass, "radius_mm");
-      Figure figure{FigureForm::kAngle, fmt::format("Radial deviation, mounting {}, {}", setup, answer[1]), fmt::format("R = {:.6g} mm", radius_mm),
+      Figure figure{FigureForm::kAngle, "Radial deviation, " + CircleInWords(pass), fmt::format("R = {:.6g} mm", radius_mm),
                     {"commanded angle", "deg"}, {"radial deviation", "um"}, {}};
       figure.radius = 1000.0 * radius_mm;
       choice.answers.push_back(answer);

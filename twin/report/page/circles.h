@@ -1,11 +1,15 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "twin/report/page/figure.h"
 
 /// Circular paths as ISO 230-4 draws them, and the errors that make them.
 namespace twinbench::report {
+
+/// "mounting 0 (bar), 40 mm/min".
+std::string CircleInWords(const nlohmann::json& circle);
 
 /// Radial deviation about the commanded circle, both directions of a set-up and feed in one figure; that with the largest comes first.
 ///

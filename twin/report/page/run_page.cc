@@ -13,6 +13,7 @@
 #include "twin/report/page/circles.h"
 #include "twin/report/page/curves.h"
 #include "twin/report/page/diagnosis_page.h"
+#include "twin/report/page/direction_curves.h"
 #include "twin/report/page/harmonics_of.h"
 #include "twin/report/page/readings_page.h"
 #include "twin/report/page/tables.h"
@@ -42,6 +43,13 @@ PageSection CurveSection(const PageChoice& circles, const nlohmann::json& result
   if (Figure ranks = ErrorRankFigure(results); !ranks.series.empty()) section.blocks.emplace_back(std::move(ranks));
   AddFilled(ErrorRankTable(results), section);
   return section;
+}
+
+/// Directions apart, and curves of what was separated by its orders alone.
+std::vector<Figure> ShownCurves(const nlohmann::json& results, std::vector<Figure> curves) {
+  ShowDirections(results, curves);
+  for (Figure& summed : SummedCurves(results)) curves.push_back(std::move(summed));
+  return curves;
 }
 
 /// @param curves, circles  Of which the spectra are, beside those that the results hold.
@@ -130,14 +138,15 @@ Page RunPage(const PageSource& source, const nlohmann::json& results, const nloh
              const std::vector<PageImage>& images) {
   const std::vector<Figure> curves = CurveFigures(results, score);
   const PageChoice circles = CircleChoice(results);
-  const std::vector<Figure>& first = circles.figures.empty() ? curves : circles.figures;
+  const std::vector<Figure> shown = ShownCurves(results, curves);
+  const std::vector<Figure>& first = circles.figures.empty() ? shown : circles.figures;
   Page page{TitleOf(source), SubtitleOf(source, readings), "", VerdictTone::kPlain, {}, TilesOf(results, score, first)};
   if (results.contains("diagnosis")) {
     const PageVerdict verdict = VerdictOf(results.at("diagnosis"));
     page.verdict = verdict.text, page.tone = verdict.tone;
     page.sections = DiagnosisSections(results.at("diagnosis"));
   }
-  for (PageSection& section : std::vector{CurveSection(circles, results, curves), SpectrumSection(curves, circles.figures, SpectrumFigures(results, score)),
+  for (PageSection& section : std::vector{CurveSection(circles, results, shown), SpectrumSection(curves, circles.figures, SpectrumFigures(results, score)),
                                           VolumetricSection(results), ValueSection(results, score), BudgetSection(results),
                                           ReadingsSection(readings, source.provenance.bench), ImageSection(images)}) {
     if (!section.blocks.empty()) page.sections.push_back(std::move(section));
