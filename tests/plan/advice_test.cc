@@ -20,6 +20,13 @@ TEST(GainsOf, AddsInverseVariancesPlaceByPlace) {
   EXPECT_NEAR(MeanGain_bit(gains), 0.5, 1e-12);
 }
 
+TEST(GainsOf, AddsThePrecisionOfAWholeProgramme) {
+  const std::vector<Gain> gains = GainsOf(kBefore, {&kMore, &kBefore, &kMore}, "");
+  ASSERT_EQ(gains.size(), 2u);
+  EXPECT_NEAR(gains[0].ratio, std::sqrt(0.5), 1e-12) << "dy is determined by one of the three";
+  EXPECT_NEAR(gains[1].ratio, 0.5, 1e-12) << "four runs";
+}
+
 TEST(GainsOf, OnlyOfWhatIsWanted) {
   EXPECT_EQ(GainsOf(kBefore, kBefore, "target.dy").size(), 1u);
   EXPECT_EQ(GainsOf(kBefore, kBefore, "dy_um").size(), 1u);

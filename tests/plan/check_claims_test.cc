@@ -9,6 +9,7 @@
 
 #include "tests/support/night.h"
 #include "tools/twinbench/passing_run.h"
+#include "tools/twinbench/plan_advice.h"
 #include "tools/twinbench/planned_run.h"
 #include "twin/benches/evaluated.h"
 #include "twin/core/estimator.h"
@@ -72,6 +73,17 @@ void ExpectWhatTheRunStates(const std::string& name) {
 TEST(Check, SaysTheUncertaintiesThatTheRunStates) {
   const std::vector<std::string> quick = {"encoder_comparison", "hob_drive_orders", "turntable_shifts"};
   for (const std::string& name : test::IsNight() ? ShippedScenarios() : quick) ExpectWhatTheRunStates(name);
+}
+
+/// What a plan says of the scenario's run is what `check` says of it; the mean over other seeds stands beside it.
+TEST(Check, SaysOfTheScenariosRunWhatAPlanSays) {
+  const Scenario scenario = Shipped("turntable_shifts");
+  const plan::Outlook checked = OutlookAtOnce(scenario);
+  Patience without_end;
+  const report::PlannedRun planned = OwnRun(scenario, ResultsOfOwn(scenario).planned.outlook, without_end);
+  ASSERT_EQ(planned.outlook.results.size(), checked.results.size());
+  for (std::size_t k = 0; k < checked.results.size(); ++k) EXPECT_EQ(planned.outlook.results[k].rms_u, checked.results[k].rms_u) << checked.results[k].name;
+  EXPECT_GE(planned.mean_of, 4u);
 }
 
 }  // namespace

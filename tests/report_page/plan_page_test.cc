@@ -46,6 +46,17 @@ TEST(PlanPage, SaysWhichRunToMakeAndWhatMayBeMistaken) {
   EXPECT_THAT(rows, Contains(ElementsAre("target ez", "arcsec", "0.05", "0.1")));
 }
 
+TEST(PlanPage, BeginsWithTheProgrammeAndTheUncertaintyAfterIt) {
+  json plan = kPlan;
+  plan["programme"] = {{"u_after_over_before", {{{"name", "separation.target.ez_arcsec"}, {"ratio", 0.5}}}},
+                       {"d_optimal", {{"runs", {{{"name", "best"}, {"times", 2}}}}}}};
+  const Page page = PlanPage({}, plan);
+  EXPECT_EQ(page.verdict, "Best runs to add: 2 x best. Most information per minute: two more mountings.");
+  const std::vector<PageTable> tables = test::BlocksOf<PageTable>(page.sections);
+  EXPECT_THAT(tables.front().columns, ElementsAre("result", "unit", "as is", "other", "with the programme after it"));
+  EXPECT_THAT(tables.front().rows.front(), ElementsAre("target ez", "arcsec", "0.05", "0.1", "0.025"));
+}
+
 TEST(InvestigationPage, ShowsProbabilitiesOverTheRuns) {
   const json investigation = json::parse(R"({
     "told": "tied", "ended": "nothing more can be told", "minutes": 52, "goal": {"text": "target.ez 0.1arcsec", "u": 0.05, "met": true},

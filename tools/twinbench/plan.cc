@@ -19,6 +19,7 @@
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
+#include "twin/core/nearest_key.h"
 #include "twin/report/plan_text.h"
 #include "twin/report/sound.h"
 
@@ -60,18 +61,16 @@ int SetupsOf(const PlanWish& options, const Scenario& scenario) {
 }
 
 /// The scenario's own run, and beside it the one at the shifts that tell most.
-std::vector<report::PlannedRun> RunsOf(const Scenario& scenario, const std::vector<Reading>& readings, int setups,
-                                       const std::vector<LookedAt>& others, Patience& patience) {
-  std::vector<report::PlannedRun> runs = {LookAt("as the scenario says", scenario, readings, patience)};
+std::vector<report::PlannedRun> RunsOf(const Scenario& scenario, const LookedAt& own, int setups, const std::vector<LookedAt>& others,
+                                       Patience& patience) {
+  std::vector<report::PlannedRun> runs = {OwnRun(scenario, own.planned.outlook, patience)};
   const std::optional<plan::ShiftDesign> design = ShiftDesignOf(scenario);
   if (!design) return runs;
   runs.front().shifts = plan::Judged(design->positions, design->shifts);
   const auto best = std::ranges::find_if(others, [](const LookedAt& one) { return one.run.name == kBestShifts; });
   if (best == others.end()) return runs;
   const plan::ShiftSet shifts = plan::BestShifts(design->positions, setups);
-  const Scenario quick = Quick(Altered(scenario, best->run.sets));
-  runs.push_back(LookAt("shifts " + report::ShiftList(shifts.shifts), quick, ReadingsOfTwin(quick), patience));
-  runs.back().shifts = shifts;
+  runs.push_back({"shifts " + report::ShiftList(shifts.shifts), shifts, best->planned.outlook});
   return runs;
 }
 
@@ -84,7 +83,10 @@ void RequireGoal(const std::string& goal, const LookedAt& own) {
   if (!plan::GainsOf(own.results, own.results, goal).empty()) return;
   std::vector<std::string> kinds;
   for (const plan::Gain& gain : plan::GainsOf(own.results, own.results, "")) kinds.push_back(gain.name);
-  if (!goal.empty()) throw InputError("--goal " + goal, "the run gives no such result", fmt::format("one of {}", fmt::join(kinds, ", ")));
+  if (goal.empty()) return;
+  std::vector<std::string> ends;  // as goals are written: "target.ez"
+  for (const std::string& kind : kinds) ends.push_back(kind.substr(kind.find('.') + 1, kind.rfind('_') - kind.find('.') - 1));
+  throw InputError("--goal " + goal, "the run gives no such result", fmt::format("one of {}; the nearest is {}", fmt::join(kinds, ", "), Nearest(goal, ends)));
 }
 
 Planned PlanOf(const PlanWish& options, const Scenario& scenario) {
@@ -101,7 +103,7 @@ Planned PlanOf(const PlanWish& options, const Scenario& scenario) {
   own.isolability = planned.effects.seen.isolability;
   planned.mendings = Mendings(scenario, own, patience);
   LookAtCauses(scenario, patience, others);
-  planned.runs = RunsOf(scenario, readings, setups, others, patience);
+  planned.runs = RunsOf(scenario, own, setups, others, patience);
   planned.advice = AdviceOf(own, others, options.goal);
   const report::PlanBudget budget = BudgetOf(options);
   if (budget.amount > 0.0) planned.programme.push_back(ProgrammeOf(own, others, budget, options.goal));
@@ -184,7 +186,7 @@ std::string LeftOutText(const std::map<std::string, int>& left_out) {
 }
 
 std::string TextOf(const Planned& planned) {
-  std::string text = report::PlanText(planned.runs, planned.effects) + "\n" + report::MendingText(planned.mendings);
+  std::string text = report::PlanText(planned.runs, planned.effects, planned.programme) + "\n" + report::MendingText(planned.mendings);
   if (!planned.mendings.empty()) text += "\n";
   text += report::PlanAdviceText(planned.advice);
   if (!planned.programme.empty()) text += "\n" + report::ProgrammeText(planned.programme.front());

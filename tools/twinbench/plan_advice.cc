@@ -317,6 +317,9 @@ report::PlannedProgramme ProgrammeOf(const LookedAt& own, const std::vector<Look
   programme.unknowns = static_cast<int>(known.rows());
   programme.best = plan::BestProgramme(known, runs, budget.amount, plan::Optimality::kD);
   programme.least_trace = plan::BestProgramme(known, runs, budget.amount, plan::Optimality::kA);
+  std::vector<const nlohmann::json*> made(static_cast<std::size_t>(programme.best.times.front()), &own.results);
+  for (std::size_t k = 0; k < others.size(); ++k) made.insert(made.end(), static_cast<std::size_t>(programme.best.times[k + 1]), &others[k].results);
+  programme.gains = plan::GainsOf(own.results, made, goal);
   return programme;
 }
 

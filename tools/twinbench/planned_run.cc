@@ -80,11 +80,10 @@ plan::Outlook OutlookAtOnce(const Scenario& scenario) {
   return OutlookOf(quick, ReadingsOfTwin(quick));
 }
 
-report::PlannedRun LookAt(const std::string& words, const Scenario& scenario, const std::vector<Reading>& readings,
-                          Patience& patience) {
+report::PlannedRun OwnRun(const Scenario& scenario, const plan::Outlook& own, Patience& patience) {
   constexpr double kSame = 0.02;                   // of u: it does not depend on the run's own noise
   constexpr std::size_t kMost = 16, kEnough = 4;  // u that scatters by 15 % is known to 4 % after the most, by 4 % to 2 % after enough
-  std::vector<plan::Outlook> outlooks = {OutlookOf(scenario, readings)};
+  std::vector<plan::Outlook> outlooks = {own};
   for (Scenario other = Quick(scenario); outlooks.size() < kMost;) {
     if (!patience.Allows(kOfAveraging, "the mean of uncertainties over more runs with other noise")) break;
     ++other.seed;
@@ -92,7 +91,7 @@ report::PlannedRun LookAt(const std::string& words, const Scenario& scenario, co
     if (plan::LargestDifference(outlooks[0], outlooks[1]) < kSame) break;
     if (outlooks.size() >= kEnough && plan::UncertaintyOfMean(outlooks) < kSame) break;
   }
-  return {words, {}, plan::MeanOf(outlooks)};
+  return {"as the scenario says", {}, own, plan::MeanOf(outlooks), outlooks.size()};
 }
 
 /// Stops at which the errors of both tables are free; 0: the bench shifts nothing.

@@ -23,10 +23,9 @@ Scenario Quick(const Scenario& scenario);
 /// @throws InputError if the readings cannot be evaluated.
 plan::Outlook OutlookAtOnce(const Scenario& scenario);
 
-/// What the scenario's run on the twin would give: uncertainties as the mean over runs with other noise, where they depend
-/// on it.
-report::PlannedRun LookAt(const std::string& words, const Scenario& scenario, const std::vector<Reading>& readings,
-                          Patience& patience);
+/// The scenario's own run, and the mean of its uncertainties over runs with other noise where they depend on it.
+/// @param own  OutlookAtOnce of it.
+report::PlannedRun OwnRun(const Scenario& scenario, const plan::Outlook& own, Patience& patience);
 
 /// What readings of that design could tell of causes (DiagnosisRun::isolability).
 /// @throws InputError as a diagnosis does, and for more than 20 000 readings.

@@ -26,26 +26,32 @@ struct Variances {
 
 }  // namespace
 
-std::vector<Gain> GainsOf(const nlohmann::json& before, const nlohmann::json& more, const std::string& wanted) {
-  std::map<std::string, double> of_more;
-  for (const uncertainty::Quantity& q : uncertainty::QuantitiesOf(more)) of_more[q.name] = q.u;
+std::vector<Gain> GainsOf(const nlohmann::json& before, const std::vector<const nlohmann::json*>& more, const std::string& wanted) {
+  std::map<std::string, double> of_more;  // inverse variances
+  for (const nlohmann::json* run : more)
+    for (const uncertainty::Quantity& q : uncertainty::QuantitiesOf(*run))
+      if (q.u > 0.0) of_more[q.name] += 1.0 / (q.u * q.u);
   std::map<std::string, Variances> kinds;
   std::map<std::string, bool> in_both;
   for (const uncertainty::Quantity& q : uncertainty::QuantitiesOf(before)) {
     const std::string kind = uncertainty::KindOf(q.name);
     if (!(q.u > 0.0) || !IsWanted(kind, wanted)) continue;
     const auto other = of_more.find(q.name);
-    const bool has = other != of_more.end() && other->second > 0.0;
-    const double variance = q.u * q.u, second = has ? other->second * other->second : 0.0;
+    const bool has = other != of_more.end();
+    const double variance = q.u * q.u;
     in_both[kind] = in_both[kind] || has;
     kinds[kind].before += variance;
-    kinds[kind].after += has ? variance * second / (variance + second) : variance;
+    kinds[kind].after += has ? 1.0 / (1.0 / variance + other->second) : variance;
   }
   std::vector<Gain> gains;
   for (const auto& [kind, sum] : kinds) {
     if (in_both[kind]) gains.push_back({kind, std::sqrt(sum.after / sum.before)});
   }
   return gains;
+}
+
+std::vector<Gain> GainsOf(const nlohmann::json& before, const nlohmann::json& more, const std::string& wanted) {
+  return GainsOf(before, std::vector<const nlohmann::json*>{&more}, wanted);
 }
 
 double MeanGain_bit(const std::vector<Gain>& gains) {

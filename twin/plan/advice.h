@@ -18,6 +18,8 @@ struct Gain {
 /// (a standard's own error), and what only all readings together would tell, is left out.
 /// @param wanted  Kinds whose name ends so ("target.ez", with or without its unit); empty: all.
 std::vector<Gain> GainsOf(const nlohmann::json& before, const nlohmann::json& more, const std::string& wanted);
+/// The same when several others have been made: of the kinds that any of them determines.
+std::vector<Gain> GainsOf(const nlohmann::json& before, const std::vector<const nlohmann::json*>& more, const std::string& wanted);
 
 /// -log2 of the ratio, the mean over all kinds [bit]; 0 without any.
 double MeanGain_bit(const std::vector<Gain>& gains);

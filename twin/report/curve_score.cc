@@ -7,6 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "twin/report/spoken_keys.h"
+
 namespace twinbench::report {
 namespace {
 
@@ -52,11 +54,11 @@ std::string ScoreTable(const std::vector<CurveScore>& curves) {
     return std::isfinite(value) ? fmt::format("{:{}.{}f}", value, width, decimals) : fmt::format("{:>{}}", "-", width);
   };
   std::size_t width = 16;
-  for (const CurveScore& curve : curves) width = std::max(width, curve.name.size());
+  for (const CurveScore& curve : curves) width = std::max(width, WithWords(curve.name).size());
   std::string text = fmt::format("{:{}}  value         truth rms  error rms  worst error  stated u  (error/u)^2\n", "curve", width);
   for (const CurveScore& curve : curves) {
     const Sizes s = SizesOf(curve);
-    text += fmt::format("{:{}}  {:12}  {}  {}  {}  {}  {}\n", curve.name, width, curve.value, cell(s.rms_truth, 9, 4),
+    text += fmt::format("{:{}}  {:12}  {}  {}  {}  {}  {}\n", WithWords(curve.name), width, curve.value, cell(s.rms_truth, 9, 4),
                         cell(s.rms_error, 9, 4), cell(s.worst_error, 11, 4), cell(s.rms_u, 8, 4), cell(s.mean_chi2, 11, 3));
   }
   return text;

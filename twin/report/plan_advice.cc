@@ -166,6 +166,7 @@ Json ProgrammeJson(const PlannedProgramme& programme) {
   return {{"budget", programme.budget.amount},
           {"in", programme.budget.in_readings ? "readings" : "minutes"},
           {"unknowns", programme.unknowns},
+          {"u_after_over_before", GainsJson(programme.gains, "ratio")},
           {"d_optimal", TimesJson(programme, programme.best)},
           {"a_optimal", TimesJson(programme, programme.least_trace)}};
 }

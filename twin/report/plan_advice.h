@@ -29,6 +29,7 @@ struct PlannedProgramme {
   std::vector<plan::Advice> runs;  // what was chosen from, in the order of `best.times`
   plan::Programme best;            // D-optimal
   plan::Programme least_trace;     // A-optimal
+  std::vector<plan::Gain> gains;   // of the scenario's own run and the D-optimal ones together
   int unknowns = 0;
 };
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "twin/report/spoken_keys.h"
 #include "twin/report/text_table.h"
 
 namespace twinbench::report {
@@ -53,20 +54,42 @@ std::string RunsTable(const std::vector<PlannedRun>& runs) {
                    rows, kPlanWidth);
 }
 
-/// A row a result, a column a run.
-std::string CertaintyTable(const std::vector<PlannedRun>& runs) {
+bool IsPhase(const std::string& result) {
+  return result.find("phase") != std::string::npos || result.find("azimuth") != std::string::npos;
+}
+
+/// Two digits; nothing of a phase, whose u follows from the amplitude that the run finds.
+std::string UText(const std::string& result, double u) {
+  return std::isfinite(u) && !IsPhase(result) ? fmt::format("{:.2g}", u) : "-";
+}
+
+constexpr const char* kOfPhases = "-: u of a phase follows from the amplitude that the run finds\n";
+
+/// Of a result when the programme has been made after the first run.
+double UncertaintyAfter(const PlannedProgramme& programme, const Certainty& result) {
+  const auto gain = std::ranges::find(programme.gains, result.name, &plan::Gain::name);
+  return gain == programme.gains.end() ? result.rms_u : gain->ratio * result.rms_u;
+}
+
+/// A row a result, a column a run; beside the first its mean and what the programme makes of it.
+std::string CertaintyTable(const std::vector<PlannedRun>& runs, const std::vector<PlannedProgramme>& programme) {
+  const PlannedRun& own = runs.front();
   std::vector<TextColumn> columns = {{"standard uncertainty (rms)"}};
   for (std::size_t i = 0; i < runs.size(); ++i) columns.push_back({fmt::format("run {}", i + 1), true});
+  if (own.mean_of > 1) columns.push_back({fmt::format("run 1, mean of {}", own.mean_of), true});
+  if (!programme.empty()) columns.push_back({"run 1 + programme", true});
   std::vector<std::vector<std::string>> rows;
-  for (const Certainty& result : runs.front().outlook.results) {
-    std::vector<std::string> row = {result.name};
-    for (const PlannedRun& run : runs) {
-      const double u = UncertaintyOf(run.outlook, result.name);
-      row.push_back(std::isfinite(u) ? fmt::format("{:.3g}", u) : "-");
-    }
+  bool has_phases = false;
+  for (const Certainty& result : own.outlook.results) {
+    std::vector<std::string> row = {WithWords(result.name)};
+    for (const PlannedRun& run : runs) row.push_back(UText(result.name, UncertaintyOf(run.outlook, result.name)));
+    if (own.mean_of > 1) row.push_back(UText(result.name, UncertaintyOf(own.mean, result.name)));
+    if (!programme.empty()) row.push_back(UText(result.name, UncertaintyAfter(programme.front(), result)));
+    has_phases = has_phases || IsPhase(result.name);
     rows.push_back(std::move(row));
   }
-  return TextTable(columns, rows, kPlanWidth);
+  const std::string mean = "mean: over runs with other seeds; where an evaluation finds the noise in its readings, one run's u scatters about it\n";
+  return TextTable(columns, rows, kPlanWidth) + (own.mean_of > 1 ? mean : "") + (has_phases ? kOfPhases : "");
 }
 
 constexpr std::array kOrdersTold = {1, 2, 3, 4, 6, 9, 12, 18};
@@ -126,26 +149,22 @@ std::string ShiftList(const std::vector<int>& shifts) {
   return fmt::format("{}", fmt::join(shifts, ", "));
 }
 
-std::string PlanText(const std::vector<PlannedRun>& runs, const PlannedEffects& effects) {
+std::string PlanText(const std::vector<PlannedRun>& runs, const PlannedEffects& effects, const std::vector<PlannedProgramme>& programme) {
   std::string text = RunsTable(runs);
   const bool shifted = std::ranges::any_of(runs, [](const PlannedRun& run) { return run.shifts.has_value(); });
   if (shifted)
     text += "variance: of one table's harmonic over that of the mean of all mountings\n";
-  text += "\n" + CertaintyTable(runs) + "\n" + HarmonicsOfRun(runs.front().outlook);
+  text += "\n" + CertaintyTable(runs, programme) + "\n" + HarmonicsOfRun(runs.front().outlook);
   return text + NotSeparableText(runs.front().outlook) + "\n" + PlannedEffectsText(effects);
 }
 
 std::string OutlookText(const Outlook& outlook) {
   std::vector<std::vector<std::string>> rows;
-  bool has_phases = false;
-  for (const Certainty& result : outlook.results) {
-    const bool is_phase = result.name.find("phase") != std::string::npos || result.name.find("azimuth") != std::string::npos;
-    has_phases = has_phases || is_phase;
-    rows.push_back({result.name, fmt::format("{}", result.values), is_phase ? "-" : fmt::format("{:.2g}", result.rms_u),
-                    is_phase ? "-" : fmt::format("{:.2g}", 2.0 * result.rms_u)});
-  }
+  for (const Certainty& result : outlook.results)
+    rows.push_back({WithWords(result.name), fmt::format("{}", result.values), UText(result.name, result.rms_u), UText(result.name, 2.0 * result.rms_u)});
   const std::string table = TextTable({{"result"}, {"values", true}, {"expected u (rms)", true}, {"U = 2 u", true}}, rows, kPlanWidth);
-  return table + (has_phases ? "-: u of a phase follows from the amplitude that the run finds\n" : "") + NotSeparableText(outlook);
+  const bool has_phases = std::ranges::any_of(outlook.results, IsPhase, &Certainty::name);
+  return table + (has_phases ? kOfPhases : "") + NotSeparableText(outlook);
 }
 
 Json OutlookJson(const PlannedRun& run) {
@@ -153,11 +172,13 @@ Json OutlookJson(const PlannedRun& run) {
   for (const Certainty& result : run.outlook.results)
     results.push_back(
         {{"name", result.name}, {"values", result.values}, {"rms_u", result.rms_u}, {"worst_u", result.worst_u}});
+  for (std::size_t k = 0; k < results.size() && run.mean_of > 1; ++k) results[k]["mean_rms_u"] = run.mean.results[k].rms_u;
   Json json = {{"run", run.words},
                {"readings", run.outlook.readings},
                {"minutes", run.outlook.minutes},
                {"dof", std::isfinite(run.outlook.dof) ? Json(run.outlook.dof) : Json()},
                {"results", results},
+               {"mean_of", run.mean_of},
                {"harmonics", HarmonicsJson(run.outlook)},
                {"not_separable", run.outlook.not_separable}};
   if (!run.shifts) return json;

@@ -7,6 +7,7 @@
 
 #include "twin/plan/outlook.h"
 #include "twin/plan/shift_sets.h"
+#include "twin/report/plan_advice.h"
 #include "twin/report/plan_effects.h"
 
 namespace twinbench::report {
@@ -15,12 +16,15 @@ namespace twinbench::report {
 struct PlannedRun {
   std::string words;  // "as the scenario says", "4 mountings, shifts 0, 1, 10, 28"
   std::optional<plan::ShiftSet> shifts;
-  plan::Outlook outlook;
+  plan::Outlook outlook;     // of one run, with the scenario's seed: what `check` says, and what that run then states
+  plan::Outlook mean = {};   // over runs with other noise
+  std::size_t mean_of = 1;   // so many
 };
 
-/// What the first run would give and would not see, and what the others would give instead.
-/// @param effects  Of the first run.
-std::string PlanText(const std::vector<PlannedRun>& runs, const PlannedEffects& effects);
+/// What the first run would give and would not see, and what the others, and the programme after it, would give.
+/// @param effects    Of the first run.
+/// @param programme  One or none.
+std::string PlanText(const std::vector<PlannedRun>& runs, const PlannedEffects& effects, const std::vector<PlannedProgramme>& programme);
 nlohmann::json PlanJson(const std::vector<PlannedRun>& runs, const PlannedEffects& effects);
 
 /// What one run would give: u and U = 2 u of each result, and what is not separable.

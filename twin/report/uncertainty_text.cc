@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "twin/report/spoken_keys.h"
 #include "twin/report/text_table.h"
 #include "twin/uncertainty/agreement.h"
 
@@ -111,7 +112,7 @@ std::string SensitivityText(const ListSource& s, const std::string& unit) {
 std::string SourcesTable(const QuantityList& group) {
   Rows rows;
   for (const ListSource& s : SourcesOf(group)) {
-    rows.push_back({s.source->name, std::string(1, s.source->type), InputText(*s.source),
+    rows.push_back({WithWords(s.source->name), std::string(1, s.source->type), InputText(*s.source),
                     SensitivityText(s, uncertainty::UnitOf(group.name)), fmt::format("{:.3g}", s.u),
                     DofText(s.source->dof), fmt::format("{:.1f} %", 100.0 * s.share)});
   }
@@ -311,7 +312,7 @@ std::string BudgetText(const std::vector<Budget>& budgets, const std::vector<unc
         group.budgets.size() > 1 ? fmt::format(" ({} values, root mean squares)", group.budgets.size()) : "";
     text += fmt::format("{}{}: u = {:.3g}, expanded uncertainty U = {:.3g} (coverage factor k = {:.2f}, 95 %; {} "
                         "degrees of freedom)\n",
-                        group.name, count, u, expanded, u > 0.0 ? expanded / u : 0.0, DofText(FewestDof(group)));
+                        WithWords(group.name), count, u, expanded, u > 0.0 ? expanded / u : 0.0, DofText(FewestDof(group)));
     text += SourcesTable(group);
     if (trials) text += TrialsText(group, *trials);
     text += "\n";

@@ -30,6 +30,20 @@ PageTable RunsTable(const json& plan) {
   return table;
 }
 
+/// A column more: u of the first run's results when the programme has been made after it.
+void AddAfterProgramme(const json& plan, const json& after, PageTable& table) {
+  table.columns.push_back("with the programme after it");
+  for (auto& row : table.rows) row.emplace_back();
+  for (const json& result : ListAt(plan.at("runs").front(), "results")) {
+    const std::string words = PathInWords(NameAndUnit(TextAt(result, "name")).name);
+    double ratio = 1.0;
+    for (const json& gain : after)
+      if (TextAt(gain, "name") == TextAt(result, "name")) ratio = NumberAt(gain, "ratio");
+    for (auto& row : table.rows)
+      if (row[0] == words) row.back() = Short(ratio * NumberAt(result, "rms_u"));
+  }
+}
+
 /// u of every result in every run.
 PageTable PlannedResults(const json& plan) {
   PageTable table{"Standard uncertainty (rms)", {"result", "unit"}, {}};
@@ -45,7 +59,17 @@ PageTable PlannedResults(const json& plan) {
     }
   }
   for (auto& row : table.rows) row.resize(table.columns.size());
+  const json after = ListAt(plan.value("programme", json::object()), "u_after_over_before");
+  if (!after.empty()) AddAfterProgramme(plan, after, table);
   return table;
+}
+
+/// "2 x wide-sweep, 1 x warming"
+std::string ProgrammeInWords(const json& plan) {
+  std::string words;
+  for (const json& run : ListAt(plan.value("programme", json::object()).value("d_optimal", json::object()), "runs"))
+    words += fmt::format("{}{:g} x {}", words.empty() ? "" : ", ", NumberAt(run, "times"), TextAt(run, "name"));
+  return words;
 }
 
 /// u against the order, a figure a result, a series a run.
@@ -121,6 +145,7 @@ Page PlanPage(const PageSource& source, const json& plan) {
   for (const json& run : ListAt(plan, "advice")) {
     if (TextAt(run, "name") == TextAt(plan, "next")) page.verdict = "Most information per minute: " + TextAt(run, "words") + ".";
   }
+  if (const std::string programme = ProgrammeInWords(plan); !programme.empty()) page.verdict = "Best runs to add: " + programme + ". " + page.verdict;
   PageSection runs{"Runs", "", {}}, next{"Next run", "", {}}, sight{"Detectability", "", {}};
   AddFilled(PlannedResults(plan), runs);
   AddFilled(RunsTable(plan), runs);
