@@ -1,5 +1,10 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
+#include "twin/core/units.h"
 
 namespace twinbench::test {
 namespace {
@@ -23,6 +28,29 @@ class Diagnose : public ProgramHere {
     return all;
   }
 };
+
+/// Once a turn, there and back twice, without a time.
+std::string OnceATurn() {
+  std::string csv = "reference_deg,encoder_deg\n";
+  for (int k = 0; k < 4 * 72; ++k) {
+    const int step = k % 144 < 72 ? k % 72 : 71 - k % 72;
+    const double noise_deg = 2e-4 * ((k * 37) % 11 - 5);  // even from -0.001 to +0.001
+    csv += fmt::format("{},{:.6f}\n", 5 * step, 5.0 * step + 0.01 * std::cos((5.0 * step + 30.0) * units::deg) + noise_deg);
+  }
+  return csv;
+}
+
+TEST_F(Diagnose, SaysWhatResolvesAnAmbiguityAndNothingOfATimeThatNobodyMeasured) {
+  Write("mine.csv", OnceATurn());
+  Succeed({"import", "mine.csv", "-o", "mine"});
+  const std::string text = Succeed({"diagnose", "mine", "--cache", "cache", "--verbose"});
+  EXPECT_THAT(text, HasSubstr("Ambiguous: eccentricity or signal_offset"));
+  EXPECT_THAT(text, HasSubstr("Next: device.signal_periods"));
+  EXPECT_THAT(text, HasSubstr("another mounting"));
+  for (const char* of_time : {"mHz", "along the time", "(period "}) EXPECT_THAT(text, Not(HasSubstr(of_time)));
+  for (const auto& [channel, curve] : nlohmann::json::parse(Read("mine/results.json")).at("diagnosis").at("plots").at("against").value("time_s", nlohmann::json::object()).items())
+    EXPECT_LE(curve.at("x").size(), 1u) << channel;
+}
 
 TEST_F(Diagnose, NamesTheHiddenCauseAndExtendsTheScenario) {
   const auto json = Json(Arguments({"--json", "-", "-o", "extended.toml"}));

@@ -23,6 +23,7 @@
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
+#include "twin/core/reading_clock.h"
 #include "twin/core/run_record.h"
 #include "twin/diagnose/disagreement.h"
 #include "twin/diagnose/extend.h"
@@ -127,6 +128,8 @@ void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
   const diagnose::Disagreement disagreement = diagnose::DisagreementOf(found);
   if (!disagreement.line.empty()) fmt::print("{}", plausible::InLines({{!disagreement.is_plausible, disagreement.line}}));
   if (!options.extended.empty()) WriteExtended(options, run, how, found);
+  // Times of a list without a clock count its rows: nothing is told or drawn against them.
+  if (!HasClock(run.readings)) found.run.schedule.time_s.setZero();
   const nlohmann::json json = DiagnosisJson(found, run.scenario, options.extended);
   answer.Write(json);
   const diagnose::Shown shown = diagnose::ShownBy(found);

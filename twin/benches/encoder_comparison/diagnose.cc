@@ -31,6 +31,13 @@ std::vector<Reading> AnglesOf(const std::vector<Reading>& readings) {
   return separate::encoder::HaveStamps(readings) ? separate::encoder::AsComparison(readings) : readings;
 }
 
+/// Of causes that were taken out before the search, which the conclusion did not see.
+void TellNextMeasurements(std::vector<diagnose::Cause>& causes) {
+  for (diagnose::Cause& cause : causes)
+    if (cause.next_measurement.empty() && !cause.indistinguishable_from.empty())
+      cause.next_measurement = NextMeasurement(cause.effect, cause.indistinguishable_from.front().effect);
+}
+
 }  // namespace
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scenario& scenario,
@@ -44,6 +51,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
       NextMeasurement};
   diagnose::DiagnosisRun result = diagnose::Conclude(searched.encoder.run, searched.analysis, {}, words);
   diagnose::encoder::AddLargeCauses(large, result);
+  TellNextMeasurements(result.diagnosis.causes);
   diagnose::encoder::AddErrorsOfTargets(large, result);
   diagnose::encoder::TellEqualSteps(result);
   diagnose::encoder::TellWander(result);

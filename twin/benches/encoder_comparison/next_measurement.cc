@@ -10,8 +10,8 @@ namespace {
 const std::vector<diagnose::Split>& Splits() {
   static const std::vector<diagnose::Split> splits = {
       {{"eccentricity", "signal_offset"},
-       "device.signal_periods if its signals have several periods per turn, for an offset then shows in that order; or the raw "
-       "sine and cosine signals, whose offsets are their means; or a second reading head opposite the first, which sees the "
+       "device.signal_periods if its signals have several periods per turn, for an offset then shows in that order; or another "
+       "mounting, centred anew, for an eccentricity changes with it and an offset does not; or the raw sine and cosine signals, whose offsets are their means; or a second reading head opposite the first, which sees the "
        "eccentricity with the other sign"},
       {{"ellipticity", "amplitude_mismatch", "quadrature_error"},
        "the raw sine and cosine signals: their sizes and phase are read directly"},
