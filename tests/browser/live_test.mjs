@@ -169,6 +169,24 @@ async function isPaused(address) {
   await told.cancel();
 }
 
+test("on a phone nothing of a paused run's page is beside the screen, and stop and resume are beside each other", async () => {
+  write("phone.toml", kSmallRun);
+  const run = start("run", "phone.toml", "-o", "phone", "--web", "0");
+  const address = new URL(await addressOf(run));
+  assert.equal(await tell(address, "pause"), 202);
+  await isPaused(address);
+  const page = await openAddress(address.href);
+  await page.locator('#pause-said[data-state="paused"]').waitFor();
+  await page.setViewportSize({ width: 390, height: 844 });
+  const boxes = await Promise.all([".halts .stop", ".halts .pause"].map((halt) => page.locator(halt).first().boundingBox()));
+  assert.ok(Math.abs(boxes[0].y - boxes[1].y) < 8, JSON.stringify(boxes));
+  assert.ok(boxes[0].x + boxes[0].width <= boxes[1].x && boxes[1].x + boxes[1].width <= 390, JSON.stringify(boxes));
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
+  assert.equal(await tell(address, "resume"), 202);
+  assert.equal(await run.ended, 0, run.err);
+  await page.close();
+});
+
 test("a pause changes no bit of a twin's run", async () => {
   write("held.toml", kSmallRun);
   const run = start("run", "held.toml", "-o", "held", "--web", "0");
