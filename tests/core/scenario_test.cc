@@ -349,6 +349,7 @@ TEST(EditDistance, CountsASwapOfNeighboursOnce) {
   EXPECT_EQ(EditDistance("", "abc"), 3);
   EXPECT_EQ(Nearest("lasr", {"adc", "laser"}), "laser");
   EXPECT_EQ(Nearest("lasr", {}), "");
+  EXPECT_EQ(Nearest("rotary", {"bar", "rotary_4dof"}), "rotary_4dof") << "it begins so";
 }
 
 }  // namespace

@@ -65,6 +65,41 @@ TEST_F(BadInput, AScenarioOfAnotherBenchThanMadeTheReadingsIsRefused) {
     EXPECT_THAT(Refusal({command, "run", "--scenario", "encoder.toml"}), HasSubstr("encoder.toml: a scenario of bench encoder_comparison; expected one of rotary_4dof"));
 }
 
+TEST_F(BadInput, WhatIsNoRunIsToldAsWhatItIsWithWhatToType) {
+  ASSERT_EQ(Call({"run", "small.toml", "-o", "runs/first"}).exit_code, 0);
+  Write("mine.csv", "reference_deg,encoder_deg\n0,0.1\n");
+  std::filesystem::create_directory(At("empty"));
+  for (const char* command : {"diagnose", "separate", "score", "report", "export", "uncertainty", "compensate"}) {
+    SCOPED_TRACE(command);
+    EXPECT_THAT(Refusal({command, "runs"}), HasSubstr("runs: a folder of 1 run, none itself; expected one of them: runs/first"));
+    EXPECT_THAT(Refusal({command, "empty"}), HasSubstr("empty: a folder without a run"));
+    EXPECT_THAT(Refusal({command, "mine.csv"}), HasSubstr("`twinbench import mine.csv -o runs/mine`"));
+    EXPECT_THAT(Refusal({command, "small.toml"}), HasSubstr("`twinbench run small.toml -o runs/small`"));
+    EXPECT_THAT(Refusal({command, "runs/frist"}), HasSubstr("the nearest is runs/first"));
+  }
+}
+
+TEST_F(BadInput, WhatIsNoBenchFileOfTheScenarioIsToldAsWhatItIs) {
+  Write("machine.toml", "kind = \"hardware\"\n[machine]\nkind = \"esp\"\n");
+  Write("turntable.toml", "bench = \"turntable_autocollimator\"\n");
+  Write("tables.toml", "kind = \"hardware\"\n[adc]\nkind = \"scpi\"\n");
+  EXPECT_THAT(Refusal({"measure", "small.toml", "--bench", "turntable.toml", "-o", "m"}),
+              HasSubstr("turntable.toml: a scenario of turntable_autocollimator, no bench file; expected the file that says where the devices of rotary_4dof are"));
+  EXPECT_THAT(Refusal({"measure", "small.toml", "--bench", "machine.toml", "-o", "m"}), HasSubstr("[machine], so of a machine"));
+  EXPECT_THAT(Refusal({"measure", "turntable.toml", "--bench", "tables.toml", "-o", "m"}), HasSubstr("[adc], so of two tables"));
+}
+
+TEST_F(BadInput, InAWordIsToldWithTheNearest) {
+  EXPECT_THAT(Refusal({"separate", "run", "--estimator", "rigorus"}), HasSubstr("there is no \"rigorus\" among published, rigorous; the nearest is rigorous"));
+  EXPECT_THAT(Refusal({"help", "efects"}), HasSubstr("the nearest is effects"));
+  EXPECT_THAT(Refusal({"help", "scenario", "rotary"}), HasSubstr("the nearest is rotary_4dof"));
+  EXPECT_THAT(Refusal({"completion", "fihs"}), HasSubstr("the nearest is fish"));
+  EXPECT_THAT(Refusal({"plan", "small.toml", "--goal", "taget.ez"}), HasSubstr("the nearest is target.ez"));
+  EXPECT_THAT(Refusal({"score", "run", "--aganst", "x"}), HasSubstr("the nearest is --against"));
+  EXPECT_THAT(Refusal({"score", "run", "--table", "x"}), testing::Not(HasSubstr("nearest"))) << "no option is meant by it";
+  EXPECT_THAT(Refusal({"completion", "tcsh"}), testing::Not(HasSubstr("nearest"))) << "nor any of these words";
+}
+
 TEST_F(BadInput, InANumberWithoutAnUpperBoundIsSaidInOneLine) {
   EXPECT_THAT(Refusal({"plan", "small.toml", "--minutes", "2h"}), HasSubstr("\"2h\" is not allowed; expected a number above 0"));
 }

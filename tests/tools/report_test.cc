@@ -19,7 +19,9 @@ class ReportCommand : public ProgramHere {
 TEST_F(ReportCommand, WritesPicturesWithoutABrowserAndTruthOnlyOfAScoredRun) {
   Succeed({"report", "run", "--svg", "pictures"});
   EXPECT_THAT(Read("pictures/errors-target-ez.svg"), Not(HasSubstr("truth")));
-  Succeed({"score", "run", "--json", "run/score.json"});
+  Succeed({"score", "run", "--estimator", "published"});
+  EXPECT_FALSE(Exists("run/score.json")) << "the page shows the other estimator's results";
+  Succeed({"score", "run"});
   Succeed({"report", "run", "--svg", "pictures"});
   EXPECT_THAT(Read("pictures/errors-target-ez.svg"), HasSubstr("truth"));
   EXPECT_FALSE(Exists("run/report.html"));
@@ -40,7 +42,7 @@ TEST_F(ReportCommand, RefusesWhatNoPageIsMadeOfAndOverwritesNoInput) {
   Write("notes.html", "three weeks of work");
   Write("deep.json", "{\"steps\":" + std::string(100'000, '[') + std::string(100'000, ']') + "}");
   Write("damaged.json", "{\"runs\": [1], \"advice\": [2]}");
-  Succeed({"score", "run", "--json", "run/score.json"});  // of a run that was not, a line more is said
+  Succeed({"score", "run"});  // of a run that was not, a line more is said
   ExpectRefused({"report", "nothing"});
   ExpectRefused({"report", "other.json", "--svg", "p"}, "other.json: ");
   ExpectRefused({"report", "run", "-o", "run/results.json"});

@@ -1,10 +1,14 @@
 #include "tools/twinbench/common_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <ctime>
+
+#include "twin/core/nearest_key.h"
 
 namespace twinbench::tools {
 namespace {
@@ -50,12 +54,25 @@ void AddSet(CLI::App& command, std::vector<std::string>& overrides) {
 
 void AddEstimator(CLI::App& command, std::string& estimator, const std::string& also) {
   command.add_option("--estimator" + also, estimator, "rigorous: weighted least squares (exact model); published: the paper's equations")
-      ->check(CLI::IsMember({"published", "rigorous"}))
+      ->check(OneOf({"published", "rigorous"}))
       ->capture_default_str();
 }
 
 void AddThreads(CLI::App& command, int& threads) {
   command.add_option("--threads", threads, "that share the work; the result is the same; left out: one for each core")->check(CLI::Range(1, 4096))->default_str("");
+}
+
+std::string OrNearest(const std::string& word, const std::vector<std::string>& words) {
+  const std::string nearest = Nearest(word, words);
+  return 2 * EditDistance(word, nearest) + 2 <= static_cast<int>(word.size()) ? "; the nearest is " + nearest : "";
+}
+
+CLI::Validator OneOf(const std::vector<std::string>& words) {
+  const auto check = [words](const std::string& word) {
+    if (std::ranges::find(words, word) != words.end()) return std::string();
+    return fmt::format("there is no \"{}\" among {}{}", word, fmt::join(words, ", "), OrNearest(word, words));
+  };
+  return CLI::Validator(check, fmt::format("{{{}}}", fmt::join(words, ",")));
 }
 
 CLI::Validator AboveZero() {

@@ -28,6 +28,12 @@ void AddSet(CLI::App& command, std::vector<std::string>& overrides);
 void AddEstimator(CLI::App& command, std::string& estimator, const std::string& also = "");
 void AddThreads(CLI::App& command, int& threads);
 
+/// "; the nearest is --against" where one of the words was probably meant; empty where the word is another one.
+std::string OrNearest(const std::string& word, const std::vector<std::string>& words);
+
+/// One of a few words; another is refused with the nearest.
+CLI::Validator OneOf(const std::vector<std::string>& words);
+
 /// Numbers without an upper bound: CLI11 says its largest double.
 CLI::Validator AboveZero();
 CLI::Validator FromZero();

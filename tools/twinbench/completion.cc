@@ -92,7 +92,7 @@ std::string For(const std::string& shell, const CLI::App& app) {
 void AddCompletion(CLI::App& app) {
   auto* command = app.add_subcommand("completion", "Print the completion of commands and options for bash, zsh or fish");
   auto shell = std::make_shared<std::string>("bash");
-  command->add_option("shell", *shell, "bash, zsh or fish")->check(CLI::IsMember({"bash", "zsh", "fish"}))->capture_default_str();
+  command->add_option("shell", *shell, "bash, zsh or fish")->check(OneOf({"bash", "zsh", "fish"}))->capture_default_str();
   AnswerWith(*command, "it", [&app, shell](JsonAnswer& answer) {
     if (!answer.IsOnStdout()) fmt::print("{}", For(*shell, app));
     answer.Write({{"shell", *shell}, {"script", For(*shell, app)}});

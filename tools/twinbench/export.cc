@@ -8,6 +8,7 @@
 #include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/overwriting.h"
+#include "tools/twinbench/wrong_source.h"
 #include "twin/core/csv.h"
 #include "twin/core/number_text.h"
 #include "twin/core/run_record.h"
@@ -47,6 +48,7 @@ nlohmann::json ColumnsJson(const std::vector<Reading>& readings, const std::stri
 
 void Export(const ExportOptions& options, JsonAnswer& answer) {
   RequireFree(options.readings, {}, options.force);
+  RequireRunFolder(options.folder);
   const auto record = RunRecord::Open(options.folder);
   const std::vector<Reading> readings = record->Readings();
   const std::string bench = record->provenance().bench;

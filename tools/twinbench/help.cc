@@ -122,7 +122,7 @@ void AddHelp(CLI::App& app) {
   auto* command = app.add_subcommand("help", "Explain the keys of scenarios, effects, bench files, dialogues or maps");
   auto topic = std::make_shared<std::string>("scenario");
   command->add_option("topic", *topic, "scenario, effects, bench, dialogue or map")
-      ->check(CLI::IsMember({"scenario", "effects", "bench", "dialogue", "map"}));
+      ->check(OneOf({"scenario", "effects", "bench", "dialogue", "map"}));
   auto of = std::make_shared<std::string>();
   command->add_option("of", *of, "with scenario: a bench or a table, as rotary_4dof or laser; left out: all");
   AnswerWith(*command, "the same", [topic, of](JsonAnswer& answer) { Help(*topic, *of, answer); });

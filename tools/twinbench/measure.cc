@@ -26,7 +26,10 @@
 #include "twin/benches/claims.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "twin/core/errors.h"
+#include "twin/core/input_text.h"
 #include "twin/core/run_record.h"
+#include "twin/core/toml_reader.h"
 #include "twin/procedure/watch.h"
 
 namespace twinbench::tools {
@@ -124,11 +127,23 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
   note(bench->Notices());
 }
 
+/// A scenario, or the devices of another kind of bench, are told as such before their keys are.
+void RequireBenchFileFor(const Scenario& scenario, const std::string& path) {
+  const std::string text = InputText(path, "a bench file in TOML"), of = TextAtTop(text, path, "bench");
+  const std::string wanted = "the file that says where the devices of " + scenario.bench + " are; `twinbench serve SCENARIO --write-bench FILE` writes one";
+  if (!of.empty()) throw InputError(path, "a scenario of " + of + ", no bench file", wanted);
+  const bool is_driven = BenchOf(scenario).drive != nullptr;
+  const std::string table = is_driven ? "adc" : "machine";  // what the other kind has
+  if (("\n" + text).find("\n[" + table + "]") != std::string::npos)
+    throw InputError(path, fmt::format("a bench file with [{}], so of {}", table, is_driven ? "two tables with an AD converter" : "a machine"), wanted);
+}
+
 }  // namespace
 
 void Measure(const MeasureOptions& o, LivePage& page, JsonAnswer& answer) {
   RequireOutput(answer.to(), {o.scenario, o.bench});
   Scenario scenario = LoadScenario(o.scenario, o.overrides);
+  RequireBenchFileFor(scenario, o.bench);
   for (const std::string& table : o.compensations) CommandCompensation(scenario, table);
   if (hw::IsProgramFile(o.bench)) return MeasureByProgram(o, scenario, page, answer);
   if (!BenchOf(scenario).has_controllers)

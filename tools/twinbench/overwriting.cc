@@ -31,7 +31,7 @@ void RequireOldRunOfTwin(const RunFolder& folder) {
 
 void TakeAway(const RunFolder& folder) {
   for (const std::string& file : {folder.record(), folder.record() + "-wal", folder.record() + "-shm", folder.scenario(), folder.truth(),
-                                  folder.results(), folder.path + "/report.html", folder.path + "/score.json"})
+                                  folder.results(), folder.path + "/report.html", folder.score()})
     fs::remove(file);
   fs::remove_all(folder.images());
 }

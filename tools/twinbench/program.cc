@@ -13,6 +13,7 @@
 #endif
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/common_options.h"
 #include "tools/twinbench/examples.h"
 #include "tools/twinbench/exit_code.h"
 #include "tools/twinbench/json_answer.h"
@@ -35,6 +36,11 @@ constexpr const char* kExamples =
     "  twinbench diagnose runs/first                              which cause explains the difference?\n"
     "  twinbench export runs/first --readings readings.csv        readings for other software\n"
     "  twinbench separate readings.csv --scenario scenarios/rotary_4dof.toml --json - --estimator published\n"
+    "  twinbench score runs/first --against mine.csv              your own result in the same table\n"
+    "\n"
+    "With a recording of your own:\n"
+    "  twinbench import mine.csv -o runs/mine                     angle by a reference, angle by the encoder\n"
+    "  twinbench diagnose runs/mine                               what is wrong, how large, how sure\n"
     "\n"
     "The same scenario many times:\n"
     "  twinbench campaign study.toml -o study.sqlite              trials in parallel, one table, a summary\n"
@@ -71,8 +77,7 @@ std::string NotTaken(const CLI::App& command, const std::string& word) {
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
   }
-  return fmt::format("there is no option {}; the nearest is {}", ForTerminal(word),
-                     Nearest(word.substr(0, word.find('=')), options));
+  return fmt::format("there is no option {}{}", ForTerminal(word), OrNearest(word.substr(0, word.find('=')), options));
 }
 
 std::string InWords(const CLI::App& command, const CLI::Error& error) {

@@ -112,7 +112,7 @@ void AddReport(CLI::App& app) {
       "report", "Make a page of plots and tables of a run, a diagnosis, a plan, a campaign or an investigation: one file that opens offline");
   auto options = std::make_shared<ReportOptions>();
   command->add_option("source", options->source, "folder of a run or an investigation, diagnosis.json, plan's JSON, or a campaign's table")->required();
-  command->add_option("--score", options->score, "what `score --json` has written; else score.json of the folder, if there");
+  command->add_option("--score", options->score, "what `score --json` has written; else what `score` has left in the folder");
   AddTextOutput(*command, options->output, "the page, else report.html in the folder or beside the file,");
   command->add_option("--svg", options->pictures, "write every plot as an SVG picture into this folder; without -o no page is made");
   AddForce(*command, options->force);

@@ -8,6 +8,7 @@
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/light_pictures.h"
 #include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/wrong_source.h"
 #include "twin/campaign/campaign_page.h"
 #include "twin/core/digest.h"
 #include "twin/core/errors.h"
@@ -38,10 +39,10 @@ report::PageSource SourceOf(const std::string& path, const std::vector<std::stri
 
 /// The score of a run, where `score --json` has left it or the user says it is.
 nlohmann::json ScoreOf(const RunFolder& folder, const std::string& named) {
-  const std::string path = named.empty() ? folder.path + "/score.json" : named;
+  const std::string path = named.empty() ? folder.score() : named;
   if (!named.empty() || fs::exists(path)) return ReadJson(path);
   if (fs::exists(folder.truth()))
-    fmt::print(stderr, "the run has not been scored: the page shows no truth (twinbench score {} --json {})\n", folder.path, path);
+    fmt::print(stderr, "the run has not been scored: the page shows no truth (twinbench score {} leaves it there)\n", folder.path);
   return {};
 }
 
@@ -111,7 +112,11 @@ report::Page PageOfWhatIsThere(const std::string& source, const std::string& sco
   if (fs::exists(InvestigationOf(source))) return OfInvestigation(source, output);
   if (fs::exists(folder.results())) return OfRun(folder, score);
   if (!fs::exists(source)) throw NothingToRead(source, kExpected);
-  if (fs::is_directory(source)) throw InputError(source, "there is no results.json", kExpected);
+  if (fs::is_directory(source)) {
+    RequireRunFolder(source);
+    throw InputError(source, "there is no results.json", kExpected);
+  }
+  if (source.ends_with(".toml") || source.ends_with(".csv")) throw NoRun(source);
   return source.ends_with(".json") ? OfJson(source) : OfCampaign(source);
 }
 

@@ -82,7 +82,7 @@ void AddRun(CLI::App& app) {
   command->add_option("--seed", options->seed, "instead of the scenario's seed");
   command->add_flag("--noise-free", options->noise_free, "no random contribution and no quantisation");
   command->add_option("--fidelity", options->fidelity, "of the mechanics: kinematic, linear or bullet")
-      ->check(CLI::IsMember({"kinematic", "linear", "bullet"}));
+      ->check(OneOf({"kinematic", "linear", "bullet"}));
   command
       ->add_option("--errors", options->errors, "target=FILE.csv or reference=FILE.csv: that table's true errors")
       ->allow_extra_args(false);

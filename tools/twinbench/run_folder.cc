@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "tools/twinbench/wrong_source.h"
 #include "twin/core/errors.h"
 #include "twin/core/input_text.h"
-#include "twin/core/nearest_file.h"
 #include "twin/core/run_record.h"
 #include "twin/report/page/modest_json.h"
 
@@ -83,10 +83,10 @@ std::vector<Reading> ReadingsOf(const std::string& folder, const std::string& sc
 RecordedRun LoadRecordedRun(const std::string& source, const std::string& scenario_path,
                             const std::vector<std::string>& overrides) {
   const bool folder = fs::is_directory(source);
-  if (!folder && !fs::exists(source)) throw NothingToRead(source, "a run folder or a readings file");
+  if (folder || !fs::exists(source)) RequireRunFolder(source);
   if (!folder && scenario_path.empty()) {
-    throw InputError(source, "a readings file does not say which bench made it",
-                     "--scenario SCENARIO.toml, or a file with columns of its own by way of twinbench import");
+    const InputFault no_run = NoRun(source).fault();
+    throw InputError(source, no_run.what, no_run.expected + ", or --scenario SCENARIO.toml beside a readings.csv of twinbench");
   }
   RecordedRun run;
   run.scenario = LoadScenario(scenario_path.empty() ? RunFolder{source}.scenario() : scenario_path, overrides);

@@ -23,6 +23,7 @@ struct RunFolder {
   std::string record() const { return path + "/record.sqlite"; }
   std::string truth() const { return path + "/" + kTruthFile; }
   std::string results() const { return path + "/" + kResultsFile; }
+  std::string score() const { return path + "/score.json"; }
   std::string images() const { return path + "/images"; }
 };
 

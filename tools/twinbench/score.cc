@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/wrong_source.h"
 #include "twin/benches/evaluated.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
@@ -28,13 +30,16 @@ struct ScoreOptions {
 void PrintScore(const ScoreOptions& options, JsonAnswer& answer) {
   const RunFolder folder{options.folder};
   RequireOutput(answer.to(), {folder.truth(), folder.scenario(), options.against});
-  static_cast<void>(RunRecord::Open(folder.path));  // whatever is no run is told first
+  RequireRunFolder(folder.path);
+  static_cast<void>(RunRecord::Open(folder.path));  // a damaged record is told first
   if (!std::filesystem::exists(folder.truth()))
     throw InputError(folder.truth(), "is not there",
                      "a simulated run: what was measured or imported has no truth");
   const nlohmann::json truth = ReadJson(folder.truth());
   const RecordedRun run = LoadPlausibleRun(folder.path, "", {});
   report::ScoredRun score = ScoreOf(run.scenario, run.readings, truth, EstimatorNamed(options.estimator));
+  const bool is_of_results = options.against.empty() && EstimatorNamed(options.estimator) == Estimator::kRigorous;
+  if (is_of_results && access(folder.path.c_str(), W_OK) == 0) WriteFileAtOnce(folder.score(), JsonText(ScoreJson(score)));
   if (!options.against.empty()) score = report::ScoreAgainst(score.values, options.against);
   answer.Write(ScoreJson(score));
   if (answer.IsOnStdout()) return;

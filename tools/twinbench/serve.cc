@@ -194,7 +194,7 @@ void AddServe(CLI::App& app) {
   command->add_flag("--no-pty", arguments->no_pty, "no pseudo-terminal with ESP");
   command->add_option("--write-bench", arguments->bench_file, "write the bench file that drives what is served");
   command->add_option("--tables", arguments->tables, "what that bench file drives the tables by: scpi, esp or pty")
-      ->check(CLI::IsMember({"scpi", "esp", "pty"}));
+      ->check(OneOf({"scpi", "esp", "pty"}));
   AddForce(*command, arguments->force);
   AddWebOption(*command, arguments->web);
   AnswerWith(*command, "where it is reached, as soon as it can be,", [arguments](JsonAnswer& answer) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 namespace twinbench {
 namespace {
@@ -56,9 +57,12 @@ int EditDistance(std::string_view a, std::string_view b) {
 }
 
 std::string Nearest(std::string_view word, const std::vector<std::string>& known) {
-  const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-    return EditDistance(word, a) < EditDistance(word, b);
-  });
+  constexpr std::size_t kTellsOne = 3;  // letters: whoever writes the beginning of a name means it, though a shorter name is fewer letters away
+  const auto rank = [&](const std::string& name) {
+    const bool begins_so = word.size() >= kTellsOne && name.starts_with(word);
+    return std::pair(!begins_so, EditDistance(word, name));
+  };
+  const auto nearest = std::ranges::min_element(known, {}, rank);
   return nearest == known.end() ? std::string() : *nearest;
 }
 
