@@ -23,7 +23,7 @@ constexpr int kMostLooks = 20;    // ... but for what gets slower
 constexpr double kSlower = 0.95;  // from look to look
 constexpr int kLooksUntilSaidAgain = 3;  // to what moves on; some are busy for a moment with every word
 constexpr int kFailuresOfADeadLink = 8;
-constexpr auto kDeadAfter = std::chrono::seconds(4);  // of nothing but failures
+constexpr auto kDeadAfter = std::chrono::milliseconds(3500);  // of nothing but failures, the next of which would be as long as the last
 constexpr double kRestsWithin = 1e-5;                 // m or rad: where no in-position limit is known
 
 /// What an axis has shown since it was last seen to move.
@@ -95,6 +95,7 @@ class Stopping {
   void Look() {
     const bool moves_on = watch_.Moves() && looks_ - said_at_look_ >= kLooksUntilSaidAgain;
     if (!was_heard_ || moves_on) Say();
+    if (IsDead()) return;
     Try([this] {
       watch_.Look(part_->look());
       ++looks_;
@@ -112,17 +113,19 @@ class Stopping {
 
  private:
   bool IsDead() const {
-    return failures_ >= kFailuresOfADeadLink || (failures_ > 0 && SteadyClock::now() - failing_since_ > kDeadAfter);
+    return failures_ >= kFailuresOfADeadLink || (failures_ > 1 && SteadyClock::now() - failing_since_ + took_ > kDeadAfter);
   }
 
   /// What fails may be the fault that is being dealt with.
   void Try(const std::function<void()>& ask) {
+    const SteadyClock::time_point asked = SteadyClock::now();
     try {
       ask();
     } catch (const NothingMoves&) {
       is_recording_ = true;
     } catch (const BenchError& error) {
-      if (failures_++ == 0) failing_since_ = SteadyClock::now();
+      if (failures_++ == 0) failing_since_ = asked;
+      took_ = SteadyClock::now() - asked;
       why_not_ = error.what();
     }
   }
@@ -132,6 +135,7 @@ class Stopping {
   bool was_heard_ = false, is_recording_ = false;
   int looks_ = 0, said_at_look_ = 0, failures_ = 0;  // failures: since the last look that was answered
   SteadyClock::time_point failing_since_;
+  SteadyClock::duration took_{};  // the latest failure
   std::string why_not_;
 };
 
