@@ -80,5 +80,23 @@ TEST(Stood, ACreepThatIsAllowedIsInTheReading) {
   EXPECT_EQ(log.readings[6].extra.size(), 4u);
 }
 
+TEST(RequireOnWay, AnAxisThatHasBeenSentIsBetweenBothEndsOfItsWayAndNotWhereItsZeroWas) {
+  const auto is_on_way = [](double from, double to, double at) {
+    try {
+      RequireOnWay("x", from, to, at);
+    } catch (const DeviceFault& fault) {
+      EXPECT_EQ(fault.kind(), FaultKind::kMoved);
+      return false;
+    }
+    return true;
+  };
+  for (const double at : {0.9, 1.0, 1.5, 2.0, 2.1}) EXPECT_TRUE(is_on_way(1.0, 2.0, at)) << at;
+  EXPECT_FALSE(is_on_way(1.0, 2.0, 0.0));
+  EXPECT_FALSE(is_on_way(2.0, 1.0, 0.0));
+  EXPECT_FALSE(is_on_way(2.0, 1.0, 3.0));
+  EXPECT_TRUE(is_on_way(1.0, 1.0, 1.0));
+  EXPECT_TRUE(is_on_way(1.0, 2.0, kNaN));
+}
+
 }  // namespace
 }  // namespace twinbench::procedure

@@ -24,6 +24,7 @@
 #include "tools/twinbench/told_link.h"
 #include "tools/twinbench/told_stopped.h"
 #include "twin/benches/claims.h"
+#include "twin/benches/proof_by_steps.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/core/errors.h"
@@ -88,6 +89,10 @@ void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, 
                 const std::string& kind, LivePage& page) {
   ProgressLine line;
   options.log = &record;
+  if (kind == "hardware" && !bench.simulation) {
+    options.encoders_now = [&] { return std::vector<double>{bench.target.EncoderAngle_rad(), bench.reference.EncoderAngle_rad()}; };
+    options.prove = ProofBySteps(bench, scenario, options);
+  }
   if (kind != "replay") options.hear_fault = TellFault;
   const LinkWatch watch;
   if (bench.simulation) bench.simulation->Restart();

@@ -17,6 +17,7 @@
 #include "tools/twinbench/told_stopped.h"
 #include "twin/benches/claims.h"
 #include "twin/benches/expected.h"
+#include "twin/benches/proof_by_steps.h"
 #include "twin/benches/registry.h"
 #include "twin/core/bench_format.h"
 #include "twin/procedure/doubted_instruments.h"
@@ -121,7 +122,8 @@ std::vector<procedure::ClaimedColumn> ClaimedColumns(const Scenario& scenario) {
   for (const plausible::Expected& expected : ExpectedOf(scenario, {})) {
     const auto column = std::ranges::find(format.columns, expected.column, &ReadingColumn::name);
     const double range = format.range_of ? format.range_of(scenario, expected.column) : 0.0;
-    claims.push_back({*column, scenario.noise_free ? 0.0 : expected.noise, range, expected.is_loose ? nullptr : expected.nominal, expected.is_angle});
+    claims.push_back({*column, scenario.noise_free ? 0.0 : expected.noise, range, expected.is_loose ? nullptr : expected.nominal, expected.is_angle,
+                      expected.by_axes && !expected.nominal});
   }
   return claims;
 }
@@ -137,6 +139,14 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
   MachineBench bench = {devices.clock, devices.machine, instruments, devices.fixture, devices.simulation, devices.indexer};
   ProgressLine line;
   options.log = &record;
+  if (is_real) {
+    options.encoders_now = [&] {
+      std::vector<double> now;
+      for (const AxisState& axis : bench.machine.State()) now.push_back(axis.encoder);
+      return now;
+    };
+    options.prove = ProofBySteps(bench, scenario, options);
+  }
   if (kind != "replay") options.hear_fault = TellFault;
   const LinkWatch watch;
   StandingCheck stands;
@@ -165,6 +175,7 @@ void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const
   procedure::MachineOptions options = Carefully(file, bench, begun, allow_homing);
   if (IsReal(file, bench)) {
     using std::placeholders::_1, std::placeholders::_2;
+    options.require_no_jump = std::bind(procedure::RequireNoJump, ClaimedColumns(scenario), _1, _2);
     options.require_goes_along = std::bind(procedure::RequireGoesAlong, ClaimedColumns(scenario), _1, _2);
     options.require_as_before = std::bind(procedure::RequireAsBefore, ClaimedColumns(scenario), _1, _2);
   }

@@ -23,11 +23,18 @@ double UnlessCoarse(double noise, double step) {
   return noise > step ? noise : 0.0;
 }
 
+double StandsStill(const Reading&) {
+  return 0.0;
+}
+
 /// x of a PSD by the yaw that the autocollimator shows.
 Expected ShownBySpot(const RotarySettings& s, const PsdSettings& psd, const std::string& column) {
   const double sin_order = s.laser.wavelength_m * s.grating.lines_per_m;
   const double V_rad = -psd.sensitivity_V_m * psd.distance_m * (1.0 + 1.0 / std::sqrt(1.0 - sin_order * sin_order));
-  return {.column = column, .nominal = [V_rad](const Reading& r) { return V_rad * r.autocollimator_yaw_rad; }, .is_loose = true};
+  return {.column = column,
+          .nominal = [V_rad](const Reading& r) { return V_rad * r.autocollimator_yaw_rad; },
+          .by_axes = [V_rad](const Reading& r) { return V_rad * (r.target_rad + r.reference_rad); },
+          .is_loose = true};
 }
 
 /// Of a mean over a block: as its samples scatter where the readings say so, else as the amplifier's noise is stated.
@@ -39,8 +46,10 @@ double BlockNoise_V(const RotarySettings& s, const std::vector<Reading>& reading
 }
 
 std::vector<Expected> ShownByTables(const RotarySettings& s, const std::vector<Reading>& readings) {
-  std::vector<Expected> all = {
-      ShownBySpot(s, s.psd_a, "psd_a_x_V"), {.column = "psd_a_y_V"}, ShownBySpot(s, s.psd_b, "psd_b_x_V"), {.column = "psd_b_y_V"}};
+  std::vector<Expected> all = {ShownBySpot(s, s.psd_a, "psd_a_x_V"),
+                               {.column = "psd_a_y_V", .by_axes = StandsStill},
+                               ShownBySpot(s, s.psd_b, "psd_b_x_V"),
+                               {.column = "psd_b_y_V", .by_axes = StandsStill}};
   const double step_V = 2.0 * s.adc.range_V * std::pow(0.5, s.adc.bits);
   for (std::size_t k = 0; k < all.size(); ++k)
     all[k].noise = UnlessCoarse(BlockNoise_V(s, readings, k), step_V), all[k].step = step_V;
@@ -53,6 +62,7 @@ std::vector<Expected> ShownByDevice(const EncoderSettings& s) {
            .noise = device.noise_known ? UnlessCoarse(device.noise_rad, device.resolution_rad) : 0.0,
            .step = device.resolution_rad,
            .nominal = [](const Reading& r) { return r.reference_rad; },
+           .by_axes = [](const Reading& r) { return r.reference_rad; },
            .is_angle = true}};
 }
 
@@ -62,8 +72,8 @@ std::vector<Expected> ShownByCollimator(const TurntableSettings& s) {
     const bool is_planned = r.setup >= 0 && r.setup < p.SetUps() && r.phase == Phase::kFullCircle;
     return is_planned ? std::abs(p.Of(p.tilts_rad, r.setup)) / std::sqrt(2.0) : 0.0;
   };
-  return {{.column = "autocollimator_x_arcsec", .noise = noise},
-          {.column = "autocollimator_y_arcsec", .noise = s.ReadingNoise_rad(), .spread = tilt}};
+  return {{.column = "autocollimator_x_arcsec", .noise = noise, .by_axes = [](const Reading& r) { return r.target_rad; }},
+          {.column = "autocollimator_y_arcsec", .noise = s.ReadingNoise_rad(), .spread = tilt, .by_axes = StandsStill}};
 }
 
 std::vector<Expected> ShownByHob(const HobSettings& s) {
@@ -109,8 +119,9 @@ double SpotMoves(const FreeformSettings& s) {
 std::vector<Expected> ShownByProbe(const FreeformSettings& s) {
   constexpr double kMost = 0.3;
   const bool is_known = SpotMoves(s) < kMost;
-  return {{.column = "qpd_x_V", .noise = s.qpd.noise_V, .nominal = is_known ? OfIdealMachine(s, 0) : nullptr, .is_loose = true},
-          {.column = "qpd_y_V", .noise = s.qpd.noise_V, .nominal = is_known ? OfIdealMachine(s, 1) : nullptr, .is_loose = true},
+  const auto x_V = OfIdealMachine(s, 0), y_V = OfIdealMachine(s, 1);
+  return {{.column = "qpd_x_V", .noise = s.qpd.noise_V, .nominal = is_known ? x_V : nullptr, .by_axes = x_V, .is_loose = true},
+          {.column = "qpd_y_V", .noise = s.qpd.noise_V, .nominal = is_known ? y_V : nullptr, .by_axes = y_V, .is_loose = true},
           {.column = "ccd_px", .noise = s.ccd.noise_px, .nominal = OfIdealMachine(s, 2)}};
 }
 

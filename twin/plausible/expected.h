@@ -20,6 +20,8 @@ struct Expected {
   std::function<double(const Reading&)> spread = {};
   /// What it shows by the angles and places of the reading, but for a constant of each set-up [SI]; NaN: not known.
   std::function<double(const Reading&)> nominal = {};
+  /// What it shows by where the axes stand, near a place and but for a constant [SI]: none: no step of an axis proves it.
+  std::function<double(const Reading&)> by_axes = {};
   bool is_angle = false;  // nominal: whole turns apart
   bool may_lag = false;   // nominal: a servo that comes later is no wrong order of readings
   bool is_loose =

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "twin/core/device_fault.h"
 
@@ -50,10 +51,45 @@ std::string Text(const ClaimedColumn& claim, const Reading& reading) {
   throw DeviceFault(FaultKind::kStuck, "instruments", what);
 }
 
+/// By what a column differs between two passes, one entry a place that both have, in the order of the later pass.
+struct Repeats {
+  std::vector<double> differ;
+  std::vector<int> reading;  // of the earlier pass
+};
+
+Repeats RepeatsOf(const ClaimedColumn& claim, const Reading& reading, const std::vector<Reading>& kept) {
+  const auto is_of = [&](const Reading& r, int pass) { return r.setup == reading.setup && r.phase == reading.phase && r.pass == pass; };
+  std::map<int, const Reading*> before;
+  Repeats repeats;
+  const auto add = [&](const Reading& again) {
+    const auto first = before.find(again.position);
+    if (first == before.end()) return;
+    repeats.differ.push_back(ValueOf(claim, again) - ValueOf(claim, *first->second));
+    repeats.reading.push_back(first->second->reading);
+  };
+  for (const Reading& r : kept)
+    if (is_of(r, reading.pass - 1)) before[r.position] = &r;
+  for (const Reading& r : kept)
+    if (is_of(r, reading.pass)) add(r);
+  add(reading);
+  return repeats;
+}
+
+struct Level {
+  double mean = 0.0, squares = 0.0;  // about the mean
+};
+
+Level LevelOf(const std::vector<double>& values, std::size_t first, std::size_t end) {
+  Level level;
+  for (std::size_t k = first; k < end; ++k) level.mean += values[k] / static_cast<double>(end - first);
+  for (std::size_t k = first; k < end; ++k) level.squares += std::pow(values[k] - level.mean, 2);
+  return level;
+}
+
 }  // namespace
 
 void RequireGoesAlong(const std::vector<ClaimedColumn>& claims, const Reading& reading, const Reading& before) {
-  constexpr double kShareOfWay = 0.5, kShareOfRange = 0.02;
+  constexpr double kShareOfAngle = 0.5, kShareOfPlace = 0.1, kShareOfRange = 0.01;
   constexpr double kLeastWay_rad = 0.1 * units::deg;
   if (reading.setup != before.setup) return;
   for (const ClaimedColumn& claim : claims) {
@@ -62,11 +98,32 @@ void RequireGoesAlong(const std::vector<ClaimedColumn>& claims, const Reading& r
     const double way = claim.follows(reading) - claim.follows(before);
     const double went = ValueOf(claim, reading) - ValueOf(claim, before);
     const double off = claim.is_angle ? std::remainder(went - way, units::turn) : went - way;
-    if (!(std::abs(off) > std::max(kShareOfWay * std::abs(claim.is_angle ? std::remainder(way, units::turn) : way), least))) continue;
+    const double allowed = claim.is_angle ? kShareOfAngle * std::abs(std::remainder(way, units::turn)) : kShareOfPlace * std::abs(way);
+    if (!(std::abs(off) > std::max(allowed, least))) continue;
     throw DeviceFault(FaultKind::kMoved, "instruments",
                       fmt::format("went from {} to {}, which is not the way from the place of reading {} to that of {}: does anything stand "
                                   "elsewhere than its controller says?",
                                   Text(claim, before), claim.column.print(reading), before.reading, reading.reading));
+  }
+}
+
+void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& reading, const std::vector<Reading>& kept) {
+  constexpr std::size_t kFewest = 2;  // on either side
+  constexpr double kTimesScatter = 8.0;
+  for (const ClaimedColumn& claim : claims) {
+    const Repeats repeats = RepeatsOf(claim, reading, kept);
+    const auto& [differ, number] = repeats;
+    for (std::size_t k = kFewest; k + kFewest <= differ.size() && claim.is_of_place && claim.noise > 0.0; ++k) {
+      const Level one = LevelOf(differ, 0, k), other = LevelOf(differ, k, differ.size());
+      const double jump = std::abs(other.mean - one.mean);
+      const double scatter = std::sqrt((one.squares + other.squares) / static_cast<double>(differ.size() - 2));
+      if (!(jump > std::max(kAsBefore * std::sqrt(2.0) * claim.noise, kTimesScatter * scatter))) continue;
+      throw DeviceFault(FaultKind::kImplausible, "instruments",
+                        fmt::format("show {} by {:.4g} (SI) otherwise against the pass before at places up to that of reading {} than at those "
+                                    "from reading {} on: a zero, a mirror or the mounting jumped, in this pass or the one before; measure set-up "
+                                    "{} again",
+                                    claim.column.name, jump, number[k - 1], number[k], reading.setup));
+    }
   }
 }
 

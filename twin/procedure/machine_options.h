@@ -23,9 +23,16 @@ struct MachineOptions {
   std::vector<Reading> kept = {};             // of a resumed run, which goes on behind these
   /// On a real bench: throws where a reading did not go where it should from the one before, in the order of taking. None: not asked.
   std::function<void(const Reading& reading, const Reading& before)> require_goes_along = {};
+  /// On a real bench: throws where a reading does not go with those that are kept, of its set-up. None: not asked.
+  std::function<void(const Reading& reading, const std::vector<Reading>& kept)> require_no_jump = {};
   /// On a real bench: throws where a reading does not show what it showed before. Behind a fault the last one that was kept at
   /// rest is taken again, and nothing else until it does: a zero or a unit may be another. None: it is not.
   std::function<void(const Reading& again, const Reading& before)> require_as_before = {};
+  /// On a real bench: what the encoders show, outside the record; asked as axes have been sent somewhere. None: they are not.
+  std::function<std::vector<double>()> encoders_now = {};
+  /// On a real bench, asked about every reading at rest: throws where what is shown does not follow a short step of the axes, which
+  /// it makes outside the record and takes back. None: it is not.
+  std::function<void(const Reading& reading)> prove = {};
 };
 
 }  // namespace twinbench::procedure

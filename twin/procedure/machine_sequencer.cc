@@ -118,6 +118,8 @@ void MachineSequencer::Move(const std::vector<double>& to, const std::function<v
     takes_s += std::abs(to[k] - from[k].encoder) / (axes()[k].is_rotary ? kTurnAtLeast_rad_s : kTraverseAtLeast_m_s);
   bench_.machine.StartMove(to, 0.0);
   where_.SentTo(to);
+  const std::vector<double> now = options_.encoders_now ? options_.encoders_now() : std::vector<double>();
+  for (std::size_t k = 0; k < now.size(); ++k) RequireOnWay(axes()[k].name, from[k].encoder, to[k], now[k]);
   meanwhile();
   Watch(bench_, takes_s, where_, options_);
 }
@@ -246,6 +248,7 @@ void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
   if (options_.log) options_.log->RequireRoom();
   Arm(end - first, lines);
   Duration in_vain{0};
+  std::optional<Reading> before;
   // From before a fault to behind it whole turns may be lost, so that a wrong sample passes alone: those of one look come together.
   const auto require_go_along = [&](const std::vector<Reading>& samples, int from) {
     for (std::size_t k = 1; k < samples.size() && from + static_cast<int>(k) < end; ++k) {
@@ -259,6 +262,8 @@ void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
     const LatchedSamples latched = Latched();
     if (options_.require_goes_along) require_go_along(latched.samples, next);
     for (const Reading& sample : latched.samples) {
+      if (before && !IsSimulated()) RequireAnother(sample, *before, plan_.bench);
+      before = sample;
       if (next == end)
         throw DeviceFault(FaultKind::kProtocol, "instruments", "more samples came than they were armed for");
       KeepAndHear(next++, sample);
@@ -278,6 +283,7 @@ void MachineSequencer::TakeAtRest(int reading, Duration dwell, const std::functi
   std::vector<Stood> stood;
   const Reading sample = ReadAtRest(stood);
   for (const Stood& axis : stood) RequireStood(axis);
+  if (options_.prove) options_.prove(Joined(plan()[static_cast<std::size_t>(reading)], sample));
   KeepAndHear(reading, sample, [&](Reading& r) {
     for (const Stood& axis : stood) EnterInto(r, axis);
     if (enter) enter(r);
@@ -340,6 +346,7 @@ void MachineSequencer::Keep(int number, const Reading& sample, const std::functi
   const std::vector<Reading>& before = taken_.empty() ? state_.kept : taken_;
   if (!before.empty()) RequireTogether(reading, before.back(), plan_.bench);
   if (!before.empty() && options_.require_goes_along) options_.require_goes_along(reading, before.back());
+  if (options_.require_no_jump) options_.require_no_jump(reading, state_.kept);
   const double room_degC = reading.temperature_degC;
   if (room_degC < options_.coldest_degC || room_degC > options_.hottest_degC)
     throw DeviceFault(FaultKind::kImplausible, "thermometer",

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "twin/core/bench_format.h"
@@ -52,6 +53,12 @@ void RequireShown(const Reading& reading, const std::string& bench) {
                       fmt::format("show no {} at reading {}: is it in view, and does everything stand where it was sent?", column.name,
                                   reading.reading));
   }
+}
+
+void RequireAnother(const Reading& sample, const Reading& before, const std::string& bench) {
+  const ReadingColumn& counted = *std::ranges::find(FormatOf(bench).columns, ColumnRole::kShown, &ReadingColumn::role);
+  if (counted.print(sample) != counted.print(before)) return;
+  throw DeviceFault(FaultKind::kProtocol, "instruments", "say one sample twice: lines of an encoder that turns are others");
 }
 
 void RequireTogether(const Reading& reading, const Reading& before, const std::string& bench) {

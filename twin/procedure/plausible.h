@@ -16,6 +16,10 @@ void RequireTimely(const Acquisition& block, Time asked, Time answered);
 ///         mirror is out of view, the table was not seated at its tooth, the machine stands elsewhere than its encoders say.
 void RequireShown(const Reading& reading, const std::string& bench);
 
+/// @param before  The sample before, of one at every so many lines of an encoder that the instruments count.
+/// @throws DeviceFault kProtocol of one at whose line - what the bench shows first - that sample was taken, too.
+void RequireAnother(const Reading& sample, const Reading& before, const std::string& bench);
+
 /// @param before  The reading before, of a bench whose reference is read and not commanded. The encoder of its axis was looked at
 ///                about both.
 /// @throws DeviceFault kMoved if from one to the next the reference did not go the way that the encoder went.

@@ -62,6 +62,13 @@ void EnterInto(Reading& reading, const Stood& stood) {
   EnterPlace(reading, stood, "after", stood.after);
 }
 
+void RequireOnWay(const std::string& axis, double from, double to, double at) {
+  constexpr double kShareOfWay = 0.5, kLeast = 1e-3;  // m or rad: what takes up play, and overshoots
+  const double slack = kShareOfWay * std::abs(to - from) + kLeast;
+  if (!(at < std::min(from, to) - slack) && !(at > std::max(from, to) + slack)) return;
+  throw DeviceFault(FaultKind::kMoved, axis, "is at once elsewhere than on the way that it was sent: somebody set its zero anew");
+}
+
 void RequireStood(const Stood& stood) {
   if (!(stood.Off() > stood.tolerance)) return;
   const InFiles place = PlaceOf(stood), distance = DistanceOf(stood);

@@ -89,6 +89,7 @@ void Sequencer::TakeAfter(Reading stop, double dwell_s, bool with_autocollimator
   if (options_.log) options_.log->RequireRoom();
   const Acquisition block = Measure(stop, dwell_s, with_autocollimator);
   RequirePlausible(stop, last_, options_);
+  if (options_.prove && stop.phase == Phase::kFullCircle) options_.prove(stop);
   sink_.Append(stop, block);
   journal_.Commit();
   last_ = stop;

@@ -1,0 +1,197 @@
+#include "twin/benches/proof_by_steps.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/machine/benches.h"
+#include "tests/machine/driven_twin.h"
+#include "tests/support/restless_bench.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
+#include "twin/core/bench_format.h"
+
+/// Instruments and tables that become others in the middle of a run, on twins that do not say that they are ones.
+namespace twinbench::test {
+namespace {
+
+using Changes = std::function<void(Reading& shown, const Reading& before)>;
+
+/// Shows something else from the n-th reading on, or with that one alone.
+class ChangedInstruments : public InstrumentSet {
+ public:
+  ChangedInstruments(InstrumentSet& inner, int good, int bad, Changes changes) : inner_(inner), good_(good), bad_(bad), changes_(std::move(changes)) {}
+  Reading Read() override {
+    const Reading before = shown_;
+    shown_ = inner_.Read();
+    return With(shown_, before, read_++);
+  }
+  Reading Look() override { return With(inner_.Look(), shown_, read_ - 1); }
+  void Arm(int samples, int lines) override { inner_.Arm(samples, lines); }
+  LatchedSamples Latched() override { return inner_.Latched(); }
+
+ private:
+  Reading With(Reading shown, const Reading& before, int number) const {
+    if (number >= good_ && number < good_ + bad_) changes_(shown, before);
+    return shown;
+  }
+
+  InstrumentSet& inner_;
+  int good_, bad_, read_ = 0;
+  Changes changes_;
+  Reading shown_;
+};
+
+struct RunEnd {
+  std::string fault;
+  std::size_t kept;
+};
+
+RunEnd RunWith(const Scenario& scenario, int good, int bad, const Changes& changes) {
+  DrivenTwin twin(scenario);
+  ChangedInstruments instruments(twin.bench.instruments, good, bad, changes);
+  MachineBench bench = {twin.bench.clock, twin.bench.machine, instruments, twin.bench.fixture, nullptr, twin.bench.indexer};
+  twin.options.prove = ProofBySteps(bench, twin.scenario, twin.options);
+  const std::string fault = twin.FaultOn(bench);
+  return {fault, twin.log.readings.size()};
+}
+
+double& In(Reading& reading, const Scenario& scenario, const std::string& column) {
+  return std::ranges::find(FormatOf(scenario.bench).columns, column, &ReadingColumn::name)->number(reading);
+}
+
+TEST(ProofBySteps, InstrumentsWhoseSignsAxesOrUnitsChangeAreNoticedAtOnceWhereSizesAreKnownElseWithinTwoReadings) {
+  constexpr int kForGood = 1000;
+  constexpr std::size_t kUnsure = 2;  // readings that may pass where only the sign of what is shown is known
+  struct Case {
+    Scenario scenario;
+    std::string x, y;
+    bool is_of_size;
+  };
+  for (const auto& [scenario, x, y, is_of_size] : {Case{ShortTurntable(), "autocollimator_x_arcsec", "autocollimator_y_arcsec", true},
+                                                   Case{ShortFreeform(), "qpd_x_V", "qpd_y_V", false}}) {
+    const auto value = [&, &s = scenario](Reading& r, const std::string& column) -> double& { return In(r, s, column); };
+    EXPECT_EQ(RunWith(scenario, 0, 0, {}).fault, "") << scenario.bench;
+    std::vector<Changes> changes = {[&, &a = x](Reading& r, const Reading&) { value(r, a) = -value(r, a); },
+                                    [&, &a = x, &b = y](Reading& r, const Reading&) { std::swap(value(r, a), value(r, b)); }};
+    if (is_of_size) changes.push_back([&, &a = x](Reading& r, const Reading&) { value(r, a) *= 0.206; });
+    for (const Changes& change : changes) {
+      for (const std::size_t good : {0u, 5u, 14u}) {
+        const RunEnd run = RunWith(scenario, static_cast<int>(good), kForGood, change);
+        EXPECT_EQ(run.fault, "moved") << scenario.bench << " " << good;
+        EXPECT_LE(run.kept, good + (is_of_size ? 0 : kUnsure)) << scenario.bench;
+        EXPECT_GE(run.kept, good) << scenario.bench;
+      }
+    }
+  }
+}
+
+TEST(ProofBySteps, OneLateAnswerOfBothEncodersCostsAnAttemptWhereNothingBeforeItIsOfItsMounting) {
+  const Scenario scenario = ShortStops();
+  const Changes late = [](Reading& r, const Reading& before) {
+    r.reference_rad = before.reference_rad, r.measured_rad = before.measured_rad;
+  };
+  DrivenTwin twin(scenario);
+  ChangedInstruments instruments(twin.bench.instruments, 24, 1, late);
+  MachineBench bench = {twin.bench.clock, twin.bench.machine, instruments, twin.bench.fixture, nullptr, twin.bench.indexer};
+  twin.options.prove = ProofBySteps(bench, twin.scenario, twin.options);
+  EXPECT_EQ(twin.FaultOn(bench), "");
+  ASSERT_EQ(twin.log.attempts.size(), 1u);
+  EXPECT_EQ(twin.log.attempts[0].reading, 24);
+}
+
+/// A table whose controller says that it goes where it is told and whose angles are others: it stands, or is mirrored.
+class Lying : public RotaryTable {
+ public:
+  Lying(RotaryTable& inner, const int& blocks, int good, double share) : inner_(inner), blocks_(blocks), good_(good), share_(share) {}
+  void StartMove(double angle_rad) override {
+    if (blocks_ < good_) at_rad_ = angle_rad;
+    told_rad_ = angle_rad;
+    inner_.StartMove(at_rad_ + share_ * (angle_rad - at_rad_) * (blocks_ < good_ ? 0.0 : 1.0));
+  }
+  bool Settles(Duration within) override { return inner_.Settles(within); }
+  TableState State() override {
+    TableState state = inner_.State();
+    if (!std::isnan(told_rad_)) state.encoder_rad = state.commanded_rad = told_rad_;
+    return state;
+  }
+  void Stop() override { inner_.Stop(); }
+  void Home() override { inner_.Home(); }
+
+ private:
+  RotaryTable& inner_;
+  const int& blocks_;
+  int good_;
+  double share_, at_rad_ = 0.0, told_rad_ = kNaN;
+};
+
+using ChangesVolts = std::function<void(std::array<ChannelBlock, kChannels>& channel, const std::array<ChannelBlock, kChannels>& before)>;
+
+/// A card whose channels are others from the n-th block on.
+class ChangedCard : public AdConverter {
+ public:
+  ChangedCard(AdConverter& inner, int good, ChangesVolts changes) : inner_(inner), good_(good), changes_(std::move(changes)) {}
+  Acquisition Acquire(int n_samples, bool keep_raw) override {
+    Acquisition block = inner_.Acquire(n_samples, keep_raw);
+    if (blocks++ < good_)
+      last_ = block.channel;
+    else if (changes_)
+      changes_(block.channel, last_);
+    return block;
+  }
+  int blocks = 0;
+
+ private:
+  AdConverter& inner_;
+  int good_;
+  ChangesVolts changes_;
+  std::array<ChannelBlock, kChannels> last_{};
+};
+
+struct TableShares {
+  double target = 1.0, reference = 1.0;
+};
+
+std::string EndOfTables(int good, const ChangesVolts& changes, TableShares shares, std::size_t& kept) {
+  Scenario scenario = RestlessBench();
+  RotaryOf(scenario).procedure.phases = {"full_circle"};
+  sim::Twin twin(scenario);
+  const RotaryBench inner = twin.Bench();
+  ChangedCard card(inner.adc, good, changes);
+  Lying target(inner.target, card.blocks, good, shares.target), reference(inner.reference, card.blocks, good, shares.reference);
+  RotaryBench bench = {inner.clock, target, reference, card, inner.autocollimator, inner.thermometer, inner.goniometer, inner.fixture};
+  MemoryLog log;
+  procedure::Options options;
+  options.log = &log;
+  options.prove = ProofBySteps(bench, scenario, options);
+  std::string fault;
+  try {
+    procedure::CarryOut(bench, scenario, log, {}, options);
+  } catch (const DeviceFault& caught) {
+    fault = FaultName(caught.kind());
+  }
+  kept = log.readings.size();
+  return fault;
+}
+
+TEST(ProofBySteps, TablesThatStandOrAreMirroredAndChannelsOfAnotherUnitOrOrderLeaveNoReading) {
+  std::size_t kept = 0;
+  EXPECT_EQ(EndOfTables(1000, {}, {}, kept), "");
+  EXPECT_EQ(kept, 24u);
+  using Blocks = std::array<ChannelBlock, kChannels>;
+  const std::vector<ChangesVolts> changes = {
+      [](Blocks& c, const Blocks&) { for (ChannelBlock& one : c) one.mean_V *= 1e-3; },
+      [](Blocks& c, const Blocks&) { for (ChannelBlock& one : c) one.mean_V = -one.mean_V; },
+      [](Blocks& c, const Blocks&) { std::swap(c[0], c[1]); },
+      [](Blocks& c, const Blocks& before) { c[2] = before[2]; }};
+  constexpr int kBlocksAReading = 2, kGood = 7;
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    EXPECT_NE(EndOfTables(kBlocksAReading * kGood, changes[k], {}, kept), "") << k;
+    EXPECT_EQ(kept, static_cast<std::size_t>(kGood)) << k;
+  }
+  for (const TableShares shares : {TableShares{0.0, 0.0}, {-1.0, -1.0}, {1e-3, 1e-3}}) {  // of one alone the spots leave the PSDs
+    EXPECT_NE(EndOfTables(kBlocksAReading * kGood, {}, shares, kept), "") << shares.target << " " << shares.reference;
+    EXPECT_EQ(kept, static_cast<std::size_t>(kGood)) << shares.target << " " << shares.reference;
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::test

@@ -1,0 +1,111 @@
+#include "twin/benches/proof_by_steps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "twin/benches/expected.h"
+#include "twin/benches/freeform_five_axis/settings.h"
+#include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/core/bench_format.h"
+#include "twin/procedure/step_proof.h"
+
+namespace twinbench {
+namespace {
+
+using plausible::Expected;
+using procedure::ColumnInStep;
+
+constexpr double kShareOfMachineRange = 0.05;  // of an instrument's, which the tilts of its set-ups need too
+constexpr double kShareOfVolts = 0.01;
+constexpr double kShareOfSpot = 0.4;
+constexpr double kShaftStep_rad = 5.0 * units::deg;
+
+/// Those columns that a step of an axis moves, or should leave alone.
+std::vector<Expected> MovedByAxes(const Scenario& scenario) {
+  std::vector<Expected> moved = ExpectedOf(scenario, {});
+  std::erase_if(moved, [](const Expected& column) { return !column.by_axes; });
+  if (const auto& compared = FormatOf(scenario.bench).compared)
+    moved.push_back({.column = compared->reference, .by_axes = [](const Reading& r) { return r.reference_rad; }, .is_angle = true});
+  return moved;
+}
+
+double& NumberIn(Reading& reading, const Scenario& scenario, const std::string& column) {
+  return std::ranges::find(FormatOf(scenario.bench).columns, column, &ReadingColumn::name)->number(reading);
+}
+
+/// Controllers count in steps; what is a whole number of these is understood as it is commanded.
+double InSteps(double angle_rad) {
+  constexpr double kStep_rad = 1e-3 * units::deg;
+  return kStep_rad * std::max(1.0, std::round(angle_rad / kStep_rad));
+}
+
+/// By how much each axis of a bench's machine goes beside a reading; empty: nothing proves anything.
+std::vector<double> StepOf(const Scenario& scenario) {
+  if (scenario.bench == kTurntableBench)
+    return {InSteps(kShareOfMachineRange * FormatOf(scenario.bench).range_of(scenario, "autocollimator_x_arcsec"))};
+  if (scenario.bench == kEncoderBench) return {kShaftStep_rad};
+  if (scenario.bench != kFreeformBench) return {};
+  const auto& qpd = FreeformOf(scenario).qpd;
+  const double tilt_rad = InSteps(kShareOfSpot * qpd.spot_radius_m / (2.0 * qpd.lens_m));  // a mirror turns light by twice its angle
+  return {0.0, 0.0, 0.0, tilt_rad, tilt_rad};
+}
+
+/// A reading filed so far beside another.
+Reading Beside(const Reading& reading, const std::vector<double>& by, const std::vector<MachineAxis>& axes, const Scenario& scenario) {
+  const auto& compared = FormatOf(scenario.bench).compared;  // its axis is filed where the reference stands
+  Reading beside = reading;
+  for (std::size_t k = 0; k < by.size(); ++k)
+    if (by[k] != 0.0) NumberIn(beside, scenario, compared ? compared->reference : axes[k].name + "_" + axes[k].unit()) += by[k];
+  return beside;
+}
+
+}  // namespace
+
+std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scenario& scenario, const procedure::MachineOptions& options) {
+  const std::vector<double> step = StepOf(scenario);
+  if (step.empty()) return {};
+  const auto proof = std::make_shared<procedure::StepProof>(false);
+  // Of a comparison from reading to reading either device goes with the other.
+  const bool is_compared = FormatOf(scenario.bench).compared.has_value();
+  return [&bench, &scenario, &options, step, proof, is_compared, proved = std::optional<int>(),
+          columns = MovedByAxes(scenario)](const Reading& reading) mutable {
+    if (is_compared && proved == reading.setup) return;
+    std::vector<double> by = step;
+    if (Reading here = reading; NumberIn(here, scenario, columns[0].column) > 0.0)
+      for (double& way : by) way = -way;  // towards the middle of its range
+    Reading shown = procedure::ShownBeside(bench, by, options), here = reading;
+    const Reading there = Beside(reading, by, bench.machine.Axes(), scenario);
+    std::vector<ColumnInStep> in_step;
+    for (const Expected& c : columns) {
+      const double did = NumberIn(shown, scenario, c.column) - NumberIn(here, scenario, c.column);
+      in_step.push_back({c.column, c.by_axes(there) - c.by_axes(reading), c.is_angle ? std::remainder(did, units::turn) : did, c.noise,
+                         !c.is_loose});
+    }
+    proof->Require(in_step);
+    proved = reading.setup;
+  };
+}
+
+std::function<void(const Reading&)> ProofBySteps(RotaryBench& bench, const Scenario& scenario, const procedure::Options& options) {
+  const auto proof = std::make_shared<procedure::StepProof>(true);
+  const RotarySettings& own = RotaryOf(scenario);
+  return [&bench, &options, &own, proof, columns = MovedByAxes(scenario)](const Reading& reading) {
+    if (reading.status != ReadingStatus::kOk) return;
+    Reading unit_yaw, at_zero;
+    unit_yaw.target_rad = 1.0, unit_yaw.reference_rad = at_zero.target_rad = at_zero.reference_rad = 0.0;
+    const auto V_rad = [&](const Expected& column) { return column.by_axes(unit_yaw) - column.by_axes(at_zero); };
+    const double towards = reading.mean_V[0] * V_rad(columns[0]) > 0.0 ? -1.0 : 1.0;  // the middle of its range
+    double yaw_rad = towards * InSteps(kShareOfVolts * own.adc.range_V / std::abs(V_rad(columns[0])));
+    const Acquisition beside = procedure::ShownBeside(bench, yaw_rad, own.adc.samples, options);
+    std::vector<ColumnInStep> in_step;
+    for (std::size_t c = 0; c < kChannels; ++c)
+      in_step.push_back({columns[c].column, V_rad(columns[c]) * yaw_rad, beside.channel[c].mean_V - reading.mean_V[c],
+                         reading.std_V[c] / std::sqrt(reading.n_samples) + 0.3 * own.amplifier.hum_V});
+    proof->Require(in_step);
+  };
+}
+
+}  // namespace twinbench

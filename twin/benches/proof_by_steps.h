@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+
+#include "twin/core/scenario.h"
+#include "twin/procedure/machine_options.h"
+#include "twin/procedure/options.h"
+
+namespace twinbench {
+
+/// What MachineOptions::prove asks of a real bench; none where nothing at rest follows its axes in small steps, or so in large ones
+/// that its readings prove themselves.
+///
+/// turntable_autocollimator: the turntable goes a twentieth of the autocollimator's range, x with it, y stands. rotary_4dof: the
+/// tables go so that the spots move by a hundredth of the converter's range; which way is learned from the first step.
+/// freeform_five_axis: A and B go until the spot has moved by two fifths of its size, each coordinate its own way. encoder_comparison:
+/// the shaft goes 5 deg beside the first reading of a mounting, from where on reference, device and axis are compared with each other.
+///
+/// @param bench, scenario  Must outlive what is returned.
+std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scenario& scenario, const procedure::MachineOptions& options);
+std::function<void(const Reading&)> ProofBySteps(RotaryBench& bench, const Scenario& scenario, const procedure::Options& options);
+
+}  // namespace twinbench

@@ -1,0 +1,95 @@
+#include "twin/procedure/step_proof.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "twin/core/device_fault.h"
+#include "twin/procedure/machine_watch.h"
+#include "twin/procedure/watch.h"
+#include "twin/procedure/whereabouts.h"
+
+namespace twinbench::procedure {
+namespace {
+
+constexpr double kShareOfStep = 0.25;
+constexpr double kTimesOfNoise = 10.0 * std::numbers::sqrt2;  // of the difference of two
+constexpr double kAnotherGain = 3.0;
+
+void GoStraight(MachineBench& bench, const std::vector<double>& to, const MachineOptions& options) {
+  constexpr double kSlow = 1e-3;  // m/s or rad/s
+  const std::vector<AxisState> from = bench.machine.State();
+  RequireMayGo(bench.machine.Axes(), from, to, options);
+  double takes_s = 0.0;
+  for (std::size_t k = 0; k < to.size(); ++k) takes_s += std::abs(to[k] - from[k].encoder) / kSlow;
+  Whereabouts where(bench.machine.Axes(), options.axes);
+  bench.machine.StartMove(to, 0.0);
+  where.SentTo(to);
+  Watch(bench, takes_s, where, options);
+}
+
+/// What the column should do that does most, with its sign; 0: none is of a size.
+double LargestStep(const std::vector<ColumnInStep>& columns) {
+  double largest = 0.0;
+  for (const ColumnInStep& column : columns)
+    if (column.is_of_size && std::abs(column.should) > std::abs(largest)) largest = column.should;
+  return largest;
+}
+
+}  // namespace
+
+void StepProof::Learn(const std::vector<ColumnInStep>& columns, double step) {
+  const double size = std::abs(step);
+  for (const ColumnInStep& column : columns) {
+    const bool goes = std::abs(column.did) * kAnotherGain > std::abs(column.should) && std::abs(column.did) < kAnotherGain * size;
+    if (column.should != 0.0 ? !goes : std::abs(column.did) * kAnotherGain > size) return;
+  }
+  for (const ColumnInStep& column : columns) known_.push_back(column.did / step);
+}
+
+void StepProof::Require(std::vector<ColumnInStep> columns) {
+  const double step = LargestStep(columns);
+  if (learns_ && known_.empty()) Learn(columns, step);
+  for (std::size_t k = 0; k < known_.size(); ++k) columns[k].should = known_[k] * step;
+  const double size = std::abs(LargestStep(columns));
+  for (const ColumnInStep& column : columns) {
+    const double noise = kTimesOfNoise * column.noise;
+    const bool is_elsewhere = !(std::abs(column.did - column.should) <= kShareOfStep * size + noise);  // or shows nothing
+    const bool is_against = column.did * column.should < 0.0 && std::min(std::abs(column.did), std::abs(column.should)) > noise;
+    if (column.is_of_size ? !is_elsewhere : !is_against) continue;
+    throw DeviceFault(FaultKind::kMoved, "instruments",
+                      fmt::format("beside the reading the axes went a short way, in which {} went {:.4g} of the {:.4g} (SI) that it should: is a "
+                                  "sign, a unit or a channel another, or does anything stand?",
+                                  column.name, column.did, column.should));
+  }
+}
+
+Reading ShownBeside(MachineBench& bench, std::vector<double>& by, const MachineOptions& options) {
+  std::vector<double> here, there;
+  for (const AxisState& axis : bench.machine.State()) here.push_back(std::isnan(axis.commanded) ? axis.encoder : axis.commanded);
+  for (std::size_t k = 0; k < here.size(); ++k) {
+    const AxisLimits limits = LimitsOf(options.axes, k);
+    if (here[k] + by[k] < limits.lower || here[k] + by[k] > limits.upper) by[k] = -by[k];
+    there.push_back(here[k] + by[k]);
+  }
+  GoStraight(bench, there, options);
+  const Reading shown = bench.instruments.Look();
+  GoStraight(bench, here, options);
+  return shown;
+}
+
+Acquisition ShownBeside(RotaryBench& bench, double& yaw_rad, int samples, const Options& options) {
+  const std::array<double, 2> here_rad = {bench.target.State().commanded_rad, bench.reference.State().commanded_rad};
+  const auto there_rad = [&] { return std::array{here_rad[0] + 2.0 * yaw_rad, here_rad[1] - yaw_rad}; };
+  const auto is_beyond = [](double at_rad, const TableLimits& limits) { return at_rad < limits.lower_rad || at_rad > limits.upper_rad; };
+  if (is_beyond(there_rad()[0], options.target) || is_beyond(there_rad()[1], options.reference)) yaw_rad = -yaw_rad;
+  const std::array<double, 2> away_rad = there_rad();
+  MoveBoth(bench, away_rad[0], away_rad[1], options, here_rad);
+  Acquisition shown = bench.adc.Acquire(samples, false);
+  MoveBoth(bench, here_rad[0], here_rad[1], options, away_rad);
+  return shown;
+}
+
+}  // namespace twinbench::procedure
