@@ -132,6 +132,11 @@ TEST(RequireNoJump, WhatPassesDifferByIsTheSameBeforeAndBehindEachReading) {
   EXPECT_EQ(PassUntilNoticed(4, 1e-6), 16);  // 10 times the noise
 }
 
+TEST(RequireAnother, ASampleAtTheLineOfTheOneBeforeIsNoneOfItsOwnWhateverElseItShows) {
+  EXPECT_NO_THROW(RequireAnother(OfHob(12.0, 200.0), OfHob(10.0, 200.0), "hob_transmission"));
+  EXPECT_THROW(RequireAnother(OfHob(10.0, 200.001), OfHob(10.0, 200.0), "hob_transmission"), DeviceFault);
+}
+
 TEST(RequireTogether, AReferenceGoesWhereTheEncoderOfItsAxisGoes) {
   const auto reading = [](double reference_deg, const char* encoder_deg, int setup = 0) {
     Reading r;
