@@ -12,14 +12,12 @@
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/rotary_4dof/diagnosis/rotary_case.h"
 #include "twin/benches/rotary_4dof/twin/factory.h"
-#include "twin/benches/turntable_autocollimator/diagnosis/families.h"
 #include "twin/core/linear_algebra.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
 
 // Each named family, where a cause shows times its course, against what the twin shows when the cause is at work:
-// two implementations that share no code. That the twins are right, benches of the tests' own say
-// (turntable_run_test.cc). Benches whose candidates the twin makes itself are not here.
+// two implementations that share no code. Benches whose candidates the twin makes itself are not here.
 namespace twinbench::diagnose::slopes {
 namespace {
 
@@ -42,17 +40,12 @@ const std::vector<Design>& Designs() {
                                 "device.signal_periods=3",
                                 "device.signal_zero_deg=17",
                                 "device.signal_zero_known=true"};
-  static const Strings circles = {"turntable_procedure.phases=[\"calibration\", \"full_circle\"]",
-                                  "turntable_procedure.positions=36", "turntable_procedure.passes=[1, -1, -1, 1]",
-                                  "turntable_procedure.eccentricities_um=[50.0, 1500.0]",
-                                  "turntable_procedure.dwell_s=[0.5, 2.0, 5.0]"};
   static const std::set<std::string> not_at_stops = {"outliers", "interpolation", "gear_mesh", "reference_fault",
                                                      "latency",  "clock_rate",    "settling"};
   static const std::vector<Design> designs = {
       {"rotary", "rotary_4dof", {"mechanics.fidelity=kinematic"}, {"outliers", "convention", "reclamp_frame"}},
       {"stops", "encoder_comparison", {}, not_at_stops, 1e-5},
-      {"sweep", "encoder_comparison", sweep, {"outliers", "settling"}, 1e-5},
-      {"turntable", "turntable_autocollimator", circles, {"outliers", "multitooth_seating"}, 1e-9}};
+      {"sweep", "encoder_comparison", sweep, {"outliers", "settling"}, 1e-5}};
   return designs;
 }
 
@@ -76,7 +69,6 @@ Candidates CandidatesOf(const Scenario& scenario, const std::vector<Reading>& re
                         const Strings& struck = {}) {
   const auto in = [&](const auto& bench_run) { return Candidates{bench_run.run, Families(bench_run, struck)}; };
   if (scenario.bench == kEncoderBench) return in(encoder::RunOf(readings, scenario));
-  if (scenario.bench == kTurntableBench) return in(turntable::RunOf(readings, scenario));
   const rotary::ForwardModel model{benches::rotary::FollowRecord};
   const auto rotary = std::make_shared<const rotary::RotaryCase>(readings, scenario, model, struck);
   return {rotary->Rotary().run, rotary->Families(), rotary};
@@ -142,16 +134,11 @@ Limit LimitOf(const Slope& slope) {
   static const std::map<std::string, Limit> limits = {
       {"adc_step", {0.1, 0.7}},  // few readings are near the step
       {"amplitude_mismatch", {3e-4}},
-      {"autocollimator_nonlinearity", {3e-4}},
-      {"autocollimator_periodic", {0.01, 0.35}},  // up to a quarter of a cycle over the range
-      {"autocollimator_roll", {3e-4}},
-      {"autocollimator_scale", {1e-4}},
       {"backlash", {1e-9, 0.2}},  // gaps of the grid differ by a factor 1.3
       {"clock_rate", {0.02}},
       {"drift", {0.0, 0.08}},       // times by 1.36
       {"hysteresis", {0.0, 0.05}},  // ways by 1.37
       {"latency", {3e-5}},          // in the ramps the speed changes meanwhile
-      {"mirror_flatness", {0.08, 0.08}},
       {"quadrature_error", {3e-4}},
       {"rotary backlash", {0.01}},
       {"rotary mount_creep", {0.1, 0.1}},  // when a mounting ended no record says
@@ -159,8 +146,7 @@ Limit LimitOf(const Slope& slope) {
       {"signal_clipping", {4e-4, 0.16}},  // depths by 1.65
       {"signal_offset", {3e-4}},
       {"slip", {0.0, 0.11}},
-      {"tone", {0.0, 0.35}},  // up to a quarter of a cycle over the run
-      {"turntable backlash", {0.02}}};
+      {"tone", {0.0, 0.35}}};  // up to a quarter of a cycle over the run
   Limit limit;
   for (const std::string& key : {slope.effect.name, slope.design->name + " " + slope.effect.name}) {
     if (limits.contains(key)) limit = limits.at(key);

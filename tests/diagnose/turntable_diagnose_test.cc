@@ -204,7 +204,7 @@ TEST(TurntableDiagnosis, CallsTheRollInvisibleWithOneTiltAndNoSweep) {
   for (const char* effect : {"autocollimator_roll", "autocollimator_scale", "mirror_flatness"}) {
     const auto invisible = std::ranges::find(d.invisible, effect, &Invisible::effect);
     ASSERT_NE(invisible, d.invisible.end()) << effect;
-    EXPECT_THAT(invisible->could_bias, HasSubstr("turntable ez up to")) << effect;
+    EXPECT_THAT(invisible->could_bias, HasSubstr("turntable.ez of a position up to")) << effect;
     if (invisible->effect == "autocollimator_roll") {
       EXPECT_THAT(invisible->could_bias, HasSubstr("another tilt of the multi-tooth table"));
     }

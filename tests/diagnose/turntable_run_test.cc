@@ -1,15 +1,12 @@
-#include "twin/benches/turntable_autocollimator/diagnosis/turntable_run.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/core/input_error.h"
 #include "tests/diagnose/support/synthetic_run.h"
 #include "tests/diagnose/turntable_bench.h"
-#include "tests/diagnose/twin_runs.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/registry.h"
-#include "twin/benches/turntable_autocollimator/diagnosis/families.h"
+#include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/errors.h"
 #include "twin/diagnose/diagnose.h"
@@ -22,10 +19,13 @@ namespace {
 using test::BenchReadings, test::CarefulScenario, test::PublishedScenario, test::Wrong;
 using units::arcsec, units::deg;
 
+LinearRun RunOf(const std::vector<Reading>& readings, const Scenario& scenario) {
+  return benches::turntable::Linear(readings, scenario, Estimator::kRigorous);
+}
+
 /// What the unknowns cannot absorb, in units of the stated noise.
-double LeftOver(const TurntableRun& turntable) {
-  const LinearRun& run = turntable.run;
-  const NoiseModel noise{run.sigma, {}};
+double LeftOver(const LinearRun& run) {
+  const NoiseModel noise{run.sigma, 0.0};
   const Projector projector = ProjectorOf(run, noise);
   const Eigen::MatrixXd white = noise.Whiten(run, Eigen::MatrixXd(run.residual));
   return projector.Apply(white).cwiseAbs().maxCoeff();
@@ -114,7 +114,7 @@ TEST(TurntableRun, BelievesTheEffectsOfTheScenario) {
 
 TEST(TurntableRun, TakesOffAnEmpiricalSignal) {
   Scenario scenario = CarefulScenario();
-  const TurntableRun plain = RunOf(BenchReadings(Quiet(scenario), {}, 4), scenario);
+  const LinearRun plain = RunOf(BenchReadings(Quiet(scenario), {}, 4), scenario);
   Wrong bump;
   bump.other = [](const Reading& r) { return Eigen::Vector2d(0.0, r.reading == 40 ? 5.0 * arcsec : 0.0); };
   const std::vector<Reading> readings = BenchReadings(Quiet(scenario), bump, 4);
@@ -127,15 +127,21 @@ TEST(TurntableRun, TakesOffAnEmpiricalSignal) {
   EXPECT_NEAR(LeftOver(RunOf(readings, scenario)), LeftOver(plain), 1e-6);
 }
 
+/// Index error and tilt of each.
+Eigen::Index FreeTeeth(const Scenario& scenario) {
+  const Eigen::Index positions = TurntableOf(scenario).turntable_procedure.positions,
+                     of_mounting = 4 * TurntableOf(scenario).turntable_procedure.SetUps();
+  const Eigen::Index all = RunOf(BenchReadings(scenario, {}, 4), scenario).nuisance.jacobian.cols();
+  return (all - 2 * positions - of_mounting) / 2;
+}
+
 TEST(TurntableRun, TellsTeethFromPositionsOnlyWhereAShiftDoes) {
   Scenario scenario = PublishedScenario();
-  EXPECT_FALSE(RunOf(BenchReadings(scenario, {}, 4), scenario).places.HasTeeth());
+  EXPECT_EQ(FreeTeeth(scenario), 0);
   TurntableOf(scenario).turntable_procedure.shifts = {0, 25};
-  const TurntableRun shifted = RunOf(BenchReadings(scenario, {}, 4), scenario);
-  EXPECT_EQ(shifted.places.teeth, 72);  // 25 teeth are five steps: the same teeth again
-  EXPECT_EQ(shifted.places.circle_blocks, 72);
+  EXPECT_EQ(FreeTeeth(scenario), 72);  // 25 teeth are five steps: the same teeth again
   TurntableOf(scenario).turntable_procedure.shifts = {0, 3};
-  EXPECT_EQ(RunOf(BenchReadings(scenario, {}, 4), scenario).places.teeth, 144);
+  EXPECT_EQ(FreeTeeth(scenario), 144);
 }
 
 TEST(TurntableRun, LeavesOutReadingsWithoutBothValues) {
@@ -143,9 +149,7 @@ TEST(TurntableRun, LeavesOutReadingsWithoutBothValues) {
   std::vector<Reading> readings = BenchReadings(scenario, {}, 4);
   readings[20].autocollimator_tilt_rad = kNaN;
   readings[30].status = ReadingStatus::kNoLight;
-  const TurntableRun turntable = RunOf(readings, scenario);
-  EXPECT_EQ(turntable.left_out, 2);
-  EXPECT_EQ(turntable.run.schedule.Readings() + 2, std::ssize(readings));
+  EXPECT_EQ(RunOf(readings, scenario).schedule.Readings() + 2, std::ssize(readings));
   readings.resize(11);
   EXPECT_THROW(RunOf(readings, scenario), InputError);
 }
@@ -157,38 +161,6 @@ TEST(TurntableRun, IsRefusedWhereOnePassOfOneSetUpLeavesNothingToCompare) {
   const std::string refusal = MessageOf([&] { Diagnose(BenchReadings(scenario, {}, 4), scenario); });
   EXPECT_THAT(refusal, testing::HasSubstr("turntable_procedure.passes = [1, -1]"));
   EXPECT_KEPT(refusal);
-}
-
-/// Of readings of the independent bench, two eccentricities and teeth of two places.
-std::vector<Family> FamiliesOf(const std::function<void(Reading&)>& change = [](Reading&) {}) {
-  Scenario scenario = Quiet(CarefulScenario());
-  TurntableOf(scenario).turntable_procedure.shifts = {0, 25};
-  std::vector<Reading> readings = BenchReadings(scenario, {}, 3);
-  for (Reading& r : readings) change(r);
-  return Families(RunOf(readings, scenario));
-}
-
-TEST(TurntableFamilies, HaveTheCubeOfTheAngleRadiallyAndForEachAxis) {
-  std::vector<Eigen::VectorXd> columns;  // radially, then for each axis
-  for (const Family& family : FamiliesOf()) {
-    if (family.effect == "autocollimator_nonlinearity") columns.emplace_back(family.ColumnsAt(0).col(0));
-  }
-  ASSERT_EQ(columns.size(), 2u);
-  // The same where one axis is near zero: within (100 / 200)^2 of the largest value.
-  EXPECT_LT((columns[0] - columns[1]).cwiseAbs().maxCoeff(), 0.3 * columns[1].cwiseAbs().maxCoeff());
-}
-
-TEST(TurntableFamilies, LeaveOutWhatWasNotRecordedAndHaveShapesWithoutAName) {
-  std::vector<std::string> unknown;
-  for (const Family& family : FamiliesOf()) {
-    if (family.kind == Kind::kUnknown) unknown.push_back(family.effect + " on " + family.where);
-  }
-  EXPECT_THAT(unknown, testing::IsSupersetOf({"direction harmonic on x", "interaction on y", "wander on x, y",
-                                              "reading on x", "pass on y", "gain changes on y"}));
-  for (const Family& family : FamiliesOf([](Reading& r) { r.temperature_degC = r.dwell_s = kNaN; })) {
-    for (const char* effect : {"autocollimator_temperature", "temperature", "settling", "dwell"})
-      EXPECT_NE(family.effect, effect);
-  }
 }
 
 }  // namespace

@@ -2,8 +2,6 @@
 
 #include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
 #include "twin/benches/encoder_comparison/twin/factory.h"
-#include "twin/benches/turntable_autocollimator/diagnosis/turntable_run.h"
-#include "twin/benches/turntable_autocollimator/twin/factory.h"
 
 /// Readings as a diagnosis takes them, against the twin that follows them.
 namespace twinbench::diagnose {
@@ -13,11 +11,5 @@ inline EncoderRun RunOf(const std::vector<Reading>& readings, const Scenario& sc
   return BuildRun(readings, scenario, benches::encoder::FollowRecord);
 }
 }  // namespace encoder
-
-namespace turntable {
-inline TurntableRun RunOf(const std::vector<Reading>& readings, const Scenario& scenario) {
-  return BuildRun(readings, scenario, benches::turntable::FollowRecord);
-}
-}  // namespace turntable
 
 }  // namespace twinbench::diagnose

@@ -12,9 +12,8 @@
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/settings.h"
-#include "twin/benches/turntable_autocollimator/diagnosis/turntable_run.h"
+#include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
-#include "twin/benches/turntable_autocollimator/twin/factory.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::hidden {
@@ -205,8 +204,7 @@ const SignatureScale::Clean& SignatureScale::CleanRun(std::uint64_t seed) const 
 /// What the readings show in the rows of the run.
 Eigen::VectorXd SignatureScale::Rows(const std::vector<Reading>& readings, const diagnose::LinearRun& clean) const {
   if (design_ == Design::kTurntable)
-    return diagnose::turntable::BuildRun(readings, Believed(design_), benches::turntable::FollowRecord)
-        .run.observed;
+    return benches::turntable::Linear(readings, Believed(design_), Estimator::kRigorous).observed;
   if (design_ == Design::kHob)
     return benches::hob::Linear(readings, Believed(design_), Estimator::kRigorous).observed;
   Eigen::VectorXd rows(clean.Rows());

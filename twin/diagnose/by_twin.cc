@@ -7,9 +7,11 @@
 #include <memory>
 #include <utility>
 
+#include "twin/core/units.h"
 #include "twin/diagnose/compared.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/analysis.h"
+#include "twin/diagnose/scatter_cause.h"
 #include "twin/diagnose/to_readings.h"
 #include "twin/diagnose/twin_candidates.h"
 
@@ -131,24 +133,116 @@ bool MayBeCurved(const Searched& searched, const std::vector<Reading>& readings,
   return searched.LeavesStructure() || (comparison.bends && IsOffItsTangent(searched, readings, comparison));
 }
 
+/// A cause as the twin carries it out, and as its family has it.
+struct Tried {
+  EffectSettings effect;
+  Eigen::VectorXd shape, amplitudes;
+};
+
+Tried TriedOf(const Searched& searched, const Eigen::VectorXd& shape, const Eigen::VectorXd& amplitudes,
+              const TwinComparison& comparison) {
+  Term term = searched.found().terms.front();
+  term.shape = shape;
+  term.amplitudes = amplitudes;
+  return {EffectOf(searched.FamilyOf(term), term, comparison.format->effects), shape, amplitudes};
+}
+
+/// The first cause at shapes that explain nearly as much of the run: where places are few, one period looks like
+/// another.
+std::vector<Tried> AliasesOfFirst(const Searched& searched, const TwinComparison& comparison) {
+  constexpr double kNearly = 0.7;
+  constexpr std::size_t kMost = 5;
+  const Term& first = searched.found().terms.front();
+  const Family& family = searched.FamilyOf(first);
+  const LinearRun& run = searched.compared.run;
+  const Projected data =
+      Project(*searched.analysis.projector, {}, searched.analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual)));
+  const std::vector<Scanner::Fit> fits =
+      searched.analysis.scanner->FitEach(first.family, 0, family.grid - 1, data, {});
+  std::vector<std::size_t> maxima;
+  double most = 0.0;
+  for (std::size_t g = 0; g < fits.size(); ++g) {
+    most = std::max(most, fits[g].power);
+    const bool rises = g == 0 || fits[g].power >= fits[g - 1].power;
+    if (rises && (g + 1 == fits.size() || fits[g].power > fits[g + 1].power)) maxima.push_back(g);
+  }
+  std::erase_if(maxima, [&](std::size_t g) { return fits[g].power < kNearly * most; });
+  std::ranges::stable_sort(maxima, std::ranges::greater{}, [&](std::size_t g) { return fits[g].power; });
+  std::vector<Tried> aliases = {TriedOf(searched, first.shape, first.amplitudes, comparison)};
+  for (std::size_t k = 0; k < std::min(kMost, maxima.size()); ++k)
+    aliases.push_back(
+        TriedOf(searched, family.ShapeAt(static_cast<int>(maxima[k])), fits[maxima[k]].amplitudes, comparison));
+  return aliases;
+}
+
+/// The first cause as it was found; a wave along what is read shifts its own argument, so that its size and which
+/// of its aliases it is are told by the twin: those that leave least.
+Tried FirstCause(const Searched& searched, const std::vector<Reading>& readings, const TwinComparison& comparison) {
+  const Term& first = searched.found().terms.front();
+  const Tried found = TriedOf(searched, first.shape, first.amplitudes, comparison);
+  const bool is_wave = std::ranges::any_of(comparison.products, [&](const TwinComparison::Product& p) {
+    return p.effect == found.effect.name && p.is_wave && !p.is_order;
+  });
+  if (!is_wave) return found;
+  Tried best = found;
+  double least = Amplitude::kInfinity;
+  for (const Tried& alias : AliasesOfFirst(searched, comparison)) {
+    for (const double factor : {0.35, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.45}) {
+      const Tried tried = TriedOf(searched, alias.shape, factor * alias.amplitudes, comparison);
+      if (units::turn * tried.amplitudes.norm() >= tried.shape[0]) continue;  // it would run backwards
+      Scenario with = searched.scenario;
+      with.effects.push_back(tried.effect);
+      const double power = FreeMisfit(Compare(readings, with, comparison).run).power;
+      if (power >= least) continue;
+      least = power;
+      best = tried;
+    }
+  }
+  return best;
+}
+
 /// The same search with slopes about the first cause at the size that was found; it is still weighed against the
 /// others.
 std::unique_ptr<Searched> AboutFirstCause(const Searched& before, const std::vector<Reading>& readings,
                                           const DiagnoseOptions& options, const TwinComparison& comparison) {
   const Term& first = before.found().terms.front();
+  const Tried cause = FirstCause(before, readings, comparison);
   Scenario believed = before.scenario;
-  believed.effects.push_back(EffectOf(before.FamilyOf(first), first, comparison.format->effects));
+  believed.effects.push_back(cause.effect);
   auto after = std::make_unique<Searched>(readings, believed, options, comparison);
   if (after->candidates.families.size() != before.candidates.families.size() ||
       after->compared.run.Rows() != before.compared.run.Rows())
     return nullptr;
   const Family& same = after->FamilyOf(first);
-  const Eigen::MatrixXd columns = same.at ? same.at(first.shape) : same.ColumnsAt(first.grid_point);
-  after->compared.run.residual += columns * first.amplitudes;
+  const Eigen::MatrixXd columns = same.at ? same.at(cause.shape) : same.ColumnsAt(first.grid_point);
+  after->compared.run.residual += columns * cause.amplitudes;
   AnalysisOptions how = HowToAnalyse(after->compared.run, options, comparison);
   how.null = &before.analysis.null;
   after->analysis = Analyse(after->compared.run, after->candidates.families, how);
   return after;
+}
+
+/// What scatters more than stated is noise that is known from then on, and the search begins again.
+/// @param detectable  Gets how small it would have been seen where there is none.
+std::vector<Cause> FindScatter(const DiagnoseOptions& options, const TwinComparison& comparison, Searched& searched,
+                               std::vector<Detectable>& detectable) {
+  if (!comparison.scatter_cause || options.design_only || IsExcluded(options, comparison.scatter_cause->effect))
+    return {};
+  const Compared& c = searched.compared;
+  const LinearRun stated = c.run;
+  const Eigen::VectorXd slope = c.Rows(c.twin.Slope(comparison.scatter_cause->point, c.free.Disturbances()));
+  const Scattering found = MeasureScatter(stated, searched.analysis, slope);
+  if (!found.IsThere()) {
+    if (std::isfinite(found.smallest)) detectable.push_back(DetectableOf(found, comparison));
+    return {};
+  }
+  LinearRun& run = searched.compared.run;
+  run.sigma = (run.sigma.cwiseAbs2() + (found.sd * slope).cwiseAbs2()).cwiseSqrt();
+  AnalysisOptions how = HowToAnalyse(run, options, comparison);
+  const NullCalibration null = searched.analysis.null;
+  how.null = &null;
+  searched.analysis = Analyse(run, searched.candidates.families, how);
+  return {CauseOf(MeasureScatter(stated, searched.analysis, slope), comparison)};
 }
 
 }  // namespace
@@ -168,11 +262,18 @@ DiagnosisRun DiagnoseByTwin(const std::vector<Reading>& readings, const Scenario
     const auto terms = [](const Searched& s) { return s.found().terms.size(); };
     if (again && terms(*again) > 0 && terms(*again) <= terms(*searched)) searched = std::move(again);
   }
+  std::vector<Detectable> detectable;
+  std::vector<Cause> first = FindScatter(options, comparison, *searched, detectable);
   const Compared& c = searched->compared;
-  DiagnosisRun result =
-      Conclude(c.run, searched->analysis, OutliersLeftOut(c, comparison, options.excluded),
-               {[&](const std::string&, const Eigen::VectorXd& x) { return BiasOf(c.run, c.free, x); },
-                comparison.next_measurement ? comparison.next_measurement : NextOf});
+  std::ranges::move(OutliersLeftOut(c, comparison, options.excluded), std::back_inserter(first));
+  DiagnosisRun result = Conclude(c.run, searched->analysis, first,
+                                 {[&](const std::string& effect, const Eigen::VectorXd& x) {
+                                    const std::string bias = BiasOf(c.run, c.free, x);
+                                    const std::string by = comparison.shown_by ? comparison.shown_by(effect) : "";
+                                    return by.empty() ? bias : bias + "; would be shown by " + by;
+                                  },
+                                  comparison.next_measurement ? comparison.next_measurement : NextOf});
+  std::ranges::copy(detectable, std::back_inserter(result.diagnosis.detectable));
   std::ranges::copy(searched->candidates.invisible, std::back_inserter(result.diagnosis.invisible));
   result.diagnosis.left_out = static_cast<int>(readings.size() - c.used.size() - c.outliers.readings.size());
   if (comparison.sampled) ToReadings(c, comparison, result);

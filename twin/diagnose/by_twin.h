@@ -10,6 +10,7 @@
 #include "twin/core/bench_format.h"
 #include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/engine/linear_run.h"
+#include "twin/diagnose/tuning.h"
 #include "twin/model/follow.h"
 
 /// A diagnosis put together from what every bench has anyway: its format, its catalogue and its twin that follows
@@ -26,7 +27,7 @@ struct TwinComparison {
     std::function<double(const Reading&)> rad;
     std::string words = {};               // empty: the name and "angle"
     std::string harmonics = "harmonic";   // sort of its whole orders
-    int first_unfree = 1;                 // the first whole order that no constant of the run takes up
+    int first_unfree = 1;                 // the first whole order that no constant of the run takes up; 0: none
     bool is_turned_by_motion = true;      // false: direction and speed are of another angle
     int lowest_order = 1;  // of waves without a name; those below are causes of the catalogue, together, whatever their phase
   };
@@ -37,6 +38,25 @@ struct TwinComparison {
     std::string point;
     std::function<Eigen::MatrixXd(const std::vector<Reading>&)> courses;  // readings x constants, dimensionless
     std::string of = "the bench";                                         // in words, behind the name of the point
+    double sd = kNaN;  // SI: what each constant may well be; NaN: what `free_sd` says
+  };
+
+  /// Points with a constant of their own at every place that readings come back to: errors of a table's positions.
+  struct FreePlaces {
+    std::vector<std::string> points;
+    std::function<std::vector<int>(const std::vector<Reading>&)> place;  // of each reading, numbered as you like
+    std::string of;                                                      // in words: "a position"
+  };
+
+  /// What is drawn anew at each reading, at a point [SI].
+  struct Scatter {
+    std::string point;
+    double sd;
+  };
+
+  /// An effect of the catalogue that is nothing but more of it than stated.
+  struct ScatterCause {
+    std::string effect, parameter, point;
   };
 
   /// An effect of the catalogue as a point times courses that depend on one shape, where asking the twin anew at
@@ -47,7 +67,8 @@ struct TwinComparison {
     std::string shape;               // the parameter that courses depend on
     std::function<std::vector<double>(const std::vector<Reading>&)> values;                  // SI, to be tried
     std::function<Eigen::MatrixXd(const std::vector<Reading>&, double shape)> courses = {};  // readings x sizes
-    bool is_order = false;  // whole numbers; courses are the cosine and the sine of "amplitude" and "phase"
+    bool is_wave = false;   // courses are the cosine and the sine of "amplitude" and "phase"
+    bool is_order = false;  // a wave whose shape is a whole number
   };
 
   /// A place of the effect "tone", or "slip", that is nothing but a wave, or a step, in what channels show.
@@ -106,9 +127,12 @@ struct TwinComparison {
   // Of a bench that shows other things in other set-ups, or channels of unlike noise: one value a channel, SI.
   std::function<Eigen::VectorXd(const Reading&)> shown = {};                      // NaN: not shown
   std::function<Eigen::VectorXd(const Scenario&, const Reading&)> noise_of = {};  // counts instead of `noise`
+  std::function<std::vector<Scatter>(const Scenario&)> scatter = {};              // beside it
+  std::optional<ScatterCause> scatter_cause = {};
 
   // Of a bench whose free constants are many, or not all told apart.
   std::vector<FreeCourses> free_courses = {};
+  std::optional<FreePlaces> free_places = {};               // then `free_sd` holds all constants
   std::function<double(const model::Point&)> free_sd = {};  // SI: what a constant may well be; empty: anything
   double free_rank = 1e-10;            // directions that show less, of the one that shows most, are not fitted
   int free_rounds = 2;                 // of the fit, each with slopes about what the last one found
@@ -130,15 +154,20 @@ struct TwinComparison {
   bool remounting_ends_tones = false;                    // size and phase are of each set-up
   std::function<void(Reading&, const Eigen::VectorXd&)> show = {};  // the reverse of `shown`, for what a reading
                                                                     // should have been: causes are asked of that
+  std::vector<std::string> nulled = {};  // channels that are kept at zero, so that no error goes by them
   std::optional<Sampled> sampled = {};
   std::vector<TabulatedOrder> orders = {};
   // What is thought of causes of the catalogue.
   bool sizes_by_trace = false;  // `plausible` is what each leaves: devices may be of any quality
+  bool alike_by_trace = false;  // the same at any shape: what decays before it is read may have been large
+  double asked_points = tuning::kAskedPoints;  // of a grid over all shapes of an effect that the twin is asked for
   std::function<double(const std::string& effect, const std::string& where)> listed = {};  // see Family
   std::map<std::string, std::string> named = {};                                           // see unknown::Design
   int most_causes = 4;
   bool bends = false;  // the first cause is searched about itself wherever it is off its tangent by more than noise
   std::function<std::string(const std::string& effect, const std::string& rival)> next_measurement = {};
+  std::function<std::string(const std::string& effect)> shown_by = {};  // what would show it; empty: nothing simple
+  std::vector<std::string> unrecorded = {};  // effects that nobody can name without what this record lacks
 };
 
 /// Readings against the twin's, with the free constants that fit best.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
@@ -102,26 +103,32 @@ void EstimateNoise(const TwinComparison& comparison, LinearRun& run) {
   }
 }
 
-/// What the readings show of the free constants. Those that may be anything are hardly held: a millionth of what
-/// one reading says.
-Nuisance NuisanceOf(const FreeConstants& free, const Eigen::VectorXd& sigma) {
-  constexpr double kWeak = 1e-6;
-  const Eigen::MatrixXd columns = free.columns * free.fitted;
-  const Eigen::MatrixXd white = sigma.cwiseInverse().asDiagonal() * columns;
-  const Eigen::VectorXd weak = kWeak * white.cwiseAbs2().colwise().maxCoeff().transpose().cwiseMax(1e-300);
-  const Eigen::VectorXd stated = free.fitted.cwiseAbs2().transpose() * free.Precision();
-  return {columns.sparseView(), (stated.array() > 0.0).select(stated, weak), 0, 0};
-}
-
 std::vector<FreePoint> FreeOf(const Compared& c, const TwinComparison& comparison) {
   std::vector<FreePoint> points;
+  const auto add = [&](const std::string& point, const Eigen::MatrixXd& courses, const std::string& of, double sd) {
+    points.push_back({c.twin.Point(point), courses, of, sd});
+    if (comparison.free_sd && !(sd > 0.0)) points.back().sd = comparison.free_sd(points.back().point);
+  };
+  if (comparison.free_places) {
+    for (const std::string& point : comparison.free_places->points) {
+      add(point, model::Indicators(comparison.free_places->place(c.used)), comparison.free_places->of, kNaN);
+      points.back().is_local = true;
+    }
+  }
   for (const std::string& point : comparison.free_points)
-    points.push_back({c.twin.Point(point), model::Indicators(c.run.schedule.setup), "a mounting"});
+    add(point, model::Indicators(c.run.schedule.setup), "a mounting", kNaN);
   for (const TwinComparison::FreeCourses& of_bench : comparison.free_courses)
-    points.push_back({c.twin.Point(of_bench.point), of_bench.courses(c.used), of_bench.of});
-  if (!comparison.free_sd) return points;
-  for (FreePoint& free : points) free.sd = comparison.free_sd(free.point);
+    add(of_bench.point, of_bench.courses(c.used), of_bench.of, of_bench.sd);
   return points;
+}
+
+/// What is drawn anew at each reading, beside the noise of the channels.
+void AddScatter(const Compared& c, const Scenario& scenario, const TwinComparison& comparison, LinearRun& run) {
+  if (!comparison.scatter) return;
+  Eigen::VectorXd variance = run.sigma.cwiseAbs2();
+  for (const auto& [point, sd] : comparison.scatter(scenario))
+    if (sd > 0.0) variance += (sd * ByRow(c.twin.Slope(point, {}))).cwiseAbs2();
+  run.sigma = variance.cwiseSqrt();
 }
 
 constexpr double kNoWeight = 1e5;  // times the noise: of a channel that a reading has not
@@ -150,6 +157,7 @@ Compared CompareReadings(const std::vector<Reading>& readings, const std::vector
     throw InputError("readings", "there are values where the scenario's bench would show none",
                      "a scenario of the bench that the readings come from");
   run.sigma = StatedNoise(used, scenario, comparison, run);
+  AddScatter(c, scenario, comparison, run);
   run.sigma_stated = run.sigma.minCoeff() > 0.0;
   ScaleToMean(used, run);
   constexpr double kHold = 10.0;  // what is left must be nearly linear in whatever the constants may be besides
@@ -197,6 +205,28 @@ void TakeTogether(const TwinComparison& comparison, Compared& c) {
   c.free.columns = c.groups.MeanOfRows(c.free.columns);
 }
 
+/// Held constants are counted from nothing.
+LeftByAnother LeftByAnotherOf(const Compared& c, const std::vector<Reading>& readings,
+                              const TwinComparison& comparison) {
+  struct Asked {
+    std::vector<Reading> readings, used;
+    FreeConstants free;
+    Eigen::VectorXd observed;
+    Eigen::SparseMatrix<double, Eigen::RowMajor> jacobian;
+    int channels;
+  };
+  const auto asked = std::make_shared<const Asked>(
+      Asked{readings, c.used, c.free, c.run.observed, c.run.nuisance.jacobian, c.run.Channels()});
+  return [asked, follow = comparison.follow](const Scenario& other) -> LeftWhere {
+    const auto twin =
+        std::make_shared<const Followed>(follow, other, asked->readings, asked->used, asked->channels);
+    return [asked, twin](const Eigen::VectorXd& by) -> Eigen::VectorXd {
+      const Eigen::VectorXd constants = asked->free.fitted * by;
+      return asked->observed - ByRow(twin->Predict(asked->free.DisturbancesOf(constants))) + asked->jacobian * by;
+    };
+  };
+}
+
 }  // namespace
 
 Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario, const TwinComparison& comparison) {
@@ -207,11 +237,12 @@ Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario,
   }
   LinearRun& run = c.run;
   if (comparison.shows_errors) run.observed = run.residual;
-  run.nuisance = NuisanceOf(c.free, run.sigma);
+  run.nuisance = c.free.AsNuisance(run.sigma.cwiseInverse());
   if (!comparison.free_sd) return c;
   // What the constants are held by is held from nothing, not from where the fit has put them.
-  run.nuisance.at = SolveLeastSquares(c.free.fitted, c.free.values);
+  run.nuisance.at = c.free.FittedValues();
   run.residual += run.nuisance.jacobian * run.nuisance.at;
+  if (comparison.free_places) run.left_by_another = LeftByAnotherOf(c, readings, comparison);
   return c;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/asked_effects.h"
@@ -68,11 +69,14 @@ unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, co
     const Eigen::VectorXd rad = OfReadings(c.used, known.rad);
     if (!rad.allFinite()) continue;
     design.angles.push_back({known.words.empty() ? known.name + " angle" : known.words, rad, LastOrder(c, rad),
-                             std::max(known.first_unfree, known.lowest_order), known.harmonics, known.name,
-                             known.is_turned_by_motion && design.angles.empty(), known.lowest_order});
+                             known.first_unfree == 0 ? 0 : std::max(known.first_unfree, known.lowest_order),
+                             known.harmonics, known.name, known.is_turned_by_motion && design.angles.empty(),
+                             known.lowest_order});
   }
   if (!design.angles.empty()) design.continued_rad = design.angles.front().rad;
   design.moved = Eigen::VectorXd::Ones(readings.Readings());
+  for (std::size_t i = 0; i < readings.phase.size(); ++i)
+    if (readings.phase[i] == Phase::kCalibration) design.moved[static_cast<Eigen::Index>(i)] = 0.0;
   design.senses = {model::HeldDirection(readings)};
   if (comparison.sampled) design.travel_rad = comparison.sampled->travel_rad(c.used);
   if (readings.velocity_rad_s.allFinite()) design.velocity = readings.velocity_rad_s;
@@ -85,6 +89,9 @@ unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, co
   if (!comparison.shows_errors && !NamesLowOrders(comparison)) {
     design.shown = run.Predicted().reshaped<Eigen::RowMajor>(run.schedule.Readings(), run.Channels());
     design.shown_name = "reading";
+    for (int k = 0; k < run.Channels(); ++k)
+      if (std::ranges::count(comparison.nulled, run.channels[static_cast<std::size_t>(k)]) > 0)
+        design.shown.col(k).setZero();
   }
   design.unit = run.unit;
   design.to_SI = run.to_SI;
@@ -126,15 +133,15 @@ TwinComparison::ShapedProduct Shaped(const TwinComparison::Product& p, const Com
 }
 
 Family& AddProduct(const Compared& c, const TwinComparison& comparison,
-                   const TwinComparison::ShapedProduct& product, Candidates& named) {
+                   const TwinComparison::ShapedProduct& product, const Eigen::MatrixXd& slope, Candidates& named) {
   std::vector<Shape> shapes;
   for (std::size_t k = 0; k < product.shapes.size(); ++k) {
     const auto values = product.values.col(static_cast<Eigen::Index>(k));
     shapes.push_back(named.catalogue().ShapeOf(product.effect, product.shapes[k], {values.begin(), values.end()}));
   }
   return named.AddOver({product.effect, product.where, {}}, product.sizes, shapes,
-                       [slope = c.twin.Slope(product.point, c.free.Disturbances()), courses = product.courses,
-                        used = AsPredicted(c, comparison), groups = c.groups](const Eigen::VectorXd& shape) {
+                       [slope, courses = product.courses, used = AsPredicted(c, comparison),
+                        groups = c.groups](const Eigen::VectorXd& shape) {
                          return groups.MeanOfRows(unknown::ShownOf(slope, courses(used, shape)));
                        });
 }
@@ -142,13 +149,21 @@ Family& AddProduct(const Compared& c, const TwinComparison& comparison,
 /// Effects of the catalogue as slopes of the twin times courses, where asking anew at each shape takes too long.
 void AddProducts(const Compared& c, const TwinComparison& comparison, const DiagnoseOptions& options,
                  Candidates& named) {
+  std::map<std::string, Eigen::MatrixXd> slopes;
+  const auto slope_at = [&](const std::string& point) -> const Eigen::MatrixXd& {
+    if (!slopes.contains(point)) slopes[point] = c.twin.Slope(point, c.free.Disturbances());
+    return slopes[point];
+  };
   for (const TwinComparison::Product& product : comparison.products) {
     if (IsExcluded(options, product.effect)) continue;
-    Family& family = AddProduct(c, comparison, Shaped(product, c), named);
-    if (product.is_order) named.MakeOrders(family);
+    Family& family = AddProduct(c, comparison, Shaped(product, c), slope_at(product.point), named);
+    if (product.is_order)
+      named.MakeOrders(family);
+    else if (product.is_wave)
+      named.MakeWaves(family);
   }
   for (const TwinComparison::ShapedProduct& product : comparison.shaped_products) {
-    if (!IsExcluded(options, product.effect)) AddProduct(c, comparison, product, named);
+    if (!IsExcluded(options, product.effect)) AddProduct(c, comparison, product, slope_at(product.point), named);
   }
 }
 
@@ -185,6 +200,8 @@ std::vector<EffectEntry> AskedOf(const TwinComparison& comparison, const Diagnos
   std::vector<EffectEntry> entries = comparison.format->effects;
   std::erase_if(entries, [&](const EffectEntry& entry) {
     return IsExcluded(options, entry.name) || entry.name == "outliers" ||
+           std::ranges::count(comparison.unrecorded, entry.name) > 0 ||
+           (comparison.scatter_cause && entry.name == comparison.scatter_cause->effect) ||
            (entry.name == "tone" && !comparison.tones.empty()) ||
            (entry.name == "slip" && !comparison.steps.empty()) ||
            std::ranges::count(comparison.products, entry.name, &TwinComparison::Product::effect) > 0 ||
@@ -197,9 +214,16 @@ std::vector<EffectEntry> AskedOf(const TwinComparison& comparison, const Diagnos
 
 BelievedRecord AskedRecord(const Compared& c, const std::vector<Reading>& readings, const Scenario& scenario,
                            const TwinComparison& comparison) {
-  return {
-      comparison.follow, scenario, RecordAsPredicted(c, readings, comparison), c.used, c.free.Disturbances(), {},
-      c.run.Channels(),  c.groups};
+  return {comparison.follow,
+          scenario,
+          RecordAsPredicted(c, readings, comparison),
+          c.used,
+          c.free.Disturbances(),
+          {},
+          c.run.Channels(),
+          c.groups,
+          comparison.asked_points,
+          comparison.alike_by_trace};
 }
 
 TwinCandidates CandidatesOf(const Compared& compared, const std::vector<Reading>& readings,

@@ -130,7 +130,7 @@ TwinComparison::Product LinesOf(const std::string& ring, const AngleOf& rad) {
   const auto wave = [rad](const std::vector<Reading>& readings, double order) {
     return model::Wave(order * OfEach(readings, rad));
   };
-  return {"periodic", ring, ring + "_encoder", {"amplitude", "amplitude"}, "order", orders, wave, true};
+  return {"periodic", ring, ring + "_encoder", {"amplitude", "amplitude"}, "order", orders, wave, true, true};
 }
 
 /// An order alone names no cause.

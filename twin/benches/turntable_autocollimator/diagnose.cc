@@ -1,54 +1,268 @@
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "twin/benches/turntable_autocollimator/bench.h"
-#include "twin/benches/turntable_autocollimator/diagnosis/outliers.h"
-#include "twin/benches/turntable_autocollimator/diagnosis/seating.h"
-#include "twin/benches/turntable_autocollimator/diagnosis/turntable_run.h"
-#include "twin/benches/turntable_autocollimator/diagnosis/turntable_search.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
-#include "twin/diagnose/conclusion.h"
+#include "twin/core/units.h"
+#include "twin/diagnose/at.h"
+#include "twin/diagnose/products.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::benches::turntable {
 namespace {
 
-diagnose::AnswerWords Words(const diagnose::turntable::Places& places, bool has_polygon) {
-  return {[places, has_polygon](const std::string& effect, const Eigen::VectorXd& unknowns) {
-            const std::string bias = diagnose::turntable::BiasInWords(places, unknowns);
-            const std::string shown_by = WhatWouldShow(effect, has_polygon);
-            return shown_by.empty() ? bias : bias + "; would be shown by " + shown_by;
-          },
-          [has_polygon](const std::string& effect, const std::string& rival) {
-            return NextMeasurement(effect, rival, has_polygon);
-          }};
+using diagnose::TwinComparison;
+using units::arcsec;
+
+constexpr double kFree_rad = 360.0 * arcsec;       // the range of an autocollimator
+constexpr double kToothTilt_rad = 5.0 * arcsec;    // of a multi-tooth table
+constexpr double kLeastNoise_rad = 1e-4 * arcsec;  // nothing is known better
+constexpr int kParts = 1000000;                    // of a turn, in which angles are told apart
+
+bool IsInSweep(const Reading& r) {
+  return r.phase == Phase::kCalibration;
 }
 
-/// Sizes were measured in the usual deviation of the run.
-diagnose::Cause DisturbedCause(const diagnose::NoiseCause& outlying, diagnose::LinearRun run) {
-  run.sigma.setConstant(diagnose::turntable::UsualSigma_rad(run));
-  return diagnose::OutlierCause(outlying, run);
+int InTurn(double angle_rad) {
+  const auto part = static_cast<int>(std::lround(angle_rad / units::turn * kParts) % kParts);
+  return part < 0 ? part + kParts : part;
+}
+
+/// What a face would have shown at its nominal angle: where a polygon is nulled the encoder, with its scatter,
+/// shows what the autocollimator does not, and what is regressed on must be without it.
+std::vector<Reading> AtNominal(std::vector<Reading> readings, const TurntableSettings& own) {
+  if (!own.HasPolygon()) return readings;
+  for (Reading& r : readings) {
+    if (IsInSweep(r) || !std::isfinite(r.target_rad) || !std::isfinite(r.reference_rad)) continue;
+    const int setup = std::clamp(r.setup, 0, own.turntable_procedure.SetUps() - 1);
+    const int face = static_cast<int>(std::lround(-r.reference_rad / own.Pitch_rad()));
+    const double nominal_rad = own.FaceAngle_rad(setup, face);
+    r.autocollimator_yaw_rad -= r.target_rad - nominal_rad;
+    r.target_rad = nominal_rad;
+  }
+  return readings;
+}
+
+/// Of the turntable's position. Sweeps, whose small moves are no positions of their own, have one each behind all
+/// others.
+int PlaceOf(const Reading& r) {
+  constexpr int kMostPasses = 1000;
+  return IsInSweep(r) ? kParts + kMostPasses * r.setup + r.pass : InTurn(r.target_rad);
+}
+
+std::vector<int> PlacesOf(const std::vector<Reading>& readings) {
+  std::vector<int> places;
+  for (const Reading& r : readings) places.push_back(PlaceOf(r));
+  return places;
+}
+
+/// 1 where a tooth is met, or a face: readings x teeth. One that meets one position only, which meets no other,
+/// cannot be told from the position.
+Eigen::MatrixXd Teeth(const std::vector<Reading>& readings) {
+  std::map<int, std::set<int>> places_of, teeth_at;
+  for (const Reading& r : readings) {
+    if (IsInSweep(r)) continue;
+    places_of[InTurn(r.reference_rad)].insert(PlaceOf(r));
+    teeth_at[PlaceOf(r)].insert(InTurn(r.reference_rad));
+  }
+  constexpr int kNone = -1;
+  std::vector<int> teeth;
+  for (const Reading& r : readings) {
+    const int tooth = InTurn(r.reference_rad);
+    const bool is_told = !IsInSweep(r) && (places_of[tooth].size() > 1 || teeth_at[PlaceOf(r)].size() > 1);
+    teeth.push_back(is_told ? tooth : kNone);
+  }
+  const Eigen::MatrixXd met = model::Indicators(teeth);
+  return met.rightCols(met.cols() - (std::ranges::count(teeth, kNone) > 0 ? 1 : 0));
+}
+
+/// The way from the middle of each sweep: readings x sweeps.
+Eigen::MatrixXd Sweeps_rad(const std::vector<Reading>& readings) {
+  std::map<int, std::vector<std::size_t>> sweeps;
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    if (IsInSweep(readings[i])) sweeps[PlaceOf(readings[i])].push_back(i);
+  Eigen::MatrixXd way_rad = Eigen::MatrixXd::Zero(std::ssize(readings), std::ssize(sweeps));
+  Eigen::Index sweep = 0;
+  for (const auto& [place, members] : sweeps) {
+    double middle_rad = 0.0;
+    for (const std::size_t i : members) middle_rad += readings[i].target_rad / static_cast<double>(members.size());
+    for (const std::size_t i : members)
+      way_rad(static_cast<Eigen::Index>(i), sweep) = readings[i].target_rad - middle_rad;
+    ++sweep;
+  }
+  return way_rad;
+}
+
+/// Of the turntable's error between neighbouring positions, rms, of x where they were read last.
+double TypicalSlope(const std::vector<Reading>& readings) {
+  constexpr double kUnknown = 1e-4;  // 20 arcsec a radian: a table of some seconds
+  std::map<int, double> x_rad;
+  for (const Reading& r : readings)
+    if (r.phase == Phase::kFullCircle && std::isfinite(r.autocollimator_yaw_rad))
+      x_rad[InTurn(r.target_rad)] = r.autocollimator_yaw_rad;
+  double sum2 = 0.0;
+  for (auto a = x_rad.begin(), b = a; a != x_rad.end(); a = b)
+    if (++b != x_rad.end())
+      sum2 += std::pow((b->second - a->second) / (b->first - a->first) * kParts / units::turn, 2);
+  return x_rad.size() > 3 ? std::max(kUnknown, std::sqrt(sum2 / static_cast<double>(x_rad.size() - 1))) : kUnknown;
+}
+
+double Deviation2(const Eigen::VectorXd& values) {
+  return (values.array() - values.mean()).square().mean();
+}
+
+/// A zero that follows a temperature is told from the thermometer's, whose noise looks like a wrong coefficient: by
+/// the share that noise has of what was logged (errors in variables).
+void AddThermometer(const std::vector<Reading>& readings, const Scenario& scenario, TwinComparison& comparison) {
+  const auto logged_K = [reference_degC = scenario.environment.reference_degC](const std::vector<Reading>& used) {
+    const Eigen::VectorXd above_K = model::Above_K(model::CourseOf(used), reference_degC);
+    return Eigen::MatrixXd(above_K.array() - above_K.mean());
+  };
+  const double noise2 = std::pow(scenario.environment.sensor_noise_K, 2);
+  const double logged2 = Deviation2(logged_K(readings).col(0));
+  const bool follows = TurntableOf(scenario).collimator.x_per_kelvin_rad != 0.0 ||
+                       TurntableOf(scenario).collimator.y_per_kelvin_rad != 0.0;
+  if (follows && noise2 > 0.0 && logged2 > 0.0)
+    comparison.free_courses.push_back(
+        {"room.temperature", logged_K, "the thermometer", std::sqrt(std::min(1.0, noise2 / logged2))});
+}
+
+/// What readings may absorb without anything being wrong: errors of the turntable at every position; of each
+/// mounting the constants of x and y and the tilt of the multi-tooth table's axis; what is known to some extent of
+/// teeth, of the turntable along a sweep, of the camera's interpolation.
+void LeaveFree(const std::vector<Reading>& readings, const Scenario& scenario, TwinComparison& comparison) {
+  const TurntableSettings& own = TurntableOf(scenario);
+  comparison.free_places = TwinComparison::FreePlaces{{"turntable.ez", "turntable.ex"}, PlacesOf, "a position"};
+  comparison.free_points = {"turntable.ez", "turntable.ex", "axis.ex", "axis.ey"};
+  comparison.free_rounds = 8;  // what a steep ripple shows of a small turn depends on where it is
+  comparison.free_sd = [](const model::Point&) { return kFree_rad; };
+  const auto add = [&](const std::string& point, const auto& courses, const std::string& of, double sd) {
+    if (courses(readings).cols() > 0) comparison.free_courses.push_back({point, courses, of, sd});
+  };
+  add("multitooth.ez", Teeth, own.HasPolygon() ? "a face" : "a tooth",
+      own.HasPolygon() ? kFree_rad : std::max(own.multitooth.u_tooth_rad, kLeastNoise_rad));
+  add("multitooth.ex", Teeth, own.HasPolygon() ? "a face" : "a tooth", kToothTilt_rad);
+  add("turntable.ez", Sweeps_rad, "a sweep", TypicalSlope(readings));
+  AddThermometer(readings, scenario, comparison);
+}
+
+/// What is drawn anew at a stop.
+std::vector<TwinComparison::Scatter> ScatterOf(const Scenario& scenario) {
+  constexpr std::array<const char*, kComponents> kNames = {"ex", "ey", "ez", "dx", "dy", "dz"};
+  const TurntableSettings& own = TurntableOf(scenario);
+  std::vector<TwinComparison::Scatter> scatter = {{"room.temperature", scenario.environment.sensor_noise_K}};
+  for (std::size_t c = 0; c < kComponents; ++c) {
+    scatter.push_back({std::string("turntable.") + kNames[c], own.turntable.repeatability_sd[c]});
+    scatter.push_back({std::string("multitooth.") + kNames[c], own.multitooth_table.repeatability_sd[c]});
+  }
+  for (const EffectSettings& e : scenario.effects)
+    if (e.name == "multitooth_seating") scatter.push_back({"multitooth.ez", e.parameters.at("scatter")});
+  if (own.HasPolygon())  // beside a multi-tooth table the encoder is not read
+    scatter.push_back({"turntable.yaw", std::hypot(own.encoder.noise_rad, own.encoder.step_rad / std::sqrt(12.0))});
+  return scatter;
+}
+
+using AxisOf = double (*)(const Reading&);
+
+double X_rad(const Reading& r) {
+  return r.autocollimator_yaw_rad;
+}
+double Y_rad(const Reading& r) {
+  return r.autocollimator_tilt_rad;
+}
+
+/// Ripple along an axis: of the stated pixels, within a hundredth, and of any other period that the scatter of the
+/// readings does not wash out.
+void AddRipples(const std::vector<Reading>& readings, const std::string& axis, AxisOf shown_rad,
+                const TurntableSettings& own, TwinComparison& comparison) {
+  constexpr double kShortest_rad = 0.6 * arcsec, kWashedOut = 3.0;  // in noise
+  std::vector<double> all_rad;
+  for (const Reading& r : readings)
+    if (std::isfinite(shown_rad(r))) all_rad.push_back(shown_rad(r));
+  if (all_rad.empty()) return;
+  const auto [least, most] = std::ranges::minmax(all_rad);
+  const double pixel_rad = own.collimator.pixel_pitch_m / (2.0 * own.collimator.focal_length_m);
+  const double shortest_rad = std::max(kShortest_rad, kWashedOut * own.ReadingNoise_rad());
+  const double longest_rad = (most - least) / 1.5;
+  const auto add = [&](double from_rad, double to_rad) {
+    TwinComparison::Product ripple = diagnose::WaveAlong("autocollimator_periodic", axis, "autocollimator." + axis,
+                                                         "period", shown_rad, from_rad, to_rad);
+    ripple.sizes = {"amplitude", "amplitude"};
+    ripple.is_wave = true;
+    comparison.products.push_back(ripple);
+  };
+  if (pixel_rad > shortest_rad && pixel_rad < longest_rad) add(0.99 * pixel_rad, 1.01 * pixel_rad);
+  if (longest_rad > 1.2 * shortest_rad) add(shortest_rad, longest_rad);
+}
+
+bool HasBoth(const Reading& r) {
+  return std::isfinite(X_rad(r)) && std::isfinite(Y_rad(r)) && std::isfinite(r.target_rad) &&
+         std::isfinite(r.reference_rad);
+}
+
+TwinComparison Comparison(const std::vector<Reading>& readings, const Scenario& scenario) {
+  const TurntableSettings& own = TurntableOf(scenario);
+  TwinComparison comparison;
+  comparison.format = &Format();
+  comparison.follow = FollowOften();
+  comparison.unit = "arcsec";
+  comparison.to_SI = arcsec;
+  comparison.plausible = 0.5 * arcsec;
+  comparison.sizes_by_trace = comparison.alike_by_trace = true;
+  comparison.asked_points = 16.0;
+  if (own.HasPolygon()) comparison.nulled = {"x"};
+  comparison.is_used = HasBoth;
+  comparison.noise_of = [](const Scenario& s, const Reading&) -> Eigen::VectorXd {
+    return Eigen::Vector2d::Constant(std::max(TurntableOf(s).ReadingNoise_rad(), kLeastNoise_rad));
+  };
+  comparison.scatter = ScatterOf;
+  if (!own.HasPolygon())
+    comparison.scatter_cause = TwinComparison::ScatterCause{"multitooth_seating", "scatter", "multitooth.ez"};
+  LeaveFree(readings, scenario, comparison);
+  // Every order of the turntable is free, and of the multi-tooth table where shifts tell its teeth.
+  comparison.angles = {{"turntable", &Reading::target_rad, "target angle", "harmonic", 0}};
+  if (Teeth(readings).cols() > 0)
+    comparison.angles.push_back({"multitooth", &Reading::reference_rad, "reference angle", "harmonic", 0});
+  if (!own.HasPolygon()) AddRipples(readings, "x", X_rad, own, comparison);
+  AddRipples(readings, "y", Y_rad, own, comparison);
+  comparison.tones = comparison.steps = {{"x", Eigen::Vector2d::UnitX()}, {"y", Eigen::Vector2d::UnitY()}};
+  comparison.named = {{"direction offset", ""},
+                      {"trend", ""},
+                      {"tone", "tone"},
+                      {"step", "slip"},
+                      {"linear map", ""},
+                      {"restart", ""},
+                      {"reading fringes", "autocollimator_periodic"}};
+  comparison.bends = true;
+  comparison.shown_by = [has_polygon = own.HasPolygon()](const std::string& effect) {
+    return WhatWouldShow(effect, has_polygon);
+  };
+  comparison.next_measurement = [has_polygon = own.HasPolygon()](const std::string& effect,
+                                                                 const std::string& rival) {
+    return NextMeasurement(effect, rival, has_polygon);
+  };
+  const auto lacks = [&readings](double Reading::*value) {
+    return std::ranges::none_of(readings, [&](const Reading& r) { return std::isfinite(r.*value); });
+  };
+  if (lacks(&Reading::temperature_degC)) comparison.unrecorded.emplace_back("autocollimator_temperature");
+  if (lacks(&Reading::dwell_s)) comparison.unrecorded.emplace_back("settling");
+  return comparison;
 }
 
 }  // namespace
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  const diagnose::turntable::SearchedTurntable searched = diagnose::turntable::SearchTurntable(
-      readings, scenario, options.excluded, diagnose::AnalysisOptionsOf(options), FollowRecord);
-  const diagnose::turntable::TurntableRun& turntable = *searched.turntable;
-  std::vector<diagnose::Cause> first = searched.first;
-  if (searched.outlying) first.push_back(DisturbedCause(*searched.outlying, turntable.run));
-  diagnose::DiagnosisRun result = diagnose::Conclude(turntable.run, searched.analysis, first,
-                                                     Words(turntable.places, TurntableOf(scenario).HasPolygon()));
-  if (searched.outlying) result.diagnosis.noise.push_back(searched.outlying->words);
-  result.diagnosis.left_out = turntable.left_out;
-  if (searched.first.empty() && std::isfinite(searched.smallest_seating_rad))
-    result.diagnosis.detectable.push_back(diagnose::turntable::DetectableSeating(searched.smallest_seating_rad));
-  return result;
+  const std::vector<Reading> reduced = AtNominal(readings, TurntableOf(scenario));
+  return diagnose::DiagnoseByTwin(reduced, scenario, options, Comparison(reduced, scenario));
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
-  return diagnose::turntable::BuildRun(readings, scenario, FollowRecord).run;
+  const std::vector<Reading> reduced = AtNominal(readings, TurntableOf(scenario));
+  return diagnose::CompareWithTwin(reduced, scenario, Comparison(reduced, scenario));
 }
 
 }  // namespace twinbench::benches::turntable

@@ -8,6 +8,7 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/followed.h"
 #include "twin/diagnose/tuning.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -150,14 +151,13 @@ std::vector<double> GridOf(const EffectParameter& p, double typical, const std::
 
 /// Every combination of the values of all shapes.
 std::vector<Shape> ShapesOf(const Catalogue& catalogue, const AskedEffect& asked, const std::string& effect,
-                            const std::vector<double>& onsets) {
-  const auto count =
-      static_cast<int>(std::pow(tuning::kAskedPoints, 1.0 / static_cast<double>(asked.Shapes().size())));
+                            const BelievedRecord& believed) {
+  const auto count = static_cast<int>(std::pow(believed.points, 1.0 / static_cast<double>(asked.Shapes().size())));
   std::vector<std::vector<double>> combined = {{}};
   for (const EffectParameter& p : asked.Shapes()) {
     std::vector<std::vector<double>> longer;
     for (const std::vector<double>& before : combined) {
-      for (const double value : GridOf(p, asked.Typical(p), onsets, count)) {
+      for (const double value : GridOf(p, asked.Typical(p), believed.onsets, count)) {
         longer.push_back(before);
         longer.back().push_back(value);
       }
@@ -179,14 +179,87 @@ std::vector<std::string> NamesOf(const std::vector<EffectParameter>& parameters)
   return names;
 }
 
-void AddAsked(const std::shared_ptr<const AskedEffect>& asked, const Showing& showing,
-              const std::vector<double>& onsets, Candidates& named) {
-  std::vector<std::string> sizes = NamesOf(asked->Sizes());
-  if (!asked->Shapes().empty()) {
-    named.AddOver(showing, sizes, ShapesOf(named.catalogue(), *asked, showing.effect, onsets),
-                  [asked](const Eigen::VectorXd& shape) { return asked->Columns(shape); });
-    return;
+/// How much larger than at its plausible shape a size is that leaves the same trace.
+class Traces {
+ public:
+  explicit Traces(const std::shared_ptr<const AskedEffect>& asked) : asked_(asked) {
+    Eigen::VectorXd plausible(std::ssize(asked->Shapes()));
+    for (std::size_t k = 0; k < asked->Shapes().size(); ++k)
+      plausible[static_cast<Eigen::Index>(k)] = asked->Typical(asked->Shapes()[k]);
+    usual_ = model::Rms(asked->Columns(plausible));
   }
+
+  double ScaleOf(const Eigen::VectorXd& column) const {
+    constexpr double kLeast = 1e-4;  // of the usual one: less is rounding
+    return usual_ / std::max(model::Rms(column), kLeast * usual_);
+  }
+  double ScaleAt(const Eigen::VectorXd& shape) const { return ScaleOf(asked_->Columns(shape)); }
+  /// d scale / d shape.
+  Eigen::VectorXd SlopesAt(const Eigen::VectorXd& shape) const {
+    constexpr double kStep = 1e-3;
+    Eigen::VectorXd slopes(shape.size());
+    for (Eigen::Index k = 0; k < shape.size(); ++k) {
+      const Eigen::VectorXd step = kStep * shape[k] * Eigen::VectorXd::Unit(shape.size(), k);
+      slopes[k] = (ScaleAt(shape + step) - ScaleAt(shape - step)) / (2.0 * kStep * shape[k]);
+    }
+    return slopes;
+  }
+
+ private:
+  std::shared_ptr<const AskedEffect> asked_;
+  double usual_;
+};
+
+/// The size that is fitted is that of the plausible shape with the same trace.
+void TellByTrace(const Traces& traces, const Catalogue& catalogue, Family& family) {
+  const std::string size = family.amplitudes.front().name;
+  family.parameters = [=, effect = family.effect, shapes = family.shapes](
+                          const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
+    Eigen::VectorXd slopes = Eigen::VectorXd::Constant(1, traces.ScaleAt(shape));
+    if (cov.rows() > shape.size()) {
+      slopes.conservativeResize(1 + shape.size());
+      slopes.tail(shape.size()) = x[0] * traces.SlopesAt(shape);
+    }
+    const double variance = slopes.dot(cov.topLeftCorner(slopes.size(), slopes.size()) * slopes);
+    std::vector<ParameterEstimate> told = {catalogue.Estimate(effect, size, slopes[0] * x[0], std::sqrt(variance))};
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      told.push_back(catalogue.Estimate(effect, shapes[k].name, shape[at], DeviationAt(cov, 1 + at)));
+    }
+    return told;
+  };
+}
+
+/// The twin is asked once at each point of the grid.
+void RememberGrid(Family& family) {
+  const auto known = std::make_shared<std::vector<Eigen::MatrixXd>>(static_cast<std::size_t>(family.grid));
+  family.columns = [ask = family.columns, known](int grid_point) {
+    Eigen::MatrixXd& columns = (*known)[static_cast<std::size_t>(grid_point)];
+    if (columns.size() == 0) columns = ask(grid_point);
+    return columns;
+  };
+}
+
+void AddAskedOver(const std::shared_ptr<const AskedEffect>& asked, const Showing& showing,
+                  const BelievedRecord& believed, Candidates& named) {
+  const std::vector<std::string> sizes = NamesOf(asked->Sizes());
+  const std::vector<Shape> shapes = ShapesOf(named.catalogue(), *asked, showing.effect, believed);
+  if (!believed.alike_by_trace || sizes.size() > 1)
+    return RememberGrid(named.AddOver(showing, sizes, shapes,
+                                      [asked](const Eigen::VectorXd& shape) { return asked->Columns(shape); }));
+  const Traces traces(asked);
+  Family& family = named.AddOver(showing, sizes, shapes, [asked, traces](const Eigen::VectorXd& shape) {
+    const Eigen::MatrixXd columns = asked->Columns(shape);
+    return Eigen::MatrixXd(traces.ScaleOf(columns) * columns);
+  });
+  TellByTrace(traces, named.catalogue(), family);
+  RememberGrid(family);
+}
+
+void AddAsked(const std::shared_ptr<const AskedEffect>& asked, const Showing& showing,
+              const BelievedRecord& believed, Candidates& named) {
+  std::vector<std::string> sizes = NamesOf(asked->Sizes());
+  if (!asked->Shapes().empty()) return AddAskedOver(asked, showing, believed, named);
   const Eigen::MatrixXd columns = asked->Columns({});
   if (asked->IsBent()) return named.AddStraightAndBent(showing, sizes.front(), columns);
   if (asked->IsWave()) sizes.assign(2, sizes.front());
@@ -217,7 +290,7 @@ std::vector<Invisible> AddAskedEffects(const BelievedRecord& believed, const std
       if (asked->Sizes().empty() || asked->More({}).isZero())
         invisible.push_back({entry.name, place, "nothing: this run shows nothing of it"});
       else
-        AddAsked(asked, {entry.name, place, {}}, believed.onsets, named);
+        AddAsked(asked, {entry.name, place, {}}, believed, named);
     }
   }
   return invisible;

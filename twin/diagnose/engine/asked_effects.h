@@ -6,6 +6,7 @@
 
 #include "twin/diagnose/engine/candidates.h"
 #include "twin/diagnose/grouping.h"
+#include "twin/diagnose/tuning.h"
 #include "twin/model/follow.h"
 
 /// Named candidates that need nothing but the catalogue and the twin: each effect's signature is what the twin
@@ -21,7 +22,8 @@ struct BelievedRecord {
   std::vector<double> onsets;            // numbers of readings at which something may begin
   int channels = 0;                      // so many of the twin's; 0: all
   Grouping groups = {};                  // of the used readings into rows
-
+  double points = tuning::kAskedPoints;  // of a grid over all shapes of an effect
+  bool alike_by_trace = false;           // sizes are thought of by the trace that they leave at any shape
 
   /// What each row should have shown: group i of used readings, channel c at i * channels + c, SI.
   Eigen::VectorXd Shown() const { return ShownUnder(scenario); }

@@ -156,18 +156,24 @@ Family& Candidates::AddOrders(const Showing& showing, const std::shared_ptr<cons
 }
 
 void Candidates::MakeOrders(Family& family) const {
+  family.at = nullptr;
+  MakeWaves(family);
+}
+
+void Candidates::MakeWaves(Family& family) const {
   family.amplitudes[0].name = "cosine";
   family.amplitudes[1].name = "sine";
-  family.at = nullptr;
-  const std::string order = family.shapes.empty() ? "" : family.shapes.front().name;
-  family.parameters = [catalogue = catalogue_, effect = family.effect, order](
+  const std::string shape_name = family.shapes.empty() ? "" : family.shapes.front().name;
+  const bool is_whole = !family.at;
+  family.parameters = [catalogue = catalogue_, effect = family.effect, shape_name, is_whole](
                           const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
     const Polar polar = PolarOf(x, cov);
     std::vector<ParameterEstimate> estimates = {
         catalogue.Estimate(effect, "amplitude", polar.size, polar.u_size),
         catalogue.Estimate(effect, "phase", polar.phase_rad, polar.u_phase_rad)};
-    if (!order.empty())
-      estimates.insert(estimates.begin(), catalogue.Estimate(effect, order, shape[0], 0.0));  // a whole number
+    const double u_shape = is_whole ? 0.0 : DeviationAt(cov, x.size());
+    if (!shape_name.empty())
+      estimates.insert(estimates.begin(), catalogue.Estimate(effect, shape_name, shape[0], u_shape));
     return estimates;
   };
 }

@@ -78,7 +78,9 @@ class Candidates {
   /// The same of several whole orders. @param order  The catalogue's name for it; empty: there is one only.
   Family& AddOrders(const Showing& showing, const std::shared_ptr<const Base>& base, const std::string& order,
                     const std::vector<double>& orders);
-  /// Of the waves of whole orders, their cosine and sine, makes "amplitude" and "phase"; no order lies between two.
+  /// Of waves, their cosine and sine, makes "amplitude" and "phase".
+  void MakeWaves(Family& family) const;
+  /// The same of whole orders: none lies between two.
   void MakeOrders(Family& family) const;
   /// `rate` along time, with "curvature" and without: two families.
   void AddDrift(const Showing& showing, const std::string& rate, const Eigen::VectorXd& time_s);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
+#include "twin/diagnose/engine/projector.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -13,8 +15,10 @@ namespace {
 void SetColumns(const Followed& twin, Eigen::Index rows, FreeConstants& free) {
   free.columns.resize(rows, free.values.size());
   Eigen::Index column = 0;
+  std::map<std::string, Eigen::MatrixXd> slopes;
   for (const FreePoint& p : free.points) {
-    const Eigen::MatrixXd slope = twin.Slope(p.point.name, free.Disturbances());
+    if (!slopes.contains(p.point.name)) slopes[p.point.name] = twin.Slope(p.point.name, free.Disturbances());
+    const Eigen::MatrixXd& slope = slopes[p.point.name];
     for (const auto& course : p.courses.colwise()) free.columns.col(column++) = ByRow(course.asDiagonal() * slope);
   }
 }
@@ -48,8 +52,34 @@ Eigen::VectorXd Refitted(const FreeConstants& free, const Eigen::VectorXd& resid
   return scale.cwiseProduct(SolveRanked(white, seen, how.rank).x.col(0));
 }
 
+int LocalPoints(const FreeConstants& free) {
+  return static_cast<int>(std::ranges::count(free.points, true, &FreePoint::is_local));
+}
+
+/// All constants, the local ones place by place: each place is a block of its own (Nuisance).
+std::vector<Eigen::Index> ByPlace(const FreeConstants& free) {
+  const int size = LocalPoints(free);
+  const Eigen::Index places = free.points.front().courses.cols();
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index place = 0; place < places; ++place) {
+    for (int p = 0; p < size; ++p) order.push_back(p * places + place);
+  }
+  for (Eigen::Index k = size * places; k < free.values.size(); ++k) order.push_back(k);
+  return order;
+}
+
+/// As Refitted, of many that are local: place by place.
+Eigen::VectorXd RefittedByPlace(const FreeConstants& free, const Eigen::VectorXd& residual, const FreeFit& how) {
+  Nuisance nuisance = free.AsNuisance(how.weights, how.hold);
+  nuisance.jacobian = how.weights.asDiagonal() * nuisance.jacobian;
+  const Eigen::VectorXd seen = how.weights.cwiseProduct(residual + free.columns * free.values);
+  Eigen::VectorXd values(free.values.size());
+  values(free.told) = Projector(nuisance.jacobian, nuisance).Solve(seen).col(0);
+  return values;
+}
+
 /// Each constant by itself, without those that show nothing, where the rest can be told apart; else combinations.
-Eigen::MatrixXd Fitted(const FreeConstants& free, const FreeFit& how) {
+void SetFitted(const FreeFit& how, FreeConstants& free) {
   constexpr double kLeastRank = 1e-7;  // squares of less are rounding
   const double rank = std::max(how.rank, kLeastRank);
   const Eigen::MatrixXd white = White(free, how);
@@ -62,15 +92,19 @@ Eigen::MatrixXd Fitted(const FreeConstants& free, const FreeFit& how) {
   for (Eigen::Index k = 0; k < all; ++k) {
     if (scale[k] > 0.0) seen.push_back(k);
   }
-  if (apart == std::ssize(seen)) return Eigen::MatrixXd::Identity(all, all)(Eigen::all, seen);
-  return scale.asDiagonal() * eigen.vectors.rightCols(apart);
+  if (apart == std::ssize(seen)) {
+    free.told = seen;
+    free.fitted = Eigen::MatrixXd::Identity(all, all)(Eigen::all, seen);
+  } else {
+    free.fitted = scale.asDiagonal() * eigen.vectors.rightCols(apart);
+  }
 }
 
 }  // namespace
 
-std::vector<model::Disturbance> FreeConstants::Disturbances() const {
+std::vector<model::Disturbance> FreeConstants::DisturbancesOf(const Eigen::VectorXd& constants) const {
   std::vector<model::Disturbance> all;
-  ForEach(values, [&](const FreePoint& p, const auto& x) { all.push_back({p.point.name, p.courses * x}); });
+  ForEach(constants, [&](const FreePoint& p, const auto& x) { all.push_back({p.point.name, p.courses * x}); });
   return all;
 }
 
@@ -84,10 +118,26 @@ Eigen::VectorXd FreeConstants::Precision() const {
   return precision;
 }
 
+Eigen::VectorXd FreeConstants::FittedValues() const {
+  return told.empty() ? SolveLeastSquares(fitted, values).col(0) : Eigen::VectorXd(values(told));
+}
+
+Nuisance FreeConstants::AsNuisance(const Eigen::VectorXd& weights, double hold) const {
+  constexpr double kWeak = 1e-6;
+  const Eigen::MatrixXd shown = told.empty() ? Eigen::MatrixXd(columns * fitted) : columns(Eigen::all, told);
+  const Eigen::MatrixXd white = weights.asDiagonal() * shown;
+  const Eigen::VectorXd weak = kWeak * white.cwiseAbs2().colwise().maxCoeff().transpose().cwiseMax(1e-300);
+  const Eigen::VectorXd stated = hold * hold * (fitted.cwiseAbs2().transpose() * Precision());
+  const int local = LocalPoints(*this);
+  const int places = local > 0 ? static_cast<int>(points.front().courses.cols()) : 0;
+  return {shown.sparseView(), (stated.array() > 0.0).select(stated, weak), places, local};
+}
+
 FreeConstants FitFree(const Followed& twin, std::vector<FreePoint> points, const Eigen::VectorXd& observed,
                       const FreeFit& how) {
   constexpr int kMostHalvings = 6;
   constexpr double kNoWorse = 1.001, kSettled = 1e-7;
+  constexpr double kLinear = 0.1;  // noise standard deviations, of all rows together
   FreeConstants free;
   free.points = std::move(points);
   Eigen::Index constants = 0;
@@ -96,6 +146,11 @@ FreeConstants FitFree(const Followed& twin, std::vector<FreePoint> points, const
   SetColumns(twin, observed.size(), free);
   free.fitted.resize(constants, 0);
   if (constants == 0) return free;
+  const bool by_place = LocalPoints(free) > 0;
+  if (by_place) {
+    free.told = ByPlace(free);
+    free.fitted = Eigen::MatrixXd::Identity(constants, constants)(Eigen::all, free.told);
+  }
   Eigen::VectorXd residual;
   const auto misfit = [&] {
     residual = observed - ByRow(twin.Predict(free.Disturbances()));
@@ -105,21 +160,26 @@ FreeConstants FitFree(const Followed& twin, std::vector<FreePoint> points, const
   for (int k = 0; k < how.rounds; ++k) {
     if (k > 0) SetColumns(twin, observed.size(), free);
     const Eigen::VectorXd before = free.values;
-    free.values = Refitted(free, residual, how);
+    const Eigen::VectorXd left_before = residual;
+    free.values = by_place ? RefittedByPlace(free, residual, how) : Refitted(free, residual, how);
     double now = misfit();
     // A step that leads out of what is nearly linear is shortened.
     for (int half = 0; half < kMostHalvings && !(now < kNoWorse * least); ++half) {
       free.values = 0.5 * (free.values + before);
       now = misfit();
     }
-    const bool has_settled = k > 0 && least - now < kSettled * now;
+    // New slopes would tell nothing where the old ones said what is left.
+    const bool is_linear =
+        by_place &&
+        how.weights.cwiseProduct(left_before - free.columns * (free.values - before) - residual).norm() < kLinear;
+    const bool has_settled = is_linear || (k > 0 && least - now < kSettled * now);
     least = now;
     if (has_settled) break;
   }
   if (!free.values.allFinite() || !std::isfinite(least))
     throw InputError("readings", "no constants of the scenario's bench come near them: the fit leads to what is no number",
                      "readings of the bench that the scenario describes, and in its units");
-  free.fitted = Fitted(free, how);
+  if (!by_place) SetFitted(how, free);
   return free;
 }
 

@@ -243,17 +243,6 @@ NoiseCause ChannelScale(const LinearRun& run, const NoiseModel& noise, const Sta
 
 }  // namespace
 
-bool StandOut(const std::vector<int>& far, const Eigen::VectorXd& z) {
-  Standardised s;
-  s.z = z;
-  for (int row = 0; row < z.size(); ++row) {
-    if (z[row] != 0.0) s.rows.push_back(row);
-  }
-  Standardised rest = s;
-  std::erase_if(rest.rows, [&](int row) { return std::ranges::find(far, row) != far.end(); });
-  return AreExceptions(LikelihoodWithout(far.size(), rest, s), s);
-}
-
 std::vector<NoiseCause> FindNoiseCauses(const LinearRun& run, const NoiseModel& noise, const Rest& rest,
                                         const RestWithout& without) {
   const Standardised s = Standardise(rest);

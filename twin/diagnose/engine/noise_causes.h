@@ -33,10 +33,6 @@ struct Rest {
 /// What would be left if these rows might be anything.
 using RestWithout = std::function<Rest(const std::vector<int>& rows)>;
 
-/// Whether the rows `far` stand out of normal noise, rather than being the tails of noise that has heavy ones.
-/// @param z  By row, in deviations; a row that is exactly zero is not looked at.
-bool StandOut(const std::vector<int>& far, const Eigen::VectorXd& z);
-
 /// Looks for refuted properties in what is left of the data.
 ///
 /// @param rest  W y with accepted causes taken out, whitened with `noise`, and the diagonal of W.

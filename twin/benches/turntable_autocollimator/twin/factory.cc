@@ -2,6 +2,7 @@
 
 #include "twin/benches/turntable_autocollimator/procedure/drive.h"
 #include "twin/benches/turntable_autocollimator/twin/follow.h"
+#include "twin/benches/turntable_autocollimator/twin/mirror_path.h"
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
 #include "twin/sim/simulated_machine.h"
 
@@ -16,7 +17,14 @@ std::unique_ptr<MachineDevices> MakeDevices(const Scenario& scenario) {
 }
 
 std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {
-  return sim::FollowTurntable(scenario, record);
+  return sim::FollowTurntable(scenario, record, nullptr);
+}
+
+model::FollowMaker FollowOften() {
+  return
+      [images = std::make_shared<sim::ImagesOnce>()](const Scenario& scenario, const std::vector<Reading>& record) {
+        return sim::FollowTurntable(scenario, record, images);
+      };
 }
 
 }  // namespace twinbench::benches::turntable

@@ -15,4 +15,7 @@ std::unique_ptr<MachineDevices> MakeDevices(const Scenario& scenario);
 /// @throws InputError likewise.
 std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record);
 
+/// The same for who follows one record again and again, as causes change: what they leave alone is seen once.
+model::FollowMaker FollowOften();
+
 }  // namespace twinbench::benches::turntable

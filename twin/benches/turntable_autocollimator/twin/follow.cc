@@ -89,9 +89,11 @@ Scenario WithFreeTables(Scenario scenario) {
 
 class TurntableFollow : public PointwiseFollow<TurntableExtra> {
  public:
-  TurntableFollow(const Scenario& stated, const std::vector<Reading>& its_record)
+  TurntableFollow(const Scenario& stated, const std::vector<Reading>& its_record,
+                  const std::shared_ptr<ImagesOnce>& images)
       : PointwiseFollow(WithFreeTables(Foreseeable(stated, its_record)), its_record, TurntablePoints()),
-        path_(std::make_unique<MirrorPath>(scenario(), kFieldShare, optics::Fidelity::kClosed)),
+        images_(images),
+        path_(std::make_unique<MirrorPath>(scenario(), kFieldShare, optics::Fidelity::kClosed, images)),
         course_(FollowCourse(record(), path_->actual())) {}
 
   std::vector<std::string> Unfixed() const override { return course_.unfixed; }
@@ -104,7 +106,7 @@ class TurntableFollow : public PointwiseFollow<TurntableExtra> {
   }
 
   std::unique_ptr<model::Follow> On(const Scenario& changed) const override {
-    return std::make_unique<TurntableFollow>(changed, record());
+    return std::make_unique<TurntableFollow>(changed, record(), images_);
   }
 
  private:
@@ -124,14 +126,16 @@ class TurntableFollow : public PointwiseFollow<TurntableExtra> {
     return {shown.yaw_rad, shown.tilt_rad};
   }
 
+  std::shared_ptr<ImagesOnce> images_;
   std::unique_ptr<MirrorPath> path_;  // its mirror moves from reading to reading
   TurntableCourse course_;
 };
 
 }  // namespace
 
-std::unique_ptr<model::Follow> FollowTurntable(const Scenario& scenario, const std::vector<Reading>& record) {
-  return std::make_unique<TurntableFollow>(scenario, record);
+std::unique_ptr<model::Follow> FollowTurntable(const Scenario& scenario, const std::vector<Reading>& record,
+                                               const std::shared_ptr<ImagesOnce>& images) {
+  return std::make_unique<TurntableFollow>(scenario, record, images);
 }
 
 }  // namespace twinbench::sim

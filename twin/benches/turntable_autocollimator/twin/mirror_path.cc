@@ -1,5 +1,7 @@
 #include "twin/benches/turntable_autocollimator/twin/mirror_path.h"
 
+#include <algorithm>
+
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/sim/actual_bench.h"
 
@@ -69,13 +71,42 @@ void SilenceTurntable(TurntableSettings& own) {
 
 }  // namespace
 
-MirrorPath::MirrorPath(const Scenario& nominal, double field_share, optics::Fidelity fidelity)
+optics::AutocollimatorImage ImagesOnce::Of(int reading, const Key& key,
+                                           const std::function<optics::AutocollimatorImage()>& look) {
+  constexpr std::size_t kMost = 6;
+  const std::scoped_lock lock(mutex_);
+  auto& seen = seen_[reading];
+  const auto found = std::ranges::find(seen, key, &std::pair<Key, optics::AutocollimatorImage>::first);
+  if (found != seen.end()) {
+    seen.splice(seen.begin(), seen, found);
+  } else {
+    seen.emplace_front(key, look());
+    if (seen.size() > kMost) seen.pop_back();
+  }
+  return seen.front().second;
+}
+
+MirrorPath::MirrorPath(const Scenario& nominal, double field_share, optics::Fidelity fidelity,
+                       std::shared_ptr<ImagesOnce> images)
     : effects_(TurntableEffectsOf(nominal)),
       actual_(ActualBenchOf(nominal, effects_, SilenceTurntable)),
       stand_(actual_),
       optics_(OpticsOf(actual_, field_share, fidelity)),
       empirical_x_(actual_.empiricals, "x"),
-      empirical_y_(actual_.empiricals, "y") {}
+      empirical_y_(actual_.empiricals, "y"),
+      images_(std::move(images)) {}
+
+optics::AutocollimatorImage MirrorPath::See(int reading, const Pose& X_LM) {
+  if (!images_) return optics_.Look(X_LM);
+  const CollimatorSettings& c = TurntableOf(actual_).collimator;
+  const AutocollimatorSettings& a = TurntableOf(actual_).autocollimator;
+  const MirrorSettings& m = TurntableOf(actual_).mirror;
+  ImagesOnce::Key key;
+  key << X_LM.matrix().topRows<3>().reshaped(), c.distance_m, c.focal_length_m, c.aperture_m, c.error_at_edge_rad,
+      c.roll_rad, c.pixel_pitch_m, c.interpolation_error_px, a.range_rad, a.gain_error, m.width_m, m.height_m,
+      m.flatness_m, m.radius_m;
+  return images_->Of(reading, key, [&] { return optics_.Look(X_LM); });
+}
 
 Eigen::Vector2d MirrorPath::Zero_rad(double above_K) const {
   const CollimatorSettings& c = TurntableOf(actual_).collimator;
@@ -89,7 +120,8 @@ AutocollimatorReading MirrorPath::Look(TurntableMoment moment, const mechanics::
   moment.above_K = above_K;
   double yaw_rad = extra.yaw_rad;
   for (const auto& effect : effects_) yaw_rad += effect->Yaw_rad(moment);
-  const auto image = optics_.Look(stand_.MirrorPose(axes.target_rad, yaw_rad, axes.target_bearing, extra.mirror));
+  const auto image =
+      See(moment.reading, stand_.MirrorPose(axes.target_rad, yaw_rad, axes.target_bearing, extra.mirror));
   if (image.status != optics::AutocollimatorStatus::kOk) return {kNaN, kNaN, StatusOf(image.status)};
   const Eigen::Vector2d seen_rad = Eigen::Vector2d(image.x_rad, image.y_rad) + Zero_rad(above_K + extra.warmer_K);
   const double now_s = ToSeconds(moment.now);
