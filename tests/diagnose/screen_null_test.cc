@@ -10,7 +10,7 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr int kSeeds = 300;
+constexpr int kNullSeeds = 300;
 
 /// Largest distance of the empirical distribution from the uniform one.
 double Kolmogorov(std::vector<double> p) {
@@ -46,11 +46,11 @@ std::map<std::string, std::vector<double>> PValuesOf(const std::vector<std::vect
 }
 
 void ExpectHonest(const LinearRun& clean) {
-  const auto all = OfNoise(clean, kSeeds, 1.0);
+  const auto all = OfNoise(clean, kNullSeeds, 1.0);
   for (const auto& [name, values] : PValuesOf(all)) {
-    ASSERT_EQ(values.size(), static_cast<std::size_t>(kSeeds)) << name;
+    ASSERT_EQ(values.size(), static_cast<std::size_t>(kNullSeeds)) << name;
     // Kolmogorov: sqrt(n) D exceeds 1.95 with probability 0.001. Steps of 1 / 100 in p add at most 0.01.
-    EXPECT_LT(Kolmogorov(values), 1.95 / std::sqrt(kSeeds) + 0.01) << name;
+    EXPECT_LT(Kolmogorov(values), 1.95 / std::sqrt(kNullSeeds) + 0.01) << name;
   }
   const auto alarms = std::ranges::count_if(all, [](const std::vector<ResidualTest>& tests) {
     return std::ranges::any_of(

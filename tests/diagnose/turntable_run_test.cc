@@ -25,7 +25,7 @@ LinearRun RunOf(const std::vector<Reading>& readings, const Scenario& scenario) 
 
 /// What the unknowns cannot absorb, in units of the stated noise.
 double LeftOver(const LinearRun& run) {
-  const NoiseModel noise{run.sigma, 0.0};
+  const NoiseModel noise{run.sigma, {}};
   const Projector projector = ProjectorOf(run, noise);
   const Eigen::MatrixXd white = noise.Whiten(run, Eigen::MatrixXd(run.residual));
   return projector.Apply(white).cwiseAbs().maxCoeff();

@@ -24,7 +24,7 @@ struct Squares {
 
 /// Stated noise, without the readings that the analysis found disturbed.
 NoiseModel Undisturbed(const LinearRun& run, const Analysis& analysis) {
-  NoiseModel noise{run.sigma, 0.0};
+  NoiseModel noise{run.sigma, {}};
   for (const NoiseCause& repair : analysis.repairs) {
     for (const int row : repair.outliers) noise.sigma[row] *= 1e4;
   }

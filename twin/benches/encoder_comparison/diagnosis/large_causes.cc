@@ -404,7 +404,7 @@ double NamedNumbers(const LargeCauses& large) {
 
 /// Schwarz's criterion, in the noise that the better of the two leaves.
 bool IsBetterNamed(const LargeCauses& a, const LargeCauses& b) {
-  constexpr double kStrongly = 10.0;
+  constexpr double kStrongly = 6.0;  // Kass and Raftery, Bayes factors (1995)
   const auto readings = static_cast<double>(a.first->encoder.run.Rows());
   const LargeCauses& better = a.named_left < b.named_left ? a : b;
   const double noise = better.memory * std::max(1.0, better.named_left / readings);
