@@ -132,7 +132,7 @@ void AddThermometer(const std::vector<Reading>& readings, const Scenario& scenar
 
 /// What readings may absorb without anything being wrong: errors of the turntable at every position; of each
 /// mounting the constants of x and y and the tilt of the multi-tooth table's axis; what is known to some extent of
-/// teeth, of the turntable along a sweep, of the camera's interpolation.
+/// teeth and of the turntable along a sweep.
 void LeaveFree(const std::vector<Reading>& readings, const Scenario& scenario, TwinComparison& comparison) {
   const TurntableSettings& own = TurntableOf(scenario);
   comparison.free_places = TwinComparison::FreePlaces{{"turntable.ez", "turntable.ex"}, PlacesOf, "a position"};
