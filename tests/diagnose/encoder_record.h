@@ -82,7 +82,7 @@ struct Answer {
 inline DiagnosisRun Diagnosed(const Record& record, const Scenario& believed) {
   DiagnoseOptions options;
   options.null_runs = 100;  // of what is far beyond any threshold
-  options.cache_folder = test::ThresholdsFolder();
+  options.cache_folder = twinbench::test::ThresholdsFolder();
   return Diagnose(record.readings, believed, options);
 }
 

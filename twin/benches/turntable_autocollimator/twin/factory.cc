@@ -17,7 +17,7 @@ std::unique_ptr<MachineDevices> MakeDevices(const Scenario& scenario) {
 }
 
 std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {
-  return sim::FollowTurntable(scenario, record, nullptr);
+  return sim::FollowTurntable(scenario, record);
 }
 
 model::FollowMaker FollowOften() {

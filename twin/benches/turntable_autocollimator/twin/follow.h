@@ -17,6 +17,6 @@ class ImagesOnce;
 /// @param images  Shared with others that follow the same record; may be null.
 /// @throws InputError if a file that the scenario names cannot be read or does not fit.
 std::unique_ptr<model::Follow> FollowTurntable(const Scenario& scenario, const std::vector<Reading>& record,
-                                               const std::shared_ptr<ImagesOnce>& images);
+                                               const std::shared_ptr<ImagesOnce>& images = nullptr);
 
 }  // namespace twinbench::sim
