@@ -25,7 +25,9 @@ TEST(PlanText, HasTheUncertaintyOfTheRunItsMeanAndThatAfterTheProgrammeBesideEac
   run.mean_of = 9;
   PlannedProgramme programme;
   programme.gains = {{"equation_5.ez_arcsec", 0.5}};
-  const std::string text = PlanText({run}, {}, {programme});
+  PlannedEffects none;
+  none.refused = "no cause would be found";
+  const std::string text = PlanText({run}, none, {programme});
   EXPECT_THAT(text, HasSubstr("run 1  run 1, mean of 9  run 1 + programme\n"));
   EXPECT_THAT(text, HasSubstr("equation 5 of the paper (equation_5.ez_arcsec)    0.2             0.25                0.1\n"));
   EXPECT_THAT(text, HasSubstr("model.terms[].phase_deg                             -                -                  -\n")) << "the run finds it";

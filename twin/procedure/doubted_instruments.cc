@@ -120,7 +120,7 @@ void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& read
       if (!(jump > std::max(kAsBefore * std::sqrt(2.0) * claim.noise, kTimesScatter * scatter))) continue;
       throw DeviceFault(FaultKind::kImplausible, "instruments",
                         fmt::format("show {} by {:.4g} (SI) otherwise against the pass before at places up to that of reading {} than at those "
-                                    "from reading {} on: a zero, a mirror or the mounting jumped, in this pass or the one before; measure set-up "
+                                    "from reading {} on: a zero, a mirror or the mounting jumped, in this pass or the one before; measure mounting "
                                     "{} again",
                                     claim.column.name, jump, number[k - 1], number[k], reading.setup));
     }

@@ -86,6 +86,9 @@ std::vector<Forecast> ForecastsOf(const Autoregression& series) {
 }
 
 Autoregression InOne(const Autoregression& first, const Autoregression& second) {
+  // The same that was not all taken out at once: one, as slow as both together.
+  if (first.Order() == 1 && second.Order() == 1)
+    return {{1.0 - (1.0 - first.partial[0]) * (1.0 - second.partial[0])}};
   const std::vector<double> a = WeightsOf(first), b = WeightsOf(second);
   std::vector<double> weights(a.size() + b.size());
   for (std::size_t i = 0; i < a.size(); ++i) weights[i] += a[i];
@@ -97,8 +100,8 @@ Autoregression InOne(const Autoregression& first, const Autoregression& second) 
 }
 
 FittedAutoregression FitAutoregression(const Eigen::VectorXd& z, const std::vector<int>& before, int step) {
-  constexpr int kMostOrder = 8, kPairsAnOrder = 60;
-  constexpr double kMostCorrelated = 0.95, kWorthIt = 6.0;
+  constexpr int kMostOrder = 8, kPairsAnOrder = 400;  // of few readings, what has no name would look like noise
+  constexpr double kMostCorrelated = 0.95, kWorthIt = 6.0, kSwingsBack = -0.3;
   const Products neighbours = ProductsOf(z, before, 1, step);
   // Projection makes white residuals look anticorrelated: only a positive excess counts.
   const double rho =
@@ -110,6 +113,8 @@ FittedAutoregression FitAutoregression(const Eigen::VectorXd& z, const std::vect
   for (int apart = 1; apart <= most; ++apart)
     correlations.push_back(ProductsOf(z, before, apart, step).sum / neighbours.squares);
   const std::vector<double> partial = PartialOf(correlations);
+  // What goes on and on may be an error without a name; noise of a longer memory is that which swings back.
+  if (partial.size() < 2 || partial[1] > kSwingsBack) return best;
   for (std::size_t order = 2; order <= partial.size(); ++order) {
     const double log_bayes = LogBayesOf(partial, order, neighbours.pairs);
     if (log_bayes < best.log_bayes + kWorthIt) continue;

@@ -45,6 +45,7 @@ class Filters {
 
 std::vector<int> RowsBefore(const LinearRun& run, std::size_t most) {
   std::vector<int> before(static_cast<std::size_t>(run.Rows()));
+  if (most == 0) return before;
   for (int k = run.Channels(); k < run.Rows(); ++k) {
     if (!Follows(run.schedule, run.ReadingOf(k))) continue;
     const int so_far = before[static_cast<std::size_t>(k - run.Channels())];

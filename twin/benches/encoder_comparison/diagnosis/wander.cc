@@ -49,10 +49,12 @@ Walk WalkOf(const DiagnosisRun& result) {
 }
 
 /// What it is it has walked to, and it goes on: readings that remember some others alone do not.
-bool IsWalk(const Walk& walk) {
+/// @param noise  Of a reading, SI.
+bool IsWalk(const Walk& walk, double noise) {
   constexpr double kFurther = 2.5;  // over eight times the lag: 8 of a walk, 1.5 where readings are correlated by 0.9
   constexpr double kMost = 4.0;     // from one reading to the next
-  return walk.Change(2 * walk.lag) > kFurther * walk.Change(walk.lag / 4) && walk.Change(walk.lag) > kMost * walk.Change(1);
+  const double to_next = std::max(walk.Change(1), 2.0 * noise * noise);
+  return walk.Change(2 * walk.lag) > kFurther * walk.Change(walk.lag / 4) && walk.Change(walk.lag) > kMost * to_next;
 }
 
 /// How likely a walk of this kind would not show as much by chance. A wave comes back to where it was after some lags,
@@ -108,7 +110,7 @@ void TellWander(DiagnosisRun& result) {
   const LinearRun& run = result.run;
   if (run.Channels() != 1 || run.Rows() < kFewest) return;
   const Walk walk = WalkOf(result);
-  if (!IsWalk(walk)) return;
+  if (!IsWalk(walk, run.sigma.minCoeff())) return;
   Diagnosis& d = result.diagnosis;
   Eigen::VectorXd wander = walk.left;
   const double named = GiveToWander(result, walk, wander);
