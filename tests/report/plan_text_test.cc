@@ -18,6 +18,13 @@ PlannedRun OneResult() {
   return run;
 }
 
+/// Nothing is looked at where no cause would be found.
+PlannedEffects NoEffects() {
+  PlannedEffects none;
+  none.refused = "too few readings";
+  return none;
+}
+
 TEST(PlanText, HasTheUncertaintyOfTheRunItsMeanAndThatAfterTheProgrammeBesideEachOther) {
   PlannedRun run = OneResult();
   run.mean = run.outlook;
@@ -25,17 +32,15 @@ TEST(PlanText, HasTheUncertaintyOfTheRunItsMeanAndThatAfterTheProgrammeBesideEac
   run.mean_of = 9;
   PlannedProgramme programme;
   programme.gains = {{"equation_5.ez_arcsec", 0.5}};
-  PlannedEffects none;
-  none.refused = "no cause would be found";
-  const std::string text = PlanText({run}, none, {programme});
+  const std::string text = PlanText({run}, NoEffects(), {programme});
   EXPECT_THAT(text, HasSubstr("run 1  run 1, mean of 9  run 1 + programme\n"));
-  EXPECT_THAT(text, HasSubstr("equation 5 of the paper (equation_5.ez_arcsec)    0.2             0.25                0.1\n"));
-  EXPECT_THAT(text, HasSubstr("model.terms[].phase_deg                             -                -                  -\n")) << "the run finds it";
+  EXPECT_THAT(text, HasSubstr("equation 5 of the paper (equation_5.ez_arcsec)    0.2              0.25                0.1\n"));
+  EXPECT_THAT(text, HasSubstr("model.terms[].phase_deg                             -                 -                  -\n")) << "the run finds it";
   EXPECT_EQ(OutlookJson(run).at("results").at(0).at("mean_rms_u"), 0.25);
 }
 
 TEST(PlanText, HasTheRunAloneWhereNothingElseWasLookedAt) {
-  const std::string text = PlanText({OneResult()}, {}, {});
+  const std::string text = PlanText({OneResult()}, NoEffects(), {});
   EXPECT_THAT(text, Not(HasSubstr("mean")));
   EXPECT_THAT(text, Not(HasSubstr("programme")));
   EXPECT_THAT(OutlookText(OneResult().outlook), HasSubstr("equation 5 of the paper (equation_5.ez_arcsec)      36               0.2      0.4\n")) << "as check says it";

@@ -418,6 +418,7 @@ LargeCauses OrWithoutLoops(LargeCauses found, const std::vector<Reading>& readin
   constexpr double kNearly = 1.02;
   if (!HasLoop(found) || !found.first->encoder.context.Moves()) return found;
   options.excluded.insert(options.excluded.end(), kLoops.begin(), kLoops.end());
+  options.excluded.emplace_back("slip");  // an onset is no plainer than a reversal
   std::optional<LargeCauses> plain = Search(readings, scenario, options, follow, {}).Go({}, kNearly * found.left);
   return plain && IsBetterNamed(*plain, found) ? *std::move(plain) : std::move(found);
 }
