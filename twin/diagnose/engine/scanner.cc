@@ -226,7 +226,8 @@ Evidence Scanner::Scan(const Projected& data, const Deflation& deflation) const 
   out.log_bayes.resize(std::ssize(families_), data.rows.cols());
   out.explained.setZero(std::ssize(families_), data.rows.cols());
   out.grid_point.setZero(std::ssize(families_), data.rows.cols());
-  const Unwhitened runs(run_, noise_, data.rows);
+  const bool is_one = data.rows.cols() == 1;  // then all its products are known
+  const Unwhitened runs(run_, noise_, is_one ? Eigen::MatrixXd(run_.Rows(), 0) : data.rows);
   std::vector<Products> products = ProductsOf(data, deflation, runs);
   for (std::size_t b = 0; b < bundles_.size(); ++b)
     ScanBundle(bundles_[b], data, deflation, std::move(products[b]), out);
