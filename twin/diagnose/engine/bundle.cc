@@ -7,18 +7,33 @@ namespace twinbench::diagnose {
 namespace {
 
 /// Columns of a chunk, and values: of long runs there are fewer columns.
-constexpr int kChunkColumns = 128, kChunkValues = 1'000'000;
+constexpr int kChunkColumns = 128, kChunkValues = 200'000;
 
 int StepOf(const LinearRun& run, int columns) {
   const int most = std::clamp(kChunkValues / std::max(1, run.Rows()), 1, kChunkColumns);
   return std::max(1, most / std::max(1, columns));
 }
 
-/// A'A of few columns, too few for a matrix product by blocks to pay.
-Eigen::MatrixXd SmallGram(const Eigen::MatrixXd& A) {
-  constexpr Eigen::Index kFew = 8;
-  if (A.cols() > kFew) return A.transpose() * A;
-  return A.transpose().lazyProduct(A);
+/// Adds A'A of each grid point's `width` columns to its block of `grams`, where they begin at `offset`.
+void AddGrams(const RunsByRow& A, Eigen::Index width, Eigen::Index offset, std::vector<Eigen::MatrixXd>& grams) {
+  constexpr Eigen::Index kFew = 8;  // above it a matrix product by blocks pays
+  for (std::size_t g = 0; width > kFew && g < grams.size(); ++g) {
+    const auto own = A.middleCols(static_cast<Eigen::Index>(g) * width, width);
+    grams[g].block(offset, offset, width, width).noalias() += own.transpose() * own;
+  }
+  if (width > kFew) return;
+  for (Eigen::Index apart = 0; apart < width; ++apart) {
+    Eigen::RowVectorXd products = Eigen::RowVectorXd::Zero(A.cols() - apart);
+    for (Eigen::Index row = 0; row < A.rows(); ++row)
+      products.array() += A.row(row).head(products.size()).array() * A.row(row).tail(products.size()).array();
+    for (std::size_t g = 0; g < grams.size(); ++g) {
+      for (Eigen::Index i = offset, j = i + apart; j < offset + width; ++i, ++j) {
+        const double more = products[static_cast<Eigen::Index>(g) * width + i - offset];
+        grams[g](i, j) += more;
+        if (apart > 0) grams[g](j, i) += more;
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -61,17 +76,27 @@ void Bundle::SumUp(const LinearRun& run, const NoiseModel& noise, const Projecto
   }
 }
 
+/// Channel by channel: what shows on one of them is not written out as zeros on the others.
 void Bundle::WriteOut(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
                       Eigen::Index& kept_left) {
+  const Eigen::Index channels = family_.base ? family_.base->channels : 1, width = columns_ / channels;
   for (int chunk = 0; chunk * step_ < grid_; ++chunk) {
     Eigen::MatrixXd made = Make(chunk);
-    const Eigen::MatrixXd S = Whitened(run, noise, made);
-    const Eigen::MatrixXd H = projector.Absorbed(S);
-    for (Eigen::Index k = 0; k < S.cols() / columns_; ++k) {
-      const std::vector<Eigen::Index> of_point = ColumnsOf(k, S.cols());
-      const Eigen::MatrixXd s = S(Eigen::all, of_point), h = H(Eigen::all, of_point);
-      raw_.push_back(SmallGram(s));
-      gram_.push_back(raw_.back() - SmallGram(h));
+    const Eigen::Index points = made.cols() / width;
+    std::vector<Eigen::MatrixXd> raw(static_cast<std::size_t>(points), Eigen::MatrixXd::Zero(columns_, columns_));
+    std::vector<Eigen::MatrixXd> absorbed = raw;
+    RunsByRow gathered(projector.Jacobian().cols(), points * columns_);  // a grid point's channels side by side
+    for (Eigen::Index c = 0; c < channels; ++c) {
+      const RunsByRow white = noise.Whiten(run, made, {c, channels});
+      AddGrams(white, width, c * width, raw);
+      const RunsByRow of_channel = projector.Gathered(white, {c, channels});
+      for (Eigen::Index k = 0; k < points; ++k)
+        gathered.middleCols(k * columns_ + c * width, width) = of_channel.middleCols(k * width, width);
+    }
+    AddGrams(projector.AbsorbedOf(std::move(gathered)), columns_, 0, absorbed);
+    for (std::size_t k = 0; k < raw.size(); ++k) {
+      gram_.push_back(raw[k] - absorbed[k]);
+      raw_.push_back(std::move(raw[k]));
     }
     if (std::ssize(kept_) < chunk || made.size() > kept_left) continue;
     kept_left -= made.size();
@@ -80,26 +105,14 @@ void Bundle::WriteOut(const LinearRun& run, const NoiseModel& noise, const Proje
 }
 
 Eigen::MatrixXd Bundle::Make(int chunk) const {
-  const auto one = [this](int g) { return family_.base ? family_.base->series(g) : family_.columns(g); };
   const int first = chunk * step_, last = std::min(first + step_, grid_);
-  Eigen::MatrixXd all = one(first);
-  const Eigen::Index width = all.cols();
-  all.conservativeResize(Eigen::NoChange, width * (last - first));
-  for (int g = first + 1; g < last; ++g) all.middleCols(width * (g - first), width) = one(g);
-  return all;
-}
-
-std::vector<Eigen::Index> Bundle::ColumnsOf(Eigen::Index k, Eigen::Index all) const {
-  const Eigen::Index channels = family_.base ? family_.base->channels : 1, series = columns_ / channels;
-  std::vector<Eigen::Index> columns;
-  for (Eigen::Index c = 0; c < channels; ++c) {
-    for (Eigen::Index j = 0; j < series; ++j) columns.push_back(c * (all / channels) + k * series + j);
+  Eigen::MatrixXd all;
+  for (int g = first; g < last; ++g) {
+    const Eigen::MatrixXd one = family_.base ? family_.base->series(g) : family_.columns(g);
+    if (g == first) all.resize(one.rows(), one.cols() * (last - first));
+    all.middleCols(one.cols() * (g - first), one.cols()) = one;
   }
-  return columns;
-}
-
-Eigen::MatrixXd Bundle::Whitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& made) const {
-  return noise.Whiten(run, family_.base ? OnEachChannel(made, family_.base->channels) : made);
+  return all;
 }
 
 RunsByRow Bundle::Products(int chunk, const Unwhitened& Y) const {

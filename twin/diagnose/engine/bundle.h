@@ -54,10 +54,6 @@ class Bundle {
   void SumUp(const LinearRun& run, const NoiseModel& noise, const Projector& projector);
   void WriteOut(const LinearRun& run, const NoiseModel& noise, const Projector& projector, Eigen::Index& kept_left);
   Eigen::MatrixXd Make(int chunk) const;  // series, or signatures of a family of its own, not whitened
-  /// Signatures of a chunk; those of a base channel by channel, so that a row has its values side by side.
-  Eigen::MatrixXd Whitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& made) const;
-  /// Where those of its k-th grid point stand among `all`.
-  std::vector<Eigen::Index> ColumnsOf(Eigen::Index k, Eigen::Index all) const;
 
   const Family& family_;  // one of the members
   std::unique_ptr<const SeriesSums> sums_;

@@ -55,12 +55,22 @@ std::vector<int> RowsBefore(const LinearRun& run, std::size_t most) {
 }
 
 Eigen::MatrixXd NoiseModel::Whiten(const LinearRun& run, const Eigen::MatrixXd& rows) const {
-  const Eigen::MatrixXd scaled = sigma.cwiseInverse().asDiagonal() * rows;
+  if (memory.IsWhite()) return sigma.cwiseInverse().asDiagonal() * rows;
+  return Whiten(run, rows, RowsOf{});
+}
+
+RunsByRow NoiseModel::Whiten(const LinearRun& run, const Eigen::MatrixXd& rows, RowsOf which) const {
+  const auto sigma_of = sigma(Eigen::seqN(which.first, rows.rows(), which.stride));
+  RunsByRow scaled = sigma_of.cwiseInverse().asDiagonal() * rows;
   if (memory.IsWhite()) return scaled;
   const Filters filters(run, *this);
-  Eigen::MatrixXd white = Eigen::MatrixXd::Zero(rows.rows(), rows.cols());
-  for (Eigen::Index k = 0; k < rows.rows(); ++k)
-    filters.ForEach(k, [&](Eigen::Index at, double factor) { white.row(k) += factor * scaled.row(at); });
+  RunsByRow white = RunsByRow::Zero(rows.rows(), rows.cols());
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    filters.ForEach(which.first + i * which.stride, [&](Eigen::Index at, double factor) {
+      const Eigen::Index before = (at - which.first) / which.stride;
+      AddScaled(factor, scaled.row(before).data(), scaled.cols(), white.row(i).data());
+    });
+  }
   return white;
 }
 

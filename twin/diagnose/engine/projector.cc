@@ -20,12 +20,8 @@ bool IsDense(const Sparse& jacobian) {
          kDense * static_cast<double>(jacobian.rows()) * static_cast<double>(jacobian.cols());
 }
 
-/// J'J, dense: a few hundred unknowns.
+/// J'J of a few hundred unknowns.
 Eigen::MatrixXd Gram(const Sparse& jacobian) {
-  if (IsDense(jacobian)) {
-    const Eigen::MatrixXd dense = jacobian;
-    return dense.transpose() * dense;
-  }
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
   for (int k = 0; k < jacobian.rows(); ++k) {
     for (Sparse::InnerIterator a(jacobian, k); a; ++a) {
@@ -52,26 +48,6 @@ bool AreSeparate(const Eigen::MatrixXd& normal, int blocks, int size) {
   return true;
 }
 
-/// J' S, a row of S at a time. Most signatures are zero on most rows (other channels, before a step): what lies
-/// beside the first and last of a row that are not costs nothing here.
-Eigen::MatrixXd Gather(const Sparse& jacobian, const Eigen::MatrixXd& S) {
-  if (IsDense(jacobian)) return TransposedProduct(Eigen::MatrixXd(jacobian), S);
-  const RunsByRow by_row = S;
-  RunsByRow gathered = RunsByRow::Zero(jacobian.cols(), S.cols());
-  for (Eigen::Index row = 0; row < by_row.rows(); ++row) {
-    const double* const begin = by_row.row(row).data();
-    const double* const end = begin + by_row.cols();
-    const auto is_there = [](double value) { return value != 0.0; };
-    const double* const first = std::find_if(begin, end, is_there);
-    if (first == end) continue;
-    const double* const last =
-        std::find_if(std::make_reverse_iterator(end), std::make_reverse_iterator(first), is_there).base();
-    for (Sparse::InnerIterator j(jacobian, row); j; ++j)
-      AddScaled(j.value(), first, last - first, gathered.row(j.col()).data() + (first - begin));
-  }
-  return gathered;
-}
-
 Eigen::MatrixXd Factor(const Eigen::MatrixXd& positive) {
   const Eigen::LLT<Eigen::MatrixXd> llt(positive);
   Require(llt.info() == Eigen::Success, "the normal matrix of the free unknowns is not positive definite");
@@ -84,7 +60,8 @@ Projector::Projector(Sparse jacobian, const Nuisance& nuisance)
     : jacobian_(std::move(jacobian)), blocks_(nuisance.blocks), size_(nuisance.block_size) {
   Require(nuisance.prior_precision.size() == jacobian_.cols() && (nuisance.prior_precision.array() > 0.0).all(),
           "every free unknown needs a positive prior precision");
-  Eigen::MatrixXd normal = Gram(jacobian_);
+  if (IsDense(jacobian_)) dense_ = jacobian_;
+  Eigen::MatrixXd normal = dense_.size() > 0 ? dense_.transpose() * dense_ : Gram(jacobian_);
   const Eigen::VectorXd precision = PrecisionOf(normal, nuisance.prior_precision);
   normal.diagonal() += precision;
   if (!AreSeparate(normal, blocks_, size_)) blocks_ = 0;
@@ -126,8 +103,27 @@ Eigen::MatrixXd Projector::Backward(Eigen::MatrixXd h) const {
   return h;
 }
 
+/// A row of S at a time. Many signatures are zero on many rows (before a step, on other channels): what lies beside the
+/// first and last of a row that are not costs nothing here.
+RunsByRow Projector::Gathered(const RunsByRow& S, RowsOf which) const {
+  if (dense_.size() > 0) return TransposedProduct(dense_(Eigen::seqN(which.first, S.rows(), which.stride), Eigen::all), S);
+  RunsByRow gathered = RunsByRow::Zero(jacobian_.cols(), S.cols());
+  for (Eigen::Index row = 0; row < S.rows(); ++row) {
+    const double* const begin = S.row(row).data();
+    const double* const end = begin + S.cols();
+    const auto is_there = [](double value) { return value != 0.0; };
+    const double* const first = std::find_if(begin, end, is_there);
+    if (first == end) continue;
+    const double* const last =
+        std::find_if(std::make_reverse_iterator(end), std::make_reverse_iterator(first), is_there).base();
+    for (Sparse::InnerIterator j(jacobian_, which.first + row * which.stride); j; ++j)
+      AddScaled(j.value(), first, last - first, gathered.row(j.col()).data() + (first - begin));
+  }
+  return gathered;
+}
+
 Eigen::MatrixXd Projector::Absorbed(const Eigen::MatrixXd& S) const {
-  return Forward(Gather(jacobian_, S));
+  return Forward(Gathered(S, RowsOf{}));
 }
 
 Eigen::MatrixXd Projector::Solve(const Eigen::MatrixXd& Y) const {

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "twin/diagnose/engine/linear_run.h"
+#include "twin/diagnose/engine/noise_model.h"
+#include "twin/diagnose/engine/scan_kernels.h"
 
 namespace twinbench::diagnose {
 
@@ -30,6 +32,9 @@ class Projector {
   /// The same from J'S.
   Eigen::MatrixXd AbsorbedOf(Eigen::MatrixXd gathered) const { return Forward(std::move(gathered)); }
 
+  /// J'S of an S that is zero but in some rows, which are all that it has here: unknowns x columns of S.
+  RunsByRow Gathered(const RunsByRow& S, RowsOf which) const;
+
   /// Most probable unknowns, (J'J + D)^-1 J' y.
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& Y) const;
 
@@ -49,6 +54,7 @@ class Projector {
   Eigen::MatrixXd Backward(Eigen::MatrixXd h) const;  // L^-T h
 
   Eigen::SparseMatrix<double, Eigen::RowMajor> jacobian_;
+  Eigen::MatrixXd dense_;  // the same where sparse arithmetic would only get in the way; otherwise empty
   int blocks_, size_;
   std::vector<Eigen::MatrixXd> local_;  // Cholesky factors of the blocks
   Eigen::MatrixXd coupling_;            // core x local: B_i L_i^-T side by side
