@@ -57,9 +57,11 @@ TEST(CircularDiagnosis, NamesWhatTheTwinWasGivenAndRaisesNoAlarmWithoutACause) {
   EXPECT_EQ(NameOfHidden("ball_form", "", "cosine", 0.2 * um), "ball_form");
 }
 
+/// Of two small circles, which are soon driven.
 Scenario BelievedBodies() {
   return ParseScenario("bench = \"circular_motion\"\nseed = 7\n[mechanics]\nfidelity = \"bullet\"", "believed", ".",
                        {"circular_procedure.points=72", "circular_procedure.stops=18", "drives.play_x_um=1.0",
+                        "circular_procedure.setups=[{ instrument = \"bar\", radius_mm = 60.0 }, { instrument = \"grid\", radius_mm = 60.0 }]",
                         "circular_procedure.feeds_mm_min=[1000.0]"});
 }
 
@@ -67,7 +69,7 @@ TEST(CircularDiagnosis, TellsWhatBodiesDoFromWhatElseIsWrong) {
   const Scenario believed = BelievedBodies();
   EXPECT_EQ(NameOf(believed, believed), "none");
   Scenario squint = believed;
-  CircularOf(squint).machine.squareness_rad = 0.5 * units::arcsec;
+  CircularOf(squint).machine.squareness_rad = 1.0 * units::arcsec;
   EXPECT_EQ(NameOf(squint, believed), "squareness");
   Scenario late = believed;  // a gain is lag and spike at once, no single cause of the catalogue
   CircularOf(late).drives.position_gain_1_s[0] = 47.0;
@@ -90,7 +92,7 @@ TEST(DiagnosisByTwin, NeedsNeitherFreeConstantsNorAngles) {
     return Eigen::Vector2d(shown.radial_m, shown.tangential_m);
   };
   diagnose::DiagnoseOptions options;
-  options.null_runs = 200;
+  options.null_runs = 100;
   const std::vector<Reading> readings = WithAngles(test::CircleReadings(scenario));
   EXPECT_EQ(NameOf(diagnose::DiagnoseByTwin(readings, scenario, options, comparison).diagnosis), "none");
 }

@@ -52,7 +52,8 @@ TEST(PaperOfTheBar, RepeatsWithinAMicrometreAt156Millimetres) {
 }
 
 TEST(PaperOfTheBar, AgreesWithTheGridWhereEveryUnknownIsFittedAndNotAsPublished) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+  const auto seeds = static_cast<std::uint64_t>(test::ByNight(10, 4));
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const Scenario scenario =
         Instrument(seed, {"circular_procedure.points=36", "encoder.eccentricity_arcsec=5.0", "bar.ball3_um=0.1"});
     const std::vector<Reading> readings = test::CircleReadings(scenario);
