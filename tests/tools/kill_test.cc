@@ -15,9 +15,9 @@ class KilledRun : public ProgramHere {
   KilledRun() {
     static duration<double> lasts{};
     BeginWith("kill", [this] {
-      // 2 * 13 + 2 * 13 + 4 * 36 * 40 = 5812 readings, one transaction each; so few positions are soon separated.
+      // 2 * 13 + 2 * 13 + 4 * 36 * 16 = 2356 readings, one transaction each; so few positions are soon separated.
       std::string passes = "1";
-      for (int k = 1; k < 40; ++k) passes += k % 2 == 1 ? ", -1" : ", 1";
+      for (int k = 1; k < 16; ++k) passes += k % 2 == 1 ? ", -1" : ", 1";
       Write("long.toml", "bench = \"rotary_4dof\"\n[mechanics]\nfidelity = \"kinematic\"\n[procedure]\npositions = 36\npasses = [" +
                              passes + "]\n");
       const auto start = steady_clock::now();
