@@ -5,7 +5,7 @@
 namespace twinbench::freeform_test {
 namespace {
 
-constexpr const char* kShorter = "[freeform_procedure]\nposes = 60\n";  // for the time it takes
+constexpr const char* kShorter = "[freeform_procedure]\nposes = 45\n";  // for the time it takes
 
 diagnose::Diagnosis DiagnosisWith(const std::string& hidden) {
   return DiagnosisOf(RunOf(FreeformScenario(kShorter + hidden)), FreeformScenario(kShorter));

@@ -41,7 +41,7 @@ TEST(FreeformOptics, AnArrayThatIsHigherAllOverIsAMountingThatIsHigher) {
 TEST(FreeformOptics, AFormErrorThatTheScenarioHasIsNoSurprise) {
   const std::string path =
       WriteHeights("wave.exr", [](double x_m, double y_m) { return std::sin(60.0 * x_m) * std::cos(40.0 * y_m); });
-  const std::string more = "[artefact]\nform_error = \"" + path + "\"\n[freeform_procedure]\nposes = 50\n";
+  const std::string more = "[artefact]\nform_error = \"" + path + "\"\n[freeform_procedure]\nposes = 45\n";
   const Scenario scenario = FreeformScenario(more);
   EXPECT_EQ(DiagnosisOf(RunOf(scenario), scenario).verdict, diagnose::Verdict::kNone);
 }
