@@ -124,7 +124,7 @@ TEST(HobDriveOrders, RefusesMoreFromFewSamples) {
 }
 
 TEST(HobDriveOrders, AreLeftWithWhatWasPredictedOverManySeeds) {
-  ExpectLeftWithWhatWasPredicted(DriveOrders(), test::ByNight(8, 2));
+  ExpectLeftWithWhatWasPredicted(DriveOrders(), test::ByNight(8, 1));
 }
 
 /// The gearbox takes back what the gears err; the ring's error is not the machine's and stays.
@@ -182,7 +182,7 @@ TEST(CommandedCompensation, IsFollowedByTheTwinOfARecord) {
 }
 
 TEST(CommandedCompensation, IsFollowedByTheTwinOfARecordOfTheHobbingMachine) {
-  Scenario scenario = DriveOrders({"noise_free=true", "transmission.harmonics=[]"});
+  Scenario scenario = DriveOrders({"noise_free=true", "transmission.harmonics=[]", "hob_procedure.samples_per_turn=120"});
   HobOf(scenario).transmission.compensation = kThirds;
   std::vector<double> shown;
   for (const Reading& r : test::ReadingsOf(scenario))
