@@ -15,7 +15,7 @@ using testing::AllOf, testing::HasSubstr;
 
 const std::string kMpirun = TWINBENCH_MPIRUN;
 
-constexpr const char* kVaried = R"(trials = 40
+constexpr const char* kVaried = R"(trials = 20
 sampling = "latin_hypercube"
 [[vary]]
 key = "device.noise_deg"
@@ -73,8 +73,8 @@ TEST_F(CampaignProgram, MakesTheSameTableOnAnyNumberOfThreads) {
   MakeTable("two.sqlite", {"--threads", "2"});
   MakeTable("five.sqlite", {"--threads", "5"});
   const std::string one = Dump("one.sqlite");
-  EXPECT_EQ(Ask("one.sqlite", "SELECT count(*) FROM trials WHERE failure = ''"), "40");
-  EXPECT_GT(std::stoi(Ask("one.sqlite", "SELECT count(error) FROM results")), 40);
+  EXPECT_EQ(Ask("one.sqlite", "SELECT count(*) FROM trials WHERE failure = ''"), "20");
+  EXPECT_GT(std::stoi(Ask("one.sqlite", "SELECT count(error) FROM results")), 20);
   EXPECT_EQ(one, Dump("two.sqlite"));
   EXPECT_EQ(one, Dump("five.sqlite"));
 }
@@ -99,7 +99,7 @@ TEST_F(CampaignProgram, SaysOnceWhatIsWrongToAllRanks) {
 }
 
 TEST_F(CampaignProgram, GoesOnAfterAKillAsIfNothingHadHappened) {
-  Write("study.toml", campaign::StudyOf("trials = 100\n"));
+  Write("study.toml", campaign::StudyOf("trials = 60\n"));
   MakeTable("undisturbed.sqlite", {"--threads", "2"});
   int cut_short = 0;
   for (const int tenths : {1, 4, 2}) {
@@ -113,7 +113,7 @@ TEST_F(CampaignProgram, GoesOnAfterAKillAsIfNothingHadHappened) {
   EXPECT_GE(cut_short, 2) << "the kills came too late to show anything";
   const int kept = std::stoi(Ask("killed.sqlite", "SELECT count(*) FROM trials"));
   EXPECT_GT(kept, 10);
-  EXPECT_LT(kept, 100);
+  EXPECT_LT(kept, 60);
   MakeTable("killed.sqlite", {"--resume"});
   EXPECT_EQ(Dump("undisturbed.sqlite"), Dump("killed.sqlite"));
 }
@@ -122,7 +122,7 @@ TEST_F(CampaignProgram, DoesNotOverwriteATableOrGoOnWithAnotherStudy) {
   MakeTable("t.sqlite", {});
   const std::string before = Dump("t.sqlite");
   EXPECT_THAT(Call({"campaign", "study.toml", "-o", "t.sqlite"}).err, HasSubstr("--resume"));
-  Write("study.toml", campaign::StudyOf("trials = 41\n"));
+  Write("study.toml", campaign::StudyOf("trials = 21\n"));
   const Outcome other = Call({"campaign", "study.toml", "-o", "t.sqlite", "--resume"});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.err, HasSubstr("another study"));
@@ -177,7 +177,7 @@ values = ['[]', '[{name = "eccentricity"}]']
 TEST_F(CampaignProgram, WritesALineATrial) {
   MakeTable("t.sqlite", {"--csv", "t.csv"});
   const std::string csv = Read("t.csv");
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 41);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 21);
   EXPECT_THAT(csv, testing::StartsWith("trial,seed,failure,verdict,device.noise_deg,"));
   EXPECT_THAT(csv, AllOf(HasSubstr("device.ez_arcsec[3],u(device.ez_arcsec[3])"),
                          HasSubstr("error(score.device.ez_arcsec[3])")));
