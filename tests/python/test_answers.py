@@ -69,7 +69,7 @@ class BesideTheCommandLine(unittest.TestCase):
         self.assertEqual(plain(dict(drawn)), self.json_of("uncertainty", self.folder / "run", "--monte-carlo", "--trials", "1000", "--seed", "3"))
 
     def test_a_budget_of_sources(self):
-        scenario = tb.Scenario(SCENARIOS / "stability.toml", {"procedure.stability_s": 60.0, "adc.samples": 1000})
+        scenario = tb.Scenario(SCENARIOS / "stability.toml", {"procedure.stability_s": 60.0, "adc.samples": 100})
         pathlib.Path(self.folder, "stability.toml").write_text(scenario.toml())
         shares = tb.budget(scenario, of="stability.range")
         self.assertEqual(plain(dict(shares)), self.json_of("budget", self.folder / "stability.toml", "--of", "stability.range"))

@@ -26,12 +26,12 @@ needs_pages = unittest.skipUnless(os.environ["TWINBENCH_HAS_REPORT"] == "ON", "b
 
 # A small run of every bench.
 SMALL = {
-    "rotary_4dof": {"procedure.positions": 12},
+    "rotary_4dof": {"procedure.positions": 12, "procedure.shifts": [0, 1, 5], "procedure.passes": [1, -1]},
     "turntable_autocollimator": {"turntable_procedure.positions": 12},
     "encoder_comparison": {"encoder_procedure.turns": 1},
     "hob_transmission": {"hob_procedure.samples_per_turn": 90, "mechanics.fidelity": "kinematic"},
-    "circular_motion": {},
-    "freeform_five_axis": {"freeform_procedure.poses": 60},
+    "circular_motion": {"circular_procedure.points": 72, "circular_procedure.stops": 18},
+    "freeform_five_axis": {"freeform_procedure.poses": 45},
 }
 
 
@@ -74,7 +74,6 @@ class SameAsTheCommandLine(unittest.TestCase):
             self.assertEqual(plain(dict(found)), theirs)
             self.assertEqual(found["causes"][0]["effect"], "periodic")
             self.assertIn("periodic", found.extended.toml())
-
 
     def test_a_plan_to_the_bit(self):
         with tempfile.TemporaryDirectory() as folder:
