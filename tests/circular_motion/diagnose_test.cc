@@ -21,7 +21,7 @@ Scenario Believed() {
 
 diagnose::Diagnosis DiagnosisOf(const std::vector<Reading>& readings, const Scenario& believed) {
   diagnose::DiagnoseOptions options;
-  options.null_runs = 200;  // enough for a threshold
+  options.null_runs = 100;  // enough for a threshold
   options.cache_folder = test::ThresholdsFolder();
   return Diagnose(readings, believed, options).diagnosis;
 }

@@ -181,7 +181,7 @@ TEST(CircularDeviations, OfTheMinimumZoneAreThoseOfTheBestCentreOfAll) {
 
 TEST(RadialBar, IsDiagnosedByItsRadiusAlone) {
   diagnose::DiagnoseOptions options;
-  options.null_runs = 200;
+  options.null_runs = 100;
   options.cache_folder = test::ThresholdsFolder();
   const double noise_m = StatedNoiseOf(CircularOf(Usual()), true, kRadius_m).radial_m;
   const diagnose::DiagnosisRun of_none = Diagnose(Readings({}, noise_m), Usual(), options);
