@@ -44,20 +44,29 @@ def command(*arguments: str) -> str:
 
 
 class SameAsTheCommandLine(unittest.TestCase):
-    def test_every_bench_to_the_bit(self):
+    def test_every_bench_to_the_bit_and_a_saved_run_is_the_folder_of_the_command(self):
         for bench, changes in SMALL.items():
             with self.subTest(bench), tempfile.TemporaryDirectory() as folder:
                 sets = [part for key, value in changes.items() for part in ("--set", f"{key}={toml(value)}")]
-                command("run", SCENARIOS / f"{bench}.toml", "-o", f"{folder}/run", *sets)
-                command("export", f"{folder}/run", "--readings", f"{folder}/readings.csv")
-                run = tb.run(small(bench))
+                command("run", SCENARIOS / f"{bench}.toml", "-o", f"{folder}/theirs", *sets)
+                command("export", f"{folder}/theirs", "--readings", f"{folder}/readings.csv")
+                run = tb.run(small(bench)).save(f"{folder}/own")
                 run.readings.to_csv(f"{folder}/own.csv")
-                own, theirs = (pathlib.Path(folder, name).read_text().splitlines() for name in ("own.csv", "readings.csv"))
-                self.assertEqual(own, [line for line in theirs if not line.startswith("#")])
-                results = json.loads(pathlib.Path(folder, "run/results.json").read_text())
-                self.assertEqual(plain(run.results), results)
-                again = tb.load(f"{folder}/run")
-                self.assertEqual(again.scenario.toml(), run.scenario.toml())
+                csv, exported = (pathlib.Path(folder, name).read_text().splitlines() for name in ("own.csv", "readings.csv"))
+                self.assertEqual(csv, [line for line in exported if not line.startswith("#")])
+                own, theirs = pathlib.Path(folder, "own"), pathlib.Path(folder, "theirs")
+                self.assertEqual(plain(run.results), json.loads((theirs / "results.json").read_text()))
+                names = sorted(path.name for path in theirs.iterdir())
+                self.assertEqual(sorted(path.name for path in own.iterdir()), names)
+                for name in names:
+                    if not name.startswith("record.sqlite"):
+                        self.assertEqual((own / name).read_bytes(), (theirs / name).read_bytes(), name)
+                self.assertEqual(tb.load(theirs).scenario.toml(), run.scenario.toml())
+                again = tb.Run.open(own)
+                self.assertEqual(again.readings._core.csv_text(), run.readings._core.csv_text())
+                self.assertEqual((plain(again.truth), again.readings_from), (plain(run.truth), "twin"))
+                with self.assertRaises(tb.InputError):
+                    run.save(own)
 
     def test_a_diagnosis_to_the_bit(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -78,7 +87,7 @@ class SameAsTheCommandLine(unittest.TestCase):
     def test_a_plan_to_the_bit(self):
         with tempfile.TemporaryDirectory() as folder:
             scenario = small("encoder_comparison").changed({
-                "encoder_procedure.kind": "sweep", "encoder_procedure.interval_s": 2.0, "encoder_procedure.speeds_deg_s": [36.0]})
+                "encoder_procedure.kind": "sweep", "encoder_procedure.interval_s": 4.0, "encoder_procedure.speeds_deg_s": [36.0]})
             pathlib.Path(folder, "scenario.toml").write_text(scenario.toml())
             command("plan", f"{folder}/scenario.toml", "--minutes", "60", "--cpu", "0", "--json", f"{folder}/plan.json", "-o", f"{folder}/next.toml")
             made = tb.plan(scenario, minutes=60)
