@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
+#include <utility>
 
 #include "tests/diagnose/encoder_record.h"
 #include "twin/core/reading_clock.h"
@@ -121,6 +124,34 @@ TEST(EncoderDominant, ALatencyAndTheOrdersBesideItHaveTheirSizes) {
   EXPECT_TRUE(answer.Names("latency")) << answer.Words();
   EXPECT_NEAR(answer.Value("latency", "delay"), late_s, 0.02 * late_s) << answer.Words();
   for (const Wave& wave : waves) EXPECT_NEAR(SizeOfOrder(answer, wave.order), wave.size_deg, 0.05 * wave.size_deg) << answer.Words();
+}
+
+/// A servo that follows what was commanded a while ago, at `most_deg_s` at the fastest, in steps of a tenth of a reading's.
+Answer FollowedWithin(double most_deg_s, double late_s, unsigned seed) {
+  const Swing swing{120.0, 3.0};
+  const double step_s = 0.002;
+  double at_deg = 0.0, at_s = 0.0;
+  return Ask(Swung(swing, 0.0, 15.0, 10.0 * step_s, 0.02, seed, [&](double t_s) {
+    for (; at_s < t_s - 0.5 * step_s; at_s += step_s) {
+      const double way_deg = swing.At(std::max(0.0, at_s + step_s - late_s)) - at_deg;
+      at_deg += std::clamp(way_deg, -most_deg_s * step_s, most_deg_s * step_s);
+    }
+    return at_deg;
+  }));
+}
+
+TEST(EncoderDominant, AServoThatIsCommandedFasterThanItCanGoHasASpeedLimit) {
+  for (const auto& [most_deg_s, words] : {std::pair{80.0, "speed limit of 80"}, std::pair{95.0, "speed limit of 95"}}) {
+    const Answer answer = FollowedWithin(most_deg_s, 0.06, 10);
+    SCOPED_TRACE(answer.Words());
+    EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kUnknown);
+    EXPECT_EQ(answer.run.diagnosis.unknown.signature.rfind(words, 0), 0U);
+    EXPECT_TRUE(answer.run.diagnosis.causes.empty()) << "the rest is no news";
+    EXPECT_EQ(answer.again.unknown.signature.find("speed limit"), std::string::npos) << "the file that was written has it";
+  }
+  const Answer fast = FollowedWithin(1000.0, 0.06, 10);
+  EXPECT_TRUE(fast.Names("latency")) << fast.Words();
+  EXPECT_NEAR(fast.Value("latency", "delay"), 0.06, 0.001) << fast.Words();
 }
 
 TEST(EncoderDominant, OnePlacePushedFromBothSidesShowsThePlay) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "twin/benches/encoder_comparison/axis_unit.h"
 #include "twin/benches/encoder_comparison/bench.h"
@@ -6,6 +7,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/equal_steps.h"
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
+#include "twin/benches/encoder_comparison/diagnosis/speed_limit.h"
 #include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
 #include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/benches/encoder_comparison/estimators/coast_passes.h"
@@ -42,7 +44,10 @@ void TellNextMeasurements(std::vector<diagnose::Cause>& causes) {
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  const std::vector<Reading> readings = AnglesOf(recorded);
+  std::vector<Reading> readings = AnglesOf(recorded);
+  std::optional<diagnose::encoder::SpeedLimit> limit;
+  if (!options.design_only) limit = diagnose::encoder::SpeedLimitOf(readings, scenario, FollowRecord);
+  if (limit) readings = limit->allowed;
   const diagnose::encoder::LargeCauses large =
       diagnose::encoder::FindLargeCauses(readings, scenario, options, FollowRecord);
   const diagnose::encoder::Searched& searched = large.Last();
@@ -55,7 +60,8 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
   diagnose::encoder::AddErrorsOfTargets(large, result);
   diagnose::encoder::TellEqualSteps(result);
   diagnose::encoder::TellWander(result);
-  result.diagnosis.left_out = searched.encoder.left_out;
+  if (limit) diagnose::encoder::TellSpeedLimit(*limit, result);
+  result.diagnosis.left_out = (limit ? limit->asked : searched.encoder).left_out;
   result.diagnosis.harmonics =
       diagnose::encoder::HarmonicTable(large.first->encoder, {searched.encoder.run.sigma, {}});
   const DeviceSettings& device = EncoderOf(scenario).device;
