@@ -27,6 +27,11 @@ Eigen::MatrixXd Gradual(const Family& family, int g, int width) {
   return sum / (last - first + 1);
 }
 
+/// Where the shape says how large it is, it is not a wave of another size that happens to be like it.
+bool IsOfItsStrength(const Amplitude& amplitude, double fitted) {
+  return amplitude.name != "strength" || (fitted > amplitude.lower && fitted < amplitude.upper);
+}
+
 }  // namespace
 
 bool IsInside(const Family& family, const Eigen::VectorXd& shape) {
@@ -42,6 +47,7 @@ bool IsInside(const Family& family, const Eigen::VectorXd& shape) {
 bool IsThere(const Family& family, const Term& term, const Beside& beside) {
   if (family.kind != Kind::kNamed || !family.at || family.amplitudes.size() != 1) return true;
   const Explained alone = ExplainedBy(term.columns, beside);
+  if (!IsOfItsStrength(family.amplitudes.front(), alone.amplitudes[0])) return false;
   const Eigen::MatrixXd all = WithShapeSlopes(family, term.shape, term.columns, alone.amplitudes);
   const double with = ExplainedBy(all, beside).power, without = ExplainedBy(all.rightCols(term.shape.size()), beside).power;
   return with - without > Chance(beside.data.power[0] - with, beside);

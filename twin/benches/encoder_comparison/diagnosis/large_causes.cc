@@ -247,37 +247,69 @@ class Search {
   }
 
   /// A wave of an order that a large cause has is what that lacks beside the others that the last search found; what is
-  /// less than a device is as exact as its formula is no cause.
+  /// less than a device is as exact as its formula is no cause, nor is what the memory of the rest makes by chance.
   void LeaveToLarge() {
     if (!large_.last) return;
-    double explained = 0.0;
-    for (const LargeCause& cause : large_.causes) explained += cause.explained;
+    const Eigen::VectorXd left = Left();
     const auto is_of_large = [this](const Term& term) {
       const Family& family = large_.last->families[static_cast<std::size_t>(term.family)];
       return std::ranges::any_of(large_.causes, [&](const LargeCause& cause) {
         return cause.effect.name == family.effect && term.shape.size() == 1 && WaveOrderOf(cause.effect) == term.shape[0];
       });
     };
-    std::erase_if(large_.last->analysis.found.terms,
-                  [&](const Term& term) { return term.explained < kAsExact * explained || is_of_large(term); });
+    std::erase_if(large_.last->analysis.found.terms, [&](const Term& term) {
+      return term.explained < LeastExplained() || is_of_large(term) || IsChance(term, left);
+    });
   }
 
-  /// What stood for something that was found later is not kept, nor what the memory of the rest makes by chance.
+  /// What all large causes explain together is exact to this.
+  double LeastExplained() const {
+    double explained = 0.0;
+    for (const LargeCause& cause : large_.causes) explained += cause.explained;
+    return kAsExact * explained;
+  }
+
+  /// What neither the large causes nor the others explain, whitened.
+  Eigen::VectorXd Left() const {
+    return large_.causes.empty() ? fit_->WhiteOf(Beside()) : fit_->WhiteOf(fit_->Ask(large_.causes, Beside()).left);
+  }
+
+  bool IsChance(const Term& term, const Eigen::VectorXd& left) const {
+    const Eigen::VectorXd own = fit_->WhiteOf(term.columns * term.amplitudes);
+    const double noise = left.squaredNorm() / static_cast<double>(left.size());
+    return own.squaredNorm() < std::pow(tuning::kHeadline, 2) * noise * MemoryAlong(own, left);
+  }
+
+  /// What stood for something that was found later is not kept, nor what the memory of the rest makes by chance: the
+  /// weakest first, for what it kept from being found may be what made others look weak.
   void DropNeedless() {
-    if (large_.causes.empty()) return;
+    while (!large_.causes.empty()) {
+      const std::vector<double> strength = Strengths();
+      const auto weakest = std::ranges::min_element(strength);
+      if (*weakest > tuning::kHeadline) return;
+      std::vector<LargeCause> kept = large_.causes;
+      kept.erase(kept.begin() + (weakest - strength.begin()));
+      if (kept.empty()) return SearchPlain();
+      const AskedAgain asked = fit_->Ask(kept);
+      Accept(asked, std::move(kept), kMostCauses);
+      LeaveToLarge();
+    }
+  }
+
+  /// Of each large cause, how many of its uncertainties it is away from nothing, with the memory of the rest; 0 of what
+  /// is less than the others are as exact as their formula.
+  std::vector<double> Strengths() const {
     const AskedAgain beside = fit_->Ask(large_.causes, Beside());
     const Eigen::VectorXd left = fit_->WhiteOf(beside.left);
     const double memory = fit_->Memory(beside.left);
-    std::vector<LargeCause> kept;
+    std::vector<double> strengths;
     for (std::size_t k = 0; k < large_.causes.size(); ++k) {
-      const Eigen::VectorXd own = fit_->Shown(beside.effects) - fit_->Shown(EffectsWithout(k, beside.effects));
-      const double most = std::max(memory, MemoryAlong(fit_->WhiteOf(own), left));
-      if (Deviations(large_.causes[k].effect) > tuning::kHeadline * std::sqrt(most)) kept.push_back(large_.causes[k]);
+      const Eigen::VectorXd own =
+          fit_->WhiteOf(fit_->Shown(beside.effects) - fit_->Shown(EffectsWithout(k, beside.effects)));
+      const double most = std::max(memory, MemoryAlong(own, left));
+      strengths.push_back(own.squaredNorm() > LeastExplained() ? Deviations(large_.causes[k].effect) / std::sqrt(most) : 0.0);
     }
-    if (kept.size() == large_.causes.size()) return;
-    if (kept.empty()) return SearchPlain();
-    const AskedAgain asked = fit_->Ask(kept);
-    Accept(asked, std::move(kept), kMostCauses);
+    return strengths;
   }
 
   /// Nothing of it was there: for all at once, as if nothing had been large.
@@ -385,10 +417,14 @@ class Search {
 /// What stays behind on a reversal, with a course of its own behind it.
 constexpr std::array kLoops = {"backlash", "hysteresis"};
 
+/// Large or not.
 bool HasLoop(const LargeCauses& large) {
-  return std::ranges::any_of(large.causes, [](const LargeCause& cause) {
-    return std::ranges::count(kLoops, cause.effect.name) > 0;
-  });
+  const auto is_loop = [](const std::string& effect) { return std::ranges::count(kLoops, effect) > 0; };
+  const Searched& last = large.Last();
+  return std::ranges::any_of(large.causes, [&](const LargeCause& cause) { return is_loop(cause.effect.name); }) ||
+         std::ranges::any_of(last.analysis.found.terms, [&](const Term& term) {
+           return is_loop(last.families[static_cast<std::size_t>(term.family)].effect);
+         });
 }
 
 /// Free numbers of all that has a name.
