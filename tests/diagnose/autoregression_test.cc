@@ -14,7 +14,7 @@ namespace {
 using test::NoisyRing;
 
 /// x_k = a x_(k-1) + b x_(k-2) + e_k, from its second thousand on.
-Eigen::VectorXd Series(double a, double b, int count, std::uint64_t seed) {
+Eigen::VectorXd DrawnSeries(double a, double b, int count, std::uint64_t seed) {
   constexpr int kRunIn = 1000;
   Stream stream(seed, "autoregression");
   Eigen::VectorXd x = Eigen::VectorXd::Zero(kRunIn + count);
@@ -31,7 +31,7 @@ std::vector<int> InOnePass(int count) {
 
 TEST(Autoregression, PredictsByTheWeightsThatASeriesWasMadeWith) {
   // A resonance: neighbours are alike, those three apart are opposite.
-  const FittedAutoregression fitted = FitAutoregression(Series(1.2, -0.6, 3000, 1), InOnePass(3000), 1);
+  const FittedAutoregression fitted = FitAutoregression(DrawnSeries(1.2, -0.6, 3000, 1), InOnePass(3000), 1);
   ASSERT_EQ(fitted.series.Order(), 2u);
   const Forecast forecast = ForecastsOf(fitted.series).back();
   EXPECT_NEAR(forecast.weights[0], 1.2, 0.05);
@@ -43,12 +43,12 @@ TEST(Autoregression, PredictsByTheWeightsThatASeriesWasMadeWith) {
 TEST(Autoregression, RemembersNoMoreThanItsNeighbourWhereThatIsAll) {
   int longer = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed)
-    longer += FitAutoregression(Series(0.5, 0.0, 900, seed), InOnePass(900), 1).series.Order() > 1;
+    longer += FitAutoregression(DrawnSeries(0.5, 0.0, 900, seed), InOnePass(900), 1).series.Order() > 1;
   EXPECT_LE(longer, 1);
 }
 
 TEST(Autoregression, OfShortSeriesItAsksForNeighboursOnly) {
-  EXPECT_EQ(FitAutoregression(Series(1.2, -0.6, 100, 3), InOnePass(100), 1).series.Order(), 1u);
+  EXPECT_EQ(FitAutoregression(DrawnSeries(1.2, -0.6, 100, 3), InOnePass(100), 1).series.Order(), 1u);
 }
 
 TEST(Autoregression, WhatIsTakenOutOneAfterTheOtherIsAProductOfPolynomials) {

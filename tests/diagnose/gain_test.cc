@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "tests/diagnose/ring_run.h"
-#include "twin/benches/rotary_4dof/diagnosis/change_of_tables.h"
-#include "twin/benches/rotary_4dof/estimators/design.h"
+#include "tests/support/twin_run.h"
+#include "twin/benches/rotary_4dof/bench.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/linear_algebra.h"
 #include "twin/diagnose/accepted_columns.h"
 #include "twin/diagnose/folds.h"
@@ -192,11 +194,9 @@ TEST(MeasureGain, SaysThatTheFloorIsTheNoiseAndThePrediction) {
 TEST(ChangeOfTables, IsTheMoveOfEachSeries) {
   // A cause that looks like 2 um on the target's dy and 1 arcsec on the reference's ez and is fitted away again.
   constexpr int kPositions = 3;
-  separate::Design design;
-  design.n = kPositions;
   LinearRun run;
   run.channels = {"c"};
-  const int unknowns = separate::kSeries * kPositions;
+  const int unknowns = 9 * kPositions;  // of the target position by position, then of the reference point by point
   // Each unknown is read twice, once with the cause on it.
   run.schedule.reading.resize(static_cast<std::size_t>(2 * unknowns));
   run.nuisance.jacobian.resize(2 * unknowns, unknowns);
@@ -206,19 +206,27 @@ TEST(ChangeOfTables, IsTheMoveOfEachSeries) {
   for (int k = 0; k < unknowns; ++k) {
     for (const int row : {k, unknowns + k}) run.nuisance.jacobian.insert(row, k) = 1.0;
   }
-  using separate::Series;
+  run.nuisance.blocks = kPositions;
+  run.nuisance.block_size = 4;
   for (int i = 0; i < kPositions; ++i) {
-    cause.columns(unknowns + design.Column(Series::kTargetDy, i), 0) = 2.0 * 2e-6 / separate::kLengthUnit_m;
-    cause.columns(unknowns + design.Column(Series::kRefEz, i), 0) = 2.0 * units::arcsec;
+    constexpr int kTargetDy = 3, kReferenceEz = 2;
+    cause.columns(unknowns + 4 * i + kTargetDy, 0) = 2.0 * 2e-6;
+    cause.columns(unknowns + (4 + kReferenceEz) * kPositions + i, 0) = 2.0 * units::arcsec;
   }
   run.nuisance.prior_precision = Eigen::VectorXd::Constant(unknowns, 1e-12);
   run.residual = cause.columns.col(0);
   run.sigma = Eigen::VectorXd::Constant(2 * unknowns, 1e-9);
-  const rotary::ChangeOfUnknowns change = rotary::ChangeOfTables(run, {run.sigma, {}}, {cause}, kPositions);
-  EXPECT_NEAR(change.target_rms[static_cast<std::size_t>(Component::kDy)], 2e-6, 1e-12);
-  EXPECT_NEAR(change.reference_rms[static_cast<std::size_t>(Component::kEz)], units::arcsec, 1e-12);
-  EXPECT_NEAR(change.target_rms[static_cast<std::size_t>(Component::kEx)], 0.0, 1e-15);
-  EXPECT_TRUE(std::isnan(change.target_rms[static_cast<std::size_t>(Component::kDz)]));
+  DiagnosisRun found;
+  found.run = run;
+  found.noise = {run.sigma, {}};
+  found.accepted = {cause};
+  Scenario scenario = LoadScenario(twinbench::test::ScenarioPath("rotary_4dof.toml"));
+  RotaryOf(scenario).procedure.positions = kPositions;
+  const nlohmann::json change = benches::rotary::ChangeOfTables(found, scenario);
+  EXPECT_NEAR(change["target"]["dy_um"], 2.0, 1e-6);
+  EXPECT_NEAR(change["reference"]["ez_arcsec"], 1.0, 1e-6);
+  EXPECT_NEAR(change["target"]["ex_arcsec"], 0.0, 1e-9);
+  EXPECT_FALSE(change["target"].contains("dz_um"));
 }
 
 }  // namespace

@@ -1,31 +1,29 @@
-#include "twin/benches/rotary_4dof/diagnosis/rotary_run.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/support/twin_run.h"
-#include "twin/benches/rotary_4dof/diagnosis/free_parameters.h"
-#include "twin/benches/rotary_4dof/diagnosis/search.h"
-#include "twin/benches/rotary_4dof/twin/factory.h"
+#include "twin/benches/rotary_4dof/bench.h"
+#include "twin/benches/rotary_4dof/diagnose.h"
 
-namespace twinbench::diagnose::rotary {
+namespace twinbench::diagnose {
 namespace {
 
-/// What is left of the readings pulls at no free unknown, in units of that unknown's own uncertainty: the normal
-/// equations hold.
+/// What is left of the readings pulls at a free unknown as its prior, a tenth as wide in the fit, pulls back, in units of
+/// that unknown's own uncertainty: the normal equations hold.
 TEST(RotaryRun, PredictsWhatTheFreeUnknownsFitBest) {
   const Scenario scenario = LoadScenario(twinbench::test::ScenarioPath("rotary_4dof.toml"));
-  const RotaryRun rotary =
-      BuildRun(twinbench::test::RunTwin(scenario).readings, scenario, {benches::rotary::FollowRecord});
-  const LinearRun& run = rotary.run;
+  const LinearRun run =
+      benches::rotary::Linear(twinbench::test::RunTwin(scenario).readings, scenario, Estimator::kRigorous);
   const Eigen::VectorXd weight = run.sigma.cwiseInverse();
   const Eigen::SparseMatrix<double> white = weight.asDiagonal() * run.nuisance.jacobian;
-  const Eigen::VectorXd pull = white.transpose() * weight.cwiseProduct(run.residual);
-  for (int k = 0; k < CalibratedColumn(rotary.design); ++k) {
+  const Eigen::VectorXd pull = white.transpose() * weight.cwiseProduct(run.observed - run.Predicted());
+  const Eigen::VectorXd held = 100.0 * run.nuisance.prior_precision.cwiseProduct(run.nuisance.at);
+  const Eigen::Index known = std::ssize(benches::rotary::CalibratedConstants());
+  for (Eigen::Index k = 0; k < pull.size() - known; ++k) {
     const double length = white.col(k).norm();
-    // The wide priors pull at a constant that several unknowns share by some 1e-4 of its uncertainty.
-    EXPECT_LT(std::abs(pull[k]), 1e-2 * std::max(length, 1.0)) << "unknown " << k;
+    // The twin is no straight line: by some 1e-3 of an uncertainty behind the last step.
+    EXPECT_LT(std::abs(pull[k] - held[k]), 1e-2 * std::max(length, 1.0)) << "unknown " << k;
   }
 }
 
@@ -38,15 +36,14 @@ TEST(RotarySearch, NamesAChangeOfTheBenchThatIsLargeEnoughToBend) {
   actual.effects.push_back({"incidence_offset", "", {{"incidence", kIncidence_rad}}, ""});
   DiagnoseOptions options;
   options.null_runs = 100;
-  const SearchedRotary searched =
-      SearchRotary(twinbench::test::RunTwin(actual).readings, believed, options, {benches::rotary::FollowRecord});
-  const SearchResult& found = searched.analysis.found;
-  ASSERT_EQ(found.terms.size(), 1U);
-  const Term& term = found.terms[0];
-  EXPECT_EQ(searched.rotary->Families()[static_cast<std::size_t>(term.family)].effect, "incidence_offset");
-  EXPECT_NEAR(term.amplitudes[0], kIncidence_rad, 4.0 * std::sqrt(term.cov(0, 0)));
-  EXPECT_LT(std::sqrt(term.cov(0, 0)), 0.1 * kIncidence_rad);
+  const Diagnosis found =
+      benches::rotary::Diagnose(twinbench::test::RunTwin(actual).readings, believed, options).diagnosis;
+  ASSERT_EQ(found.causes.size(), 1U);
+  EXPECT_EQ(found.causes[0].effect, "incidence_offset");
+  const ParameterEstimate& incidence = found.causes[0].parameters.at(0);
+  EXPECT_NEAR(incidence.value, kIncidence_rad, 4.0 * incidence.u);
+  EXPECT_LT(incidence.u, 0.1 * kIncidence_rad);
 }
 
 }  // namespace
-}  // namespace twinbench::diagnose::rotary
+}  // namespace twinbench::diagnose

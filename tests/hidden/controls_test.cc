@@ -139,7 +139,7 @@ TEST(Controls, AFormOfTheGratingAndAnEncodersSubdivisionAreSaidToHideInTheTables
     const Diagnosis d = Diagnosed(TakeReadings(actual), believed);
     SCOPED_TRACE(Judge({}, d).answer);
     EXPECT_EQ(d.verdict, diagnose::Verdict::kNone) << effect.name;
-    EXPECT_THAT(CouldBias(d, "encoder_subdivision", "target"), testing::HasSubstr("target ez"));
+    EXPECT_THAT(CouldBias(d, "encoder_subdivision", "target"), testing::HasSubstr("target.ez"));
     EXPECT_THAT(CouldBias(d, "encoder_subdivision", "reference"), testing::HasSubstr("ez"));
     for (const char* form : {"sphere", "astigmatism"})
       EXPECT_THAT(CouldBias(d, "grating_form", form), testing::HasSubstr("arcsec")) << form;

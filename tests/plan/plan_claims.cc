@@ -8,7 +8,7 @@
 #include "tools/twinbench/planned_run.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
-#include "twin/benches/rotary_4dof/diagnosis/free_parameters.h"
+#include "twin/benches/rotary_4dof/diagnose.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
 #include "twin/core/stream.h"
@@ -72,11 +72,11 @@ std::vector<EffectSettings> DrawnConstants(const Scenario& scenario, std::uint64
   std::vector<EffectSettings> effects;
   if (scenario.bench != kRotaryBench) return effects;
   Stream stream(run, "plan.constants");
-  for (const diagnose::rotary::Calibrated& constant : diagnose::rotary::CalibratedConstants()) {
+  for (const auto& constant : benches::rotary::CalibratedConstants()) {
     EffectSettings effect;
-    effect.name = constant.constant.effect;
-    effect.where = constant.constant.where;
-    effect.parameters[constant.constant.parameter] = constant.sd * stream.Normal();
+    effect.name = constant.effect;
+    effect.where = constant.where;
+    effect.parameters[constant.parameter] = constant.sd * stream.Normal();
     effects.push_back(effect);
   }
   return effects;

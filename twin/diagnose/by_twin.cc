@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "twin/core/units.h"
@@ -21,7 +22,7 @@ namespace {
 /// "zero of a set-up up to 0.3 um": the largest constant of each free point; of many points those that show most.
 std::string BiasOf(const LinearRun& run, const FreeConstants& free, const Eigen::VectorXd& fitted) {
   constexpr std::size_t kMostTold = 4;
-  const Eigen::VectorXd constants = free.fitted * fitted;
+  const Eigen::VectorXd constants = free.fitted * fitted.head(free.fitted.cols());
   const Eigen::VectorXd trace = (run.sigma.cwiseInverse().asDiagonal() * free.columns)
                                     .colwise()
                                     .norm()
@@ -71,9 +72,9 @@ std::string NextOf(const std::string& effect, const std::string& rival) {
 /// A record compared with the twin of one scenario, and what the search makes of it.
 struct Searched {
   Searched(const std::vector<Reading>& readings, const Scenario& believed, const DiagnoseOptions& options,
-           const TwinComparison& comparison)
+           const TwinComparison& comparison, Compared with_its_twin)
       : scenario(believed),
-        compared(Compare(readings, scenario, comparison)),
+        compared(std::move(with_its_twin)),
         candidates(CandidatesOf(compared, readings, scenario, options, comparison)) {}
   Searched(const Searched&) = delete;
   Searched& operator=(const Searched&) = delete;
@@ -128,8 +129,9 @@ bool IsOffItsTangent(const Searched& searched, const std::vector<Reading>& readi
 /// Whether asking again with the first cause in the twin may tell more: it is named, and either what it leaves may
 /// be nothing but that it was taken for linear, or its size is wrong by that.
 bool MayBeCurved(const Searched& searched, const std::vector<Reading>& readings, const TwinComparison& comparison) {
-  if (searched.found().terms.empty() || searched.FamilyOf(searched.found().terms.front()).kind != Kind::kNamed)
-    return false;
+  if (searched.found().terms.empty()) return false;
+  const Family& first = searched.FamilyOf(searched.found().terms.front());
+  if (first.kind != Kind::kNamed || (comparison.may_bend && !comparison.may_bend(first.effect))) return false;
   return searched.LeavesStructure() || (comparison.bends && IsOffItsTangent(searched, readings, comparison));
 }
 
@@ -209,7 +211,8 @@ std::unique_ptr<Searched> AboutFirstCause(const Searched& before, const std::vec
   const Tried cause = FirstCause(before, readings, comparison);
   Scenario believed = before.scenario;
   believed.effects.push_back(cause.effect);
-  auto after = std::make_unique<Searched>(readings, believed, options, comparison);
+  auto after = std::make_unique<Searched>(readings, believed, options, comparison,
+                                          Compare(readings, believed, comparison));
   if (after->candidates.families.size() != before.candidates.families.size() ||
       after->compared.run.Rows() != before.compared.run.Rows())
     return nullptr;
@@ -245,25 +248,102 @@ std::vector<Cause> FindScatter(const DiagnoseOptions& options, const TwinCompari
   return {CauseOf(MeasureScatter(stated, searched.analysis, slope), comparison)};
 }
 
-}  // namespace
-
-LinearRun CompareWithTwin(const std::vector<Reading>& readings, const Scenario& scenario,
-                          const TwinComparison& comparison) {
-  return Compare(readings, scenario, comparison).run;
-}
-
-DiagnosisRun DiagnoseByTwin(const std::vector<Reading>& readings, const Scenario& scenario,
-                            const DiagnoseOptions& options, const TwinComparison& comparison) {
-  auto searched = std::make_unique<Searched>(readings, scenario, options, comparison);
+std::unique_ptr<Searched> SearchIn(const std::vector<Reading>& readings, const Scenario& scenario,
+                                   const DiagnoseOptions& options, const TwinComparison& comparison,
+                                   Compared compared) {
+  auto searched = std::make_unique<Searched>(readings, scenario, options, comparison, std::move(compared));
   searched->analysis = Analyse(searched->compared.run, searched->candidates.families,
                                HowToAnalyse(searched->compared.run, options, comparison));
+  return searched;
+}
+
+/// What is believed of a record, how well it fits, and what was decided to come there.
+struct Belief {
+  Scenario scenario;
+  TwinComparison comparison;
+  Compared compared;
+  Misfit misfit;
+  std::vector<Cause> decided;
+};
+
+Belief BelieveIn(const std::vector<Reading>& readings, const Scenario& scenario, const ComparisonOf& comparison_of,
+                 const std::vector<Cause>& decided) {
+  TwinComparison comparison = comparison_of(scenario);
+  Compared compared = Compare(readings, scenario, comparison);
+  const Misfit misfit = FreeMisfit(compared.run);
+  return {scenario, std::move(comparison), std::move(compared), misfit, decided};
+}
+
+Scenario With(Scenario scenario, const Alternative& alternative) {
+  scenario.effects.push_back({alternative.effect, alternative.where, {}, ""});
+  return scenario;
+}
+
+/// The one that leaves least, if it leaves next to nothing. The noise scale is free: only the ratio of the misfits
+/// counts.
+Belief WithoutBlunder(const std::vector<Reading>& readings, const ComparisonOf& comparison_of,
+                      const std::vector<Alternative>& alternatives, Belief stated) {
+  constexpr double kGross = 30.0;  // chi^2 per degree of freedom below which no wire is crossed
+  const Misfit as_is = stated.misfit;
+  if (as_is.power < kGross * as_is.degrees_of_freedom) return stated;
+  std::optional<Belief> best;
+  for (const Alternative& a : alternatives) {
+    if (!a.is_gross) continue;
+    Belief tried = BelieveIn(readings, With(stated.scenario, a), comparison_of, stated.decided);
+    if (tried.misfit.power > 0.1 * as_is.power || (best && tried.misfit.power >= best->misfit.power)) continue;
+    const double evidence = 0.5 * as_is.degrees_of_freedom * std::log(as_is.power / tried.misfit.power);
+    tried.decided.push_back(DecidedCause(a.effect, a.where, evidence));
+    best = std::move(tried);
+  }
+  return best ? std::move(*best) : std::move(stated);
+}
+
+/// The search in what is believed, or in the alternative that explains more with all that was found in it. That it
+/// has fewer unknowns is not counted in its favour.
+std::unique_ptr<Searched> SearchAlternatives(const std::vector<Reading>& readings, const DiagnoseOptions& options,
+                                             const ComparisonOf& comparison_of,
+                                             const std::vector<Alternative>& alternatives, Belief& belief) {
+  constexpr double kWorthTrying = 10.0;
+  const auto search = [&](Belief& in) {
+    return SearchIn(readings, in.scenario, options, in.comparison, std::move(in.compared));
+  };
+  const Misfit stated = belief.misfit;
+  const int rows = belief.compared.run.Rows();
+  std::unique_ptr<Searched> searched;
+  double most = 0.0;
+  for (const Alternative& a : alternatives) {
+    if (a.is_gross) continue;
+    Belief other = BelieveIn(readings, With(belief.scenario, a), comparison_of, belief.decided);
+    const double evidence = 0.5 * rows * std::log(stated.power / other.misfit.power);
+    if (evidence < kWorthTrying) continue;
+    auto in_other = search(other);
+    other.decided.push_back(DecidedCause(a.effect, a.where, evidence));
+    if (!searched) {
+      if (in_other->found().terms.empty()) {
+        belief = std::move(other);
+        return in_other;
+      }
+      searched = search(belief);
+      most = searched->found().joint_evidence;
+    }
+    if (evidence + in_other->found().joint_evidence <= most) continue;
+    most = evidence + in_other->found().joint_evidence;
+    searched = std::move(in_other);
+    belief = std::move(other);
+  }
+  return searched ? std::move(searched) : search(belief);
+}
+
+DiagnosisRun ConcludeOf(std::unique_ptr<Searched> searched, const std::vector<Reading>& readings,
+                        const DiagnoseOptions& options, const TwinComparison& comparison,
+                        std::vector<Cause> first) {
   if (MayBeCurved(*searched, readings, comparison)) {
     auto again = AboutFirstCause(*searched, readings, options, comparison);
     const auto terms = [](const Searched& s) { return s.found().terms.size(); };
     if (again && terms(*again) > 0 && terms(*again) <= terms(*searched)) searched = std::move(again);
   }
   std::vector<Detectable> detectable;
-  std::vector<Cause> first = FindScatter(options, comparison, *searched, detectable);
+  std::ranges::move(FindScatter(options, comparison, *searched, detectable), std::back_inserter(first));
   const Compared& c = searched->compared;
   std::ranges::move(OutliersLeftOut(c, comparison, options.excluded), std::back_inserter(first));
   DiagnosisRun result = Conclude(c.run, searched->analysis, first,
@@ -278,6 +358,30 @@ DiagnosisRun DiagnoseByTwin(const std::vector<Reading>& readings, const Scenario
   result.diagnosis.left_out = static_cast<int>(readings.size() - c.used.size() - c.outliers.readings.size());
   if (comparison.sampled) ToReadings(c, comparison, result);
   return result;
+}
+
+}  // namespace
+
+LinearRun CompareWithTwin(const std::vector<Reading>& readings, const Scenario& scenario,
+                          const TwinComparison& comparison) {
+  return Compare(readings, scenario, comparison).run;
+}
+
+DiagnosisRun DiagnoseByTwin(const std::vector<Reading>& readings, const Scenario& scenario,
+                            const DiagnoseOptions& options, const TwinComparison& comparison) {
+  return ConcludeOf(SearchIn(readings, scenario, options, comparison, Compare(readings, scenario, comparison)),
+                    readings, options, comparison, {});
+}
+
+DiagnosisRun DiagnoseByTwin(const std::vector<Reading>& readings, const Scenario& scenario,
+                            const DiagnoseOptions& options, const ComparisonOf& comparison_of,
+                            const std::vector<Alternative>& alternatives, const std::vector<Cause>& decided) {
+  std::vector<Alternative> worth = alternatives;
+  std::erase_if(worth, [&](const Alternative& a) { return IsExcluded(options, a.effect); });
+  Belief belief = WithoutBlunder(readings, comparison_of, worth,
+                                 BelieveIn(readings, scenario, comparison_of, decided));
+  std::unique_ptr<Searched> searched = SearchAlternatives(readings, options, comparison_of, worth, belief);
+  return ConcludeOf(std::move(searched), readings, options, belief.comparison, belief.decided);
 }
 
 }  // namespace twinbench::diagnose

@@ -18,6 +18,14 @@
 /// own) builds its run and its families itself.
 namespace twinbench::diagnose {
 
+struct BelievedRecord;
+struct Compared;
+struct Family;
+struct TimeSeries;
+namespace unknown {
+struct Design;
+}
+
 /// What a bench says so that its readings are compared with its twin's. Channels are those of its format; unless
 /// `shown` says otherwise they are read in the format's columns that a bench must show, in the same order.
 struct TwinComparison {
@@ -48,10 +56,18 @@ struct TwinComparison {
     std::string of;                                                      // in words: "a position"
   };
 
+  /// A constant of the bench, of either sign, that is known to some extent: as an effect of the catalogue. It is
+  /// nothing while the others are fitted, and free within `sd` [SI] beside the causes.
+  struct KnownConstant {
+    std::string effect, where, parameter;
+    double sd;
+  };
+
   /// What is drawn anew at each reading, at a point [SI].
   struct Scatter {
     std::string point;
     double sd;
+    bool (*is_at)(const Reading&) = nullptr;  // null: at all of them
   };
 
   /// An effect of the catalogue that is nothing but more of it than stated.
@@ -74,7 +90,18 @@ struct TwinComparison {
   /// A place of the effect "tone", or "slip", that is nothing but a wave, or a step, in what channels show.
   struct ShownOn {
     std::string where;
-    Eigen::MatrixXd pattern;  // channels x 1: what each shows of it
+    Eigen::MatrixXd pattern;  // channels x 1: what each shows of it; of a tone also x tones of a size of their own
+    bool is_sine = false;     // the catalogue counts the phase of a sine
+  };
+
+  /// An effect that is nothing but a step of a parameter at a point, from "at_reading" on.
+  struct StepAt {
+    std::string effect, where, point, parameter;
+  };
+
+  /// A way of a body to move, as the channels show it.
+  struct Motion {
+    std::string name, point;
   };
 
   /// The same over several shapes at once.
@@ -144,6 +171,9 @@ struct TwinComparison {
   std::vector<FringesAlong> fringes = {};
   std::string outliers = {};  // the point at which the catalogue's outliers enter; empty: the readings
   std::vector<ShownOn> tones = {}, steps = {};
+  std::vector<StepAt> steps_at = {};
+  std::vector<Motion> motions = {};      // what structure is told by; empty: the channels
+  std::vector<KnownConstant> known = {};
 
   // Of a bench with channels that not every run or reading has. Those that are used show the first.
   std::vector<std::string> channels = {};                // the first ones that the twin shows; empty: the format's
@@ -164,11 +194,27 @@ struct TwinComparison {
   std::function<double(const std::string& effect, const std::string& where)> listed = {};  // see Family
   std::map<std::string, std::string> named = {};                                           // see unknown::Design
   int most_causes = 4;
+  std::function<bool(const std::string& effect)> may_bend = {};  // so that the twin is asked about it again; empty: any
   bool bends = false;  // the first cause is searched about itself wherever it is off its tangent by more than noise
   std::function<std::string(const std::string& effect, const std::string& rival)> next_measurement = {};
   std::function<std::string(const std::string& effect)> shown_by = {};  // what would show it; empty: nothing simple
   std::vector<std::string> unrecorded = {};  // effects that nobody can name without what this record lacks
+
+  // Of a bench with more to say. Effects that have families of its own are asked of nobody else.
+  std::function<std::vector<Family>(const Compared&, const BelievedRecord&, const TimeSeries&)> own_families = {};
+  std::function<void(const Compared&, unknown::Design&)> structure = {};  // on what structure without a name may show
+  std::function<std::vector<Reading>(std::vector<Reading>)> at_their_times = {};  // empty: those that are recorded
+  double rounding = 0.0;                                                          // SI: step of the readings
 };
+
+/// An effect without a size that makes another bench of it: it is believed or it is not.
+struct Alternative {
+  std::string effect, where;
+  bool is_gross = false;  // only tried where hardly anything fits, and then so plain that nothing is searched for
+};
+
+/// The comparison where a scenario is believed.
+using ComparisonOf = std::function<TwinComparison(const Scenario&)>;
 
 /// Readings against the twin's, with the free constants that fit best.
 /// @throws InputError if fewer than 12 readings have every value that the bench must show, or the twin shows
@@ -180,5 +226,11 @@ LinearRun CompareWithTwin(const std::vector<Reading>& readings, const Scenario& 
 /// @throws InputError as above, or if the design has no redundancy.
 DiagnosisRun DiagnoseByTwin(const std::vector<Reading>& readings, const Scenario& scenario,
                             const DiagnoseOptions& options, const TwinComparison& comparison);
+
+/// The same where one of the alternatives may explain more than the scenario does.
+/// @param decided  What the bench has found before.
+DiagnosisRun DiagnoseByTwin(const std::vector<Reading>& readings, const Scenario& scenario,
+                            const DiagnoseOptions& options, const ComparisonOf& comparison_of,
+                            const std::vector<Alternative>& alternatives, const std::vector<Cause>& decided = {});
 
 }  // namespace twinbench::diagnose

@@ -60,12 +60,13 @@ Eigen::VectorXd RowsOf(const std::vector<Reading>& used, const ValuesOf& values_
 LinearRun RunOf(const std::vector<Reading>& used, const Scenario& scenario, const TwinComparison& comparison) {
   LinearRun run;
   run.bench = scenario.bench;
-  run.schedule = model::CourseOf(used);
+  run.schedule = model::CourseOf(comparison.at_their_times ? comparison.at_their_times(used) : used);
   if (comparison.sampled) run.schedule.target_rad = OfReadings(used, comparison.angles.front().rad);
   run.channels = comparison.channels.empty() ? comparison.format->channels : comparison.channels;
   run.unit = comparison.unit;
   run.to_SI = comparison.to_SI;
   run.units = comparison.units;
+  run.rounding = comparison.rounding;
   run.noise_free = scenario.noise_free;
   for (int k = 0; k < run.Channels(); ++k)
     run.patterns.push_back({run.channels[static_cast<std::size_t>(k)], Eigen::VectorXd::Unit(run.Channels(), k)});
@@ -126,8 +127,13 @@ std::vector<FreePoint> FreeOf(const Compared& c, const TwinComparison& compariso
 void AddScatter(const Compared& c, const Scenario& scenario, const TwinComparison& comparison, LinearRun& run) {
   if (!comparison.scatter) return;
   Eigen::VectorXd variance = run.sigma.cwiseAbs2();
-  for (const auto& [point, sd] : comparison.scatter(scenario))
-    if (sd > 0.0) variance += (sd * ByRow(c.twin.Slope(point, {}))).cwiseAbs2();
+  for (const auto& [point, sd, is_at] : comparison.scatter(scenario)) {
+    if (!(sd > 0.0)) continue;
+    Eigen::MatrixXd shown = sd * c.twin.Slope(point, {});
+    for (Eigen::Index i = 0; is_at && i < shown.rows(); ++i)
+      if (!is_at(c.used[static_cast<std::size_t>(i)])) shown.row(i).setZero();
+    variance += ByRow(shown).cwiseAbs2();
+  }
   run.sigma = variance.cwiseSqrt();
 }
 
@@ -221,10 +227,40 @@ LeftByAnother LeftByAnotherOf(const Compared& c, const std::vector<Reading>& rea
     const auto twin =
         std::make_shared<const Followed>(follow, other, asked->readings, asked->used, asked->channels);
     return [asked, twin](const Eigen::VectorXd& by) -> Eigen::VectorXd {
-      const Eigen::VectorXd constants = asked->free.fitted * by;
+      const Eigen::VectorXd constants = asked->free.fitted * by.head(asked->free.fitted.cols());
       return asked->observed - ByRow(twin->Predict(asked->free.DisturbancesOf(constants))) + asked->jacobian * by;
     };
   };
+}
+
+/// What each row shows of the constants that are known to some extent: columns behind those of the free ones.
+void AddKnown(const std::vector<Reading>& readings, const Scenario& scenario, const TwinComparison& comparison,
+              Compared& c) {
+  Nuisance& nuisance = c.run.nuisance;
+  const Eigen::Index free = nuisance.jacobian.cols(), known = std::ssize(comparison.known);
+  Eigen::MatrixXd columns(c.run.Rows(), free + known);
+  columns.leftCols(free) = nuisance.jacobian;
+  nuisance.prior_precision.conservativeResize(free + known);
+  for (Eigen::Index k = 0; k < known; ++k) {
+    const auto& [effect, where, parameter, sd] = comparison.known[static_cast<std::size_t>(k)];
+    const auto shown = [&](double value) {
+      Scenario with = scenario;
+      with.effects.push_back({effect, where, {{parameter, value}}, ""});
+      const Followed twin(comparison.follow, with, readings, c.used, c.run.Channels());
+      return c.Rows(twin.Predict(c.free.Disturbances()));
+    };
+    columns.col(free + k) = (shown(sd) - shown(-sd)) / (2.0 * sd);
+    nuisance.prior_precision[free + k] = std::pow(sd, -2);
+  }
+  nuisance.jacobian = columns.sparseView();
+  if (nuisance.at.size() > 0) nuisance.at.conservativeResizeLike(Eigen::VectorXd::Zero(free + known));
+}
+
+/// The ways in which a body's motions show, instead of the channels.
+void SetPatterns(const TwinComparison& comparison, Compared& c) {
+  if (!comparison.motions.empty()) c.run.patterns.clear();
+  for (const auto& [name, point] : comparison.motions)
+    c.run.patterns.push_back({name, ResponseTo(c, point).pattern});
 }
 
 }  // namespace
@@ -238,10 +274,12 @@ Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario,
   LinearRun& run = c.run;
   if (comparison.shows_errors) run.observed = run.residual;
   run.nuisance = c.free.AsNuisance(run.sigma.cwiseInverse());
+  SetPatterns(comparison, c);
   if (!comparison.free_sd) return c;
   // What the constants are held by is held from nothing, not from where the fit has put them.
   run.nuisance.at = c.free.FittedValues();
   run.residual += run.nuisance.jacobian * run.nuisance.at;
+  if (!comparison.known.empty()) AddKnown(readings, scenario, comparison, c);
   if (comparison.free_places) run.left_by_another = LeftByAnotherOf(c, readings, comparison);
   return c;
 }
@@ -277,6 +315,14 @@ std::vector<Reading> RecordAsPredicted(const Compared& c, std::vector<Reading> r
     if (next < predicted.size() && r.reading == predicted[next].reading) r = predicted[next++];
   }
   return readings;
+}
+
+Response ResponseTo(const Compared& compared, const std::string& point) {
+  const Eigen::MatrixXd slopes = compared.twin.Slope(point, compared.free.Disturbances());
+  const Eigen::VectorXd sizes = slopes.rowwise().norm();
+  const Eigen::VectorXd answers = (sizes.array() > 0.5 * sizes.maxCoeff()).cast<double>();
+  const Eigen::VectorXd pattern = slopes.transpose() * answers / std::max(1.0, answers.sum());
+  return {pattern, slopes * pattern / std::max(pattern.squaredNorm(), 1e-300)};
 }
 
 Eigen::VectorXd OfReadings(const std::vector<Reading>& readings,

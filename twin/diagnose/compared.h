@@ -41,6 +41,14 @@ std::vector<Reading> AsPredicted(const Compared& compared, const TwinComparison&
 std::vector<Reading> RecordAsPredicted(const Compared& compared, std::vector<Reading> readings,
                                        const TwinComparison& comparison);
 
+/// How the channels answer to a point: by a pattern [SI per SI], of which every reading shows a share. It is one but
+/// where the twin knows better: of what another instrument sees and the bench follows, nothing is shown.
+struct Response {
+  Eigen::VectorXd pattern;  // one a channel
+  Eigen::VectorXd share;    // one a used reading
+};
+Response ResponseTo(const Compared& compared, const std::string& point);
+
 /// One value a reading.
 Eigen::VectorXd OfReadings(const std::vector<Reading>& readings,
                            const std::function<double(const Reading&)>& value);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/asked_effects.h"
@@ -104,6 +105,7 @@ unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, co
     design.scale = run.sigma.reshaped(run.Channels(), run.schedule.Readings()).rowwise().mean();
   }
   design.plausible_share = kPlausibleShare;
+  if (comparison.structure) comparison.structure(c, design);
   return design;
 }
 
@@ -167,6 +169,33 @@ void AddProducts(const Compared& c, const TwinComparison& comparison, const Diag
   }
 }
 
+/// Steps as a point shows them.
+TimeSeries ShownSteps(const TimeSeries& series, const Eigen::VectorXd& share) {
+  TimeSeries shown = series;
+  if (!series.steps || share.isOnes()) return shown;
+  auto steps = std::make_shared<Base>(*series.steps);
+  steps->series = [of_all = series.steps->series, share](int k) { return model::Times(of_all(k), share); };
+  steps->sums = {};
+  shown.steps = steps;
+  return shown;
+}
+
+/// Effects that are nothing but a wave, or a step, in what channels show.
+void AddTonesAndSteps(const Compared& c, const TwinComparison& comparison, const DiagnoseOptions& options,
+                      const TimeSeries& series, Candidates& named) {
+  for (const TwinComparison::ShownOn& tone : comparison.tones) {
+    if (!IsExcluded(options, "tone")) named.AddTone({"tone", tone.where, tone.pattern}, series, tone.is_sine);
+  }
+  for (const TwinComparison::ShownOn& step : comparison.steps) {
+    if (!IsExcluded(options, "slip")) named.AddStep({"slip", step.where, step.pattern}, "step", series);
+  }
+  for (const auto& [effect, where, point, parameter] : comparison.steps_at) {
+    if (IsExcluded(options, effect)) continue;
+    const Response response = ResponseTo(c, point);
+    named.AddStep({effect, where, response.pattern}, parameter, ShownSteps(series, response.share));
+  }
+}
+
 unknown::AtPoint AtPointOf(const Compared& c, const std::string& name) {
   const model::Point& point = c.twin.Point(name);
   return {name, point.unit, point.to_SI, kPlausibleNoise * PerNoise(c, name),
@@ -195,15 +224,18 @@ void AddAtPoints(const Compared& c, const TwinComparison& comparison, std::vecto
 }
 
 /// Those of the catalogue that the twin is asked about one by one. Outliers have no shape: noise is judged by
-/// itself.
-std::vector<EffectEntry> AskedOf(const TwinComparison& comparison, const DiagnoseOptions& options) {
+/// itself. What has no size is an alternative.
+std::vector<EffectEntry> AskedOf(const TwinComparison& comparison, const DiagnoseOptions& options,
+                                 const std::vector<Family>& own) {
   std::vector<EffectEntry> entries = comparison.format->effects;
   std::erase_if(entries, [&](const EffectEntry& entry) {
-    return IsExcluded(options, entry.name) || entry.name == "outliers" ||
+    return IsExcluded(options, entry.name) || entry.name == "outliers" || entry.parameters.empty() ||
            std::ranges::count(comparison.unrecorded, entry.name) > 0 ||
            (comparison.scatter_cause && entry.name == comparison.scatter_cause->effect) ||
            (entry.name == "tone" && !comparison.tones.empty()) ||
            (entry.name == "slip" && !comparison.steps.empty()) ||
+           std::ranges::count(comparison.steps_at, entry.name, &TwinComparison::StepAt::effect) > 0 ||
+           std::ranges::count(own, entry.name, &Family::effect) > 0 ||
            std::ranges::count(comparison.products, entry.name, &TwinComparison::Product::effect) > 0 ||
            std::ranges::count(comparison.shaped_products, entry.name, &TwinComparison::ShapedProduct::effect) > 0;
   });
@@ -235,17 +267,15 @@ TwinCandidates CandidatesOf(const Compared& compared, const std::vector<Reading>
   const TimeSeries series = TimeSeriesOf(c.readings, stretch, c.run.Channels(), c.Means(), c.run.schedule.time_s);
   Candidates named(Catalogue(comparison.format->effects), c.run.Channels(), c.Means());
   AddProducts(c, comparison, options, named);
-  for (const TwinComparison::ShownOn& tone : comparison.tones) {
-    if (!IsExcluded(options, "tone")) named.AddTone({"tone", tone.where, tone.pattern}, series);
-  }
-  for (const TwinComparison::ShownOn& step : comparison.steps) {
-    if (!IsExcluded(options, "slip")) named.AddStep({"slip", step.where, step.pattern}, "step", series);
-  }
+  AddTonesAndSteps(c, comparison, options, series, named);
   TwinCandidates candidates;
   BelievedRecord asked = AskedRecord(c, readings, scenario, comparison);
   asked.onsets = series.onsets;
-  candidates.invisible = AddAskedEffects(asked, AskedOf(comparison, options), named);
+  std::vector<Family> own = comparison.own_families ? comparison.own_families(c, asked, series) : std::vector<Family>{};
+  std::erase_if(own, [&](const Family& family) { return IsExcluded(options, family.effect); });
+  candidates.invisible = AddAskedEffects(asked, AskedOf(comparison, options, own), named);
   candidates.families = named.Take();
+  std::ranges::move(own, std::back_inserter(candidates.families));
   for (Family& family : candidates.families) {
     if (comparison.sizes_by_trace) SetSizesByTrace(c.run.Channels(), PlausibleOf(c.run, comparison), family);
     if (comparison.listed) family.listed = comparison.listed(family.effect, family.where);

@@ -41,6 +41,10 @@ std::vector<RotaryPoint> OfTables() {
           {Length("reference.dx"), [](RotaryExtra& e) -> double& { return e.pose.reference_error.dx_m; }},
           {Length("reference.dy"), [](RotaryExtra& e) -> double& { return e.pose.reference_error.dy_m; }},
           {Length("reference.dz"), [](RotaryExtra& e) -> double& { return e.pose.reference_error.dz_m; }},
+          {Angle("seat.ex"), [](RotaryExtra& e) -> double& { return e.seat.ex_rad; }},
+          {Angle("seat.ey"), [](RotaryExtra& e) -> double& { return e.seat.ey_rad; }},
+          {Length("seat.dx"), [](RotaryExtra& e) -> double& { return e.seat.dx_m; }},
+          {Length("seat.dy"), [](RotaryExtra& e) -> double& { return e.seat.dy_m; }},
           {Angle("target.yaw"), [](RotaryExtra& e) -> double& { return e.pose.target_yaw_rad; }},
           {Angle("reference.yaw"), [](RotaryExtra& e) -> double& { return e.pose.reference_yaw_rad; }}};
 }

@@ -14,6 +14,7 @@ struct RotaryExtra {
   LightState light;                         // differences from what the bench has
   std::array<double, kChannels> shown_m{};  // on the PSDs' surfaces
   mechanics::PoseError mount;               // of the grating on whatever carries it, unseen by the autocollimator
+  mechanics::PoseError seat;                // of the reference's body, in its own frame
 };
 
 using RotaryPoint = BenchPoint<RotaryExtra>;
