@@ -1,6 +1,7 @@
 #include "twin/diagnose/engine/analysis.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/engine/prior.h"
@@ -18,6 +19,8 @@ void Prepare(const LinearRun& run, const std::vector<Family>& families, Analysis
 /// What the noise alone would explain, before and after the terms.
 struct NoiseView {
   std::vector<NoiseCause> before, after;
+  std::vector<NoiseCause> but_courses;  // after those that do not follow nearly anything
+  double of_courses = 0.0;              // evidence of the others beside them
 };
 
 /// What is left when neither unknowns nor terms see some of the rows.
@@ -45,7 +48,17 @@ NoiseView LookAtNoise(const LinearRun& run, const Analysis& analysis) {
     return FindNoiseCauses(run, analysis.noise, rest, without);
   };
   const Eigen::MatrixXd none(run.Rows(), 0);
-  NoiseView view{look(none), look(analysis.noise.Whiten(run, Signatures(run, analysis.found.terms)))};
+  const auto after = [&](const std::vector<Term>& terms) { return look(analysis.noise.Whiten(run, Signatures(run, terms))); };
+  NoiseView view{look(none), after(analysis.found.terms), {}};
+  std::vector<Term> with_form;
+  for (const Term& term : analysis.found.terms) {
+    if (!analysis.scanner->Families()[static_cast<std::size_t>(term.family)].takes_any_course) {
+      with_form.push_back(term);
+    } else {
+      view.of_courses += term.statistic;
+    }
+  }
+  if (with_form.size() < analysis.found.terms.size()) view.but_courses = after(with_form);
   // A cause that shows on one channel makes that channel look noisy: only what remains can say so.
   std::erase_if(view.before, [](const NoiseCause& c) { return c.kind == NoiseCause::Kind::kChannelScale; });
   return view;
@@ -59,6 +72,9 @@ const NoiseCause* NextRepair(const Analysis& analysis, const NoiseView& view) {
   if (picked && !clean && !view.before.empty() && view.before.front().log_bayes > analysis.found.joint_evidence) {
     return &view.before.front();
   }
+  // What follows nearly anything leaves clean noise of any kind: readings that remember each other say as much by less.
+  const auto remembers = std::ranges::find(view.but_courses, NoiseCause::Kind::kCorrelation, &NoiseCause::kind);
+  if (remembers != view.but_courses.end() && remembers->log_bayes > view.of_courses) return &*remembers;
   // One step up and another one down leave clean noise as well, and are a single disturbed value.
   const auto disturbed = std::ranges::find(view.before, NoiseCause::Kind::kOutliers, &NoiseCause::kind);
   if (picked && disturbed != view.before.end() && disturbed->log_bayes > analysis.found.joint_evidence)

@@ -189,6 +189,18 @@ void Collector::TakeAnyCourse() {
   for (std::size_t k = last_; k < families_.size(); ++k) families_[k].takes_any_course = true;
 }
 
+void Collector::TellAsShown() {
+  for (std::size_t k = last_; k < families_.size(); ++k) {
+    Family& family = families_[k];
+    family.describe = [words = family.describe, base = family.base](int g, const Eigen::VectorXd& x) {
+      const Eigen::MatrixXd series = base->series(g);
+      const Eigen::MatrixXd shown = series * x.reshaped(series.cols(), x.size() / series.cols());
+      const double amplitude = std::sqrt(2.0 / static_cast<double>(shown.rows())) * shown.norm();
+      return words(g, Eigen::VectorXd::Constant(1, amplitude));
+    };
+  }
+}
+
 void Collector::AreHarmonics(const Angle& angle, const EffectSettings& factor) {
   if (angle.by.empty()) return;
   Are([by = angle.by, factor](const Eigen::VectorXd&, int g) {
