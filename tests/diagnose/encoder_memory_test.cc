@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "tests/diagnose/encoder_record.h"
 
@@ -48,6 +49,44 @@ TEST(EncoderMemory, ALagAndAScaleAreNoLoopThatFollowsBoth) {
     EXPECT_NEAR(answer.Value("latency", "delay"), 0.95 * 0.0114, 0.02 * 0.0114);
     EXPECT_NEAR(answer.Value("scale", "ratio"), -0.05, 0.02 * 0.05);
   }
+}
+
+/// Forward and back once; the noise has a deviation of 0.02 deg and remembers this much of what it was a reading ago.
+Record Remembering(int readings, double correlation, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> unit;
+  Record record;
+  double x = unit(random);
+  for (int k = 0; k < readings; ++k) {
+    const bool is_back = 2 * k >= readings;
+    const double angle_deg = 720.0 * (is_back ? readings - 1 - k : k) / readings;
+    record.Add(0.1 * k, angle_deg, angle_deg + 0.02 * x, is_back ? -1 : 1, 0);
+    x = correlation * x + std::sqrt(1.0 - correlation * correlation) * unit(random);
+  }
+  return record;
+}
+
+TEST(EncoderMemory, NoiseThatRemembersAFewReadingsIsNoWalk) {
+  int alarms = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const Answer answer = Ask(Remembering(240, 0.85, seed));
+    if (answer.run.diagnosis.verdict != Verdict::kNone) ++alarms;
+  }
+  EXPECT_LE(alarms, 1);
+}
+
+/// What many columns have as coefficients exceeds what they sum up to tenfold.
+TEST(EncoderMemory, AWalkIsToldAsLargeAsItShows) {
+  int told = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const Answer answer = Ask(Remembering(190, 0.97, seed));
+    const std::string& words = answer.run.diagnosis.unknown.signature;
+    const std::size_t at = words.find("random walk"), amplitude = words.find("amplitude ", at);
+    if (at == std::string::npos) continue;
+    ++told;
+    EXPECT_LT(std::stod(words.substr(amplitude + 10)), 2.0 * std::sqrt(2.0) * 0.02) << words;
+  }
+  EXPECT_GE(told, 2);
 }
 
 TEST(EncoderMemory, ARandomWalkIsNoDriftAndNoScale) {

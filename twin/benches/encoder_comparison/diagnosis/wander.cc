@@ -48,13 +48,53 @@ Walk WalkOf(const DiagnosisRun& result) {
   return walk;
 }
 
+/// Means of so many readings each, which noise hardly moves; no mean goes over a new mounting.
+struct Means {
+  std::vector<double> value;
+  std::vector<int> setup;
+};
+
+Means MeansOf(const Walk& walk, Eigen::Index each) {
+  Means means;
+  for (Eigen::Index i = 0; i + each <= walk.left.size(); i += each) {
+    const int first = walk.setup[static_cast<std::size_t>(i)], last = walk.setup[static_cast<std::size_t>(i + each - 1)];
+    if (first != last) continue;
+    means.value.push_back(walk.left.segment(i, each).mean());
+    means.setup.push_back(first);
+  }
+  return means;
+}
+
+/// By the test of Dickey and Fuller (1979, with a constant) at 5 %: the further it is from its mean, the more it goes back
+/// there, as what only remembers some readings does and a walk does not.
+bool ComesBack(const Walk& walk) {
+  constexpr Eigen::Index kMeans = 64;
+  constexpr double kMost = -2.86;  // t of a walk is above it in 95 of 100
+  const Means means = MeansOf(walk, walk.left.size() / kMeans);
+  std::vector<double> from, steps;
+  for (std::size_t k = 1; k < means.value.size(); ++k) {
+    if (means.setup[k] != means.setup[k - 1]) continue;
+    from.push_back(means.value[k - 1]);
+    steps.push_back(means.value[k] - means.value[k - 1]);
+  }
+  if (from.size() < 3) return false;
+  const auto count = static_cast<Eigen::Index>(from.size());
+  Eigen::ArrayXd x = Eigen::Map<Eigen::ArrayXd>(from.data(), count), d = Eigen::Map<Eigen::ArrayXd>(steps.data(), count);
+  x -= x.mean();
+  d -= d.mean();
+  const double slope = (x * d).sum() / x.square().sum();
+  const double variance = (d - slope * x).square().sum() / static_cast<double>(count - 2);
+  return slope < kMost * std::sqrt(variance / x.square().sum());
+}
+
 /// What it is it has walked to, and it goes on: readings that remember some others alone do not.
 /// @param noise  Of a reading, SI.
 bool IsWalk(const Walk& walk, double noise) {
   constexpr double kFurther = 2.5;  // over eight times the lag: 8 of a walk, 1.5 where readings are correlated by 0.9
   constexpr double kMost = 4.0;     // from one reading to the next
   const double to_next = std::max(walk.Change(1), 2.0 * noise * noise);
-  return walk.Change(2 * walk.lag) > kFurther * walk.Change(walk.lag / 4) && walk.Change(walk.lag) > kMost * to_next;
+  const bool goes_on = walk.Change(2 * walk.lag) > kFurther * walk.Change(walk.lag / 4);
+  return goes_on && walk.Change(walk.lag) > kMost * to_next && !ComesBack(walk);
 }
 
 /// How likely a walk of this kind would not show as much by chance. A wave comes back to where it was after some lags,
