@@ -6,7 +6,9 @@
 
 #include "tests/diagnose/found_causes.h"
 #include "tests/diagnose/ring_run.h"
+#include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/stream.h"
+#include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/stated_outliers.h"
 
 namespace twinbench::diagnose {
@@ -74,6 +76,16 @@ TEST(FindNoiseCauses, TakesManyModeratelyFarValuesForTails) {
   });
   ASSERT_FALSE(causes.empty());
   EXPECT_EQ(causes.front().kind, NoiseCause::Kind::kTails);
+}
+
+TEST(OutlierCause, CountsReadingsOnceWhateverChannelsOfThemAreFar) {
+  const LinearRun run = SyntheticRun({});
+  NoiseCause noise;
+  noise.outliers = {0, 1, 2, 3, 4 * 7 + 2};
+  noise.outlier_size = 30.0;
+  const Cause cause = OutlierCause(noise, run);
+  ASSERT_EQ(cause.parameters[0].name, "fraction");
+  EXPECT_DOUBLE_EQ(cause.parameters[0].value, 2.0 / run.schedule.Readings());
 }
 
 /// A run of 1000 readings in which `fraction` of them was found far outside.

@@ -9,6 +9,7 @@
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/estimate.h"
+#include "twin/diagnose/engine/naming.h"
 #include "twin/diagnose/engine/prior.h"
 
 namespace twinbench::diagnose {
@@ -100,6 +101,35 @@ TEST(Search, FindsNothingInNoise) {
   for (std::uint64_t seed = 10; seed < 110; ++seed) found += SearchCase(seed).Find(3.0).terms.empty() ? 0 : 1;
   // Odds of e^3 = 20 against none: by Markov's inequality at most one in twenty, as a rule far fewer.
   EXPECT_LE(found, 5);
+}
+
+/// One place of the answer that a wave of this order fills for sure.
+Term SureOrder(double order) {
+  Term term;
+  term.shape = Eigen::VectorXd::Constant(1, order);
+  term.columns = Eigen::VectorXd::Ones(8);
+  term.log_posterior = Eigen::Vector2d(0.0, -50.0);
+  term.statistic = 50.0;
+  term.explained = 100.0;
+  term.amplitudes = Eigen::VectorXd::Constant(1, units::um);
+  term.cov = 1e-16 * Eigen::MatrixXd::Identity(2, 2);
+  return term;
+}
+
+TEST(Name, TellsTwoOrdersOfOneEffectAsTwoCauses) {
+  Family wave = Fixed("periodic", Eigen::VectorXd::Ones(8), units::um);
+  wave.shapes = {{"order", "1", 1.0, 1.0, 24.0, {3.0, 5.0}}};
+  wave.grid = 2;
+  SearchResult found;
+  found.terms = {SureOrder(3.0), SureOrder(5.0)};
+  found.joint_evidence = 100.0;
+  found.alone = {Eigen::MatrixXd::Zero(1, 1), Eigen::MatrixXi::Zero(1, 1), Eigen::MatrixXd::Zero(1, 1)};
+  const Naming naming = Name(found, {wave}, 5.0);
+  ASSERT_EQ(naming.causes.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    ASSERT_EQ(naming.causes[k].parameters.back().name, "order");
+    EXPECT_EQ(naming.causes[k].parameters.back().value, k == 0 ? 3.0 : 5.0);
+  }
 }
 
 TEST(NullCalibration, ExtendsItsTailBeyondTheSimulatedRuns) {

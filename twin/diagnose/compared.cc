@@ -211,7 +211,8 @@ void TakeTogether(const TwinComparison& comparison, Compared& c) {
   c.free.columns = c.groups.MeanOfRows(c.free.columns);
 }
 
-/// Held constants are counted from nothing.
+/// Free constants are counted from nothing. Those that are known stay where they are: the twin does not follow them here,
+/// and so nothing of theirs is put back.
 LeftByAnother LeftByAnotherOf(const Compared& c, const std::vector<Reading>& readings,
                               const TwinComparison& comparison) {
   struct Asked {
@@ -227,8 +228,10 @@ LeftByAnother LeftByAnotherOf(const Compared& c, const std::vector<Reading>& rea
     const auto twin =
         std::make_shared<const Followed>(follow, other, asked->readings, asked->used, asked->channels);
     return [asked, twin](const Eigen::VectorXd& by) -> Eigen::VectorXd {
-      const Eigen::VectorXd constants = asked->free.fitted * by.head(asked->free.fitted.cols());
-      return asked->observed - ByRow(twin->Predict(asked->free.DisturbancesOf(constants))) + asked->jacobian * by;
+      const Eigen::Index free = asked->free.fitted.cols();
+      const Eigen::VectorXd constants = asked->free.fitted * by.head(free);
+      return asked->observed - ByRow(twin->Predict(asked->free.DisturbancesOf(constants))) +
+             asked->jacobian.leftCols(free) * by.head(free);
     };
   };
 }
