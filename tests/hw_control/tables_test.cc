@@ -70,6 +70,7 @@ struct EspModel {
   std::mutex mutex;
   std::map<int, AxisModel> axis;
   bool knows_status = false;
+  int switches = 0;  // of MS?: 2 the lower one, 4 the upper one
   int unit = 7, error = 0;
   int polls_until_done = 0;
 
@@ -80,7 +81,7 @@ struct EspModel {
     if (line == "TS?") return {polls_until_done > 0 ? "Q\r\n" : "P\r\n"};
     AxisModel& a = axis[line[0] - '0'];
     const std::string verb = line.substr(1);
-    if (verb == "MS?" && knows_status) return {a.referenced ? "1\r\n" : "0\r\n"};
+    if (verb == "MS?" && knows_status) return {fmt::format("{}\r\n", (a.referenced ? 1 : 0) + switches)};
     if (verb == "SN?") return {fmt::format("{}\r\n", unit)};
     if (verb == "MO?") return {a.motor_on ? "1\r\n" : "0\r\n"};
     if (verb == "MD?") return {polls_until_done-- > 0 ? "0\r\n" : "1\r\n"};
@@ -258,6 +259,18 @@ TEST_F(EspTables, AControllerWithMsQueryTellsOfItsOriginItself) {
   EspTable table = Table(1);
   EXPECT_FALSE(table.State().referenced);
   EXPECT_EQ(KindOf([&] { table.StartMove(0.1); }), FaultKind::kRestarted);
+}
+
+TEST_F(EspTables, OfMsQueryTheLimitSwitchHasItsSide) {
+  model_.knows_status = true;
+  EspTable table = Table(1);
+  for (const auto& [switches, side] : {std::pair{0, 0}, std::pair{2, -1}, std::pair{4, 1}}) {
+    {
+      const std::lock_guard lock(model_.mutex);
+      model_.switches = switches;
+    }
+    EXPECT_EQ(table.State().limit, side);
+  }
 }
 
 TEST_F(EspTables, ErrorsOfTheAxisAreTold) {
