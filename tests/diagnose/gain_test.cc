@@ -116,6 +116,20 @@ TEST(MeasureGain, OfTheTrueCauseLeavesTheNoise) {
   EXPECT_NEAR(after / floor, 1.0, 0.05);
 }
 
+/// Without a stated noise it is what neighbouring readings differ by, with what their predictions scatter by: a fifth more.
+TEST(MeasureGain, OfTheTrueCauseLeavesTheNoiseThatNobodyStates) {
+  double floor = 0.0, after = 0.0;
+  for (std::uint64_t seed = 0; seed < kGainRuns; ++seed) {
+    LinearRun run = RingWith(seed, 1e-6, Direction);
+    run.sigma_stated = false;
+    const Gain gain = GainOf(run, {Direction(run)});
+    floor += std::pow(gain.noise_floor_m, 2);
+    after += std::pow(gain.after_m, 2);
+  }
+  EXPECT_GT(after / floor, 0.75);
+  EXPECT_LT(after / floor, 1.05);
+}
+
 /// A step of channel b at the last pass of the last set-up.
 Accepted LastStep(const LinearRun& run) {
   Accepted step;

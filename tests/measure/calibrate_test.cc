@@ -34,6 +34,17 @@ TEST(Calibrate, FindsGainsAndRollsOfANoiseFreeSweep) {
   EXPECT_LT(found.residual_rms_m.maxCoeff(), 1e-9);
 }
 
+TEST(Calibrate, TakesTheKnownGainOfTheAutocollimatorOutOfBothAngles) {
+  BenchGeometry geometry = Bench();
+  geometry.autocollimator_gain = 1.02;
+  std::vector<Reading> readings = CalibrationSweeps(Imperfect(0.0), kMount, nullptr);
+  for (Reading& r : readings) {
+    r.autocollimator_yaw_rad *= 1.02;
+    r.autocollimator_tilt_rad *= 1.02;
+  }
+  EXPECT_LT((Calibrate(readings, geometry).gain - Imperfect(0.0).gain).cwiseAbs().maxCoeff(), 3e-6);
+}
+
 TEST(Calibrate, StatesAnUncertaintyThatMatchesItsScatter) {
   constexpr int kRuns = 100;
   const Detectors truth = Imperfect(0.3e-6);

@@ -5,6 +5,7 @@
 #include "tests/support/angle_benches.h"
 #include "twin/benches/names.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
+#include "twin/benches/turntable_autocollimator/twin/effects/effects.h"
 
 namespace twinbench {
 namespace {
@@ -38,6 +39,17 @@ double Y_arcsec(const Reading& r) {
 
 // The reading is half the tangent of the doubled angle: at 100 arcsec 3e-5 arcsec more than the angle.
 constexpr double kTangent_arcsec = 1e-4;
+
+TEST(TurntableTwin, SeatsItsTeethWithTheScattersOfScenarioAndEffectInSquares) {
+  Scenario s = QuietTurntable();
+  double& sd_rad = TurntableOf(s).multitooth_table.repeatability_sd[static_cast<std::size_t>(Component::kEz)];
+  sd_rad = 0.4 * arcsec;
+  EffectSettings seating;
+  seating.name = "multitooth_seating";
+  seating.parameters["scatter"] = 0.3 * arcsec;
+  sim::MakeWrongConstant(seating)->AlterBench(s);
+  EXPECT_NEAR(sd_rad / arcsec, 0.5, 1e-12);
+}
 
 TEST(TurntableTwin, ReadsTheIndexErrorOfTheTurntablePlusThatOfTheTooth) {
   Scenario s = QuietTurntable();
