@@ -44,11 +44,11 @@ struct SearchCase {
     families = {Fixed("drift", drift, units::um), Fixed("drift of one", OneChannel(run, drift, 0), units::um),
                 Fixed("bow", drift.cwiseAbs2(), units::um)};
   }
-  SearchResult Find(double threshold) {
+  SearchResult Find(double threshold, int most_causes = 4) {
     noise = WhiteNoise(run);
     projector = std::make_unique<Projector>(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
     const Scanner scanner(run, noise, *projector, families);
-    return Search(run, noise, *projector, scanner, LogPriors(families), threshold, 4);
+    return Search(run, noise, *projector, scanner, LogPriors(families), threshold, most_causes);
   }
   LinearRun run;
   NoiseModel noise;
@@ -94,6 +94,13 @@ TEST(Search, PicksTwoCausesAtOnce) {
   ASSERT_EQ(found.terms.size(), 2U);
   EXPECT_NE(found.terms[0].family, found.terms[1].family);
   EXPECT_LT(found.last_statistic, 3.0);
+}
+
+TEST(Search, PicksAsManyAsAreAllowed) {
+  SearchCase c(3);
+  c.run.residual += 4.0 * units::um * Drift(c.run) + 3.0 * units::um * OneChannel(c.run, Drift(c.run), 0);
+  EXPECT_EQ(c.Find(3.0, 1).terms.size(), 1U);
+  EXPECT_EQ(c.Find(3.0, 2).terms.size(), 2U);
 }
 
 TEST(Search, FindsNothingInNoise) {
