@@ -32,15 +32,16 @@ std::vector<ParameterEstimate> ParametersAt(const Family& family, int grid_point
 }
 
 /// The twin can carry it out: all parameters are the catalogue's, and one of them is the family's amplitude (of another
-/// value where that is of the trace that it leaves) or as large as it, which for a wave is told by cosine and sine. What goes by another size (a level that signals are cut off at) need not
-/// be small in the twin where its signature is.
+/// value where that is of the trace that it leaves) or as large as it, which for a wave is told by cosine and sine. What
+/// goes by another size (a level that signals are cut off at) need not be small in the twin where its signature is.
 bool IsOfCatalogue(const ShownCause& cause, const std::string& bench) {
   const EffectEntry* const entry = FindEffect(cause.effect, bench);
   const auto has = [entry](const ParameterEstimate& p) {
     return std::ranges::count(entry->parameters, p.name, &EffectParameter::name) > 0;
   };
   const auto is_size = [&cause](const ParameterEstimate& p) {
-    return p.name == cause.smallest.name || std::abs(p.value - cause.smallest.value) <= 1e-6 * std::abs(cause.smallest.value);
+    return p.name == cause.smallest.name ||
+           std::abs(p.value - cause.smallest.value) <= 1e-6 * std::abs(cause.smallest.value);
   };
   return entry != nullptr && std::ranges::all_of(cause.at_smallest, has) &&
          std::ranges::any_of(cause.at_smallest, is_size);

@@ -34,10 +34,6 @@ constexpr std::array<const char*, 4> kOfTarget = {"target.ex", "target.ey", "tar
 constexpr std::array<const char*, 5> kOfReference = {"reference.ex", "reference.ey", "reference.ez", "reference.dx",
                                                      "reference.dy"};
 
-bool IsInCalibration(const Reading& r) {
-  return r.phase == Phase::kCalibration;
-}
-
 bool IsUsable(const Reading& r) {
   if (r.status != ReadingStatus::kOk) return false;
   if (!std::ranges::all_of(r.mean_V, [](double V) { return std::isfinite(V); })) return false;

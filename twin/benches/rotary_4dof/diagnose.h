@@ -23,6 +23,9 @@ diagnose::TwinComparison ComparisonWith(const std::vector<Reading>& readings, co
 ///                   effects do on top of them.
 model::FollowMaker FollowOnPsds(bool published);
 
+/// Of a sweep that the autocollimator sees, too.
+bool IsInCalibration(const Reading& r);
+
 /// Noise of every channel, its rounding, and in the calibration the autocollimator's.
 void StateNoise(const std::vector<Reading>& used, const Scenario& scenario, diagnose::TwinComparison& comparison);
 /// Median deviation of one sample over all channels, else what the scenario states.

@@ -101,10 +101,6 @@ Eigen::Vector4d BlockNoise_m(const std::vector<Reading>& used, const Scenario& s
   return {mean_V / a_V_m, mean_V / a_V_m, mean_V / b_V_m, mean_V / b_V_m};
 }
 
-bool IsSwept(const Reading& r) {
-  return r.phase == Phase::kCalibration;
-}
-
 }  // namespace
 
 model::FollowMaker FollowOnPsds(bool published) {
@@ -124,9 +120,13 @@ void StateNoise(const std::vector<Reading>& used, const Scenario& scenario,
   comparison.rounding = steps_m.maxCoeff();
   comparison.noise_of = [noise_m](const Scenario&, const Reading&) -> Eigen::VectorXd { return noise_m; };
   comparison.scatter = [sweep_rad = geometry.autocollimator_noise_rad](const Scenario&) {
-    return std::vector<diagnose::TwinComparison::Scatter>{{"mount.ez", sweep_rad, IsSwept},
-                                                          {"mount.ex", sweep_rad, IsSwept}};
+    return std::vector<diagnose::TwinComparison::Scatter>{{"mount.ez", sweep_rad, IsInCalibration},
+                                                          {"mount.ex", sweep_rad, IsInCalibration}};
   };
+}
+
+bool IsInCalibration(const Reading& r) {
+  return r.phase == Phase::kCalibration;
 }
 
 double SampleNoise_V(const std::vector<Reading>& used, const Scenario& scenario) {

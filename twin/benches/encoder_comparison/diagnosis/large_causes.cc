@@ -249,7 +249,8 @@ class Search {
   /// A wave of an order that a large cause has is what that lacks beside the others that the last search found; what is
   /// less than a device is as exact as its formula is no cause, nor is what the memory of the rest makes by chance.
   void LeaveToLarge() {
-    if (!large_.last) return;
+    if (!large_.last || large_.last->analysis.found.terms.empty()) return;
+    const double least = LeastExplained();
     const Eigen::VectorXd left = Left();
     const auto is_of_large = [this](const Term& term) {
       const Family& family = large_.last->families[static_cast<std::size_t>(term.family)];
@@ -258,7 +259,7 @@ class Search {
       });
     };
     std::erase_if(large_.last->analysis.found.terms, [&](const Term& term) {
-      return term.explained < LeastExplained() || is_of_large(term) || IsChance(term, left);
+      return term.explained < least || is_of_large(term) || IsChance(term, left);
     });
   }
 
@@ -301,13 +302,13 @@ class Search {
   std::vector<double> Strengths() const {
     const AskedAgain beside = fit_->Ask(large_.causes, Beside());
     const Eigen::VectorXd left = fit_->WhiteOf(beside.left);
-    const double memory = fit_->Memory(beside.left);
+    const double memory = fit_->Memory(beside.left), least = LeastExplained();
     std::vector<double> strengths;
     for (std::size_t k = 0; k < large_.causes.size(); ++k) {
       const Eigen::VectorXd own =
           fit_->WhiteOf(fit_->Shown(beside.effects) - fit_->Shown(EffectsWithout(k, beside.effects)));
       const double most = std::max(memory, MemoryAlong(own, left));
-      strengths.push_back(own.squaredNorm() > LeastExplained() ? Deviations(large_.causes[k].effect) / std::sqrt(most) : 0.0);
+      strengths.push_back(own.squaredNorm() > least ? Deviations(large_.causes[k].effect) / std::sqrt(most) : 0.0);
     }
     return strengths;
   }

@@ -24,17 +24,6 @@ PoseState Sum(PoseState a, const PoseState& b) {
   return a;
 }
 
-/// Of a frame that is turned by `angle_rad`, seen from where it is not.
-mechanics::PoseError Turned(const mechanics::PoseError& own, double angle_rad) {
-  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
-  mechanics::PoseError turned = own;
-  turned.ex_rad = c * own.ex_rad - s * own.ey_rad;
-  turned.ey_rad = s * own.ex_rad + c * own.ey_rad;
-  turned.dx_m = c * own.dx_m - s * own.dy_m;
-  turned.dy_m = s * own.dx_m + c * own.dy_m;
-  return turned;
-}
-
 double IfNoisy(const Scenario& stated, double noise) {
   return stated.noise_free ? 0.0 : noise;
 }
@@ -122,7 +111,7 @@ class RotaryFollow : public PointwiseFollow<RotaryExtra> {
     const RecordedStop& stop = course_.stops[i];
     const Stand& stand = course_.stands[static_cast<std::size_t>(stop.mounting)];
     PoseState pose = Sum(stop.pose, extra.pose);
-    pose.reference_error = pose.reference_error + Turned(extra.seat, -stop.moment.reference_rad);
+    pose.reference_error = pose.reference_error + mechanics::RotorToBase(extra.seat, -stop.moment.reference_rad);
     const auto at = [&] { return sim::GratingPose(stand, path_.effects(), stop.moment, stop.axes, pose); };
     if (!stop.swept) return at() * mechanics::ToPose(extra.mount);
     constexpr int kIterations = 3;  // each squares what is left of some milliradians
