@@ -70,7 +70,8 @@ Candidates CandidatesOf(const Scenario& scenario, const std::vector<Reading>& re
                         const Strings& struck = {}) {
   const auto in = [&](const auto& bench_run) { return Candidates{bench_run.run, Families(bench_run, struck)}; };
   if (scenario.bench == kEncoderBench) return in(encoder::RunOf(readings, scenario));
-  const TwinComparison comparison = benches::rotary::ComparisonWith(readings, scenario, Estimator::kRigorous);
+  const TwinComparison comparison = benches::rotary::ComparisonWith(readings, scenario, Estimator::kRigorous,
+                                                                    benches::rotary::FollowOnPsds(false));
   const Compared compared = Compare(readings, scenario, comparison);
   DiagnoseOptions options;
   options.excluded = struck;

@@ -31,15 +31,16 @@ std::vector<std::string> Needed(const OwnKey& key) {
   return {key.settings.begin(), key.settings.end() - 1};
 }
 
-/// Neighbours that need the same beside them are tried in one run.
+/// Those that need the same beside them are tried in one run.
 std::vector<std::vector<OwnKey>> Grouped(const std::vector<OwnKey>& keys, std::size_t together) {
   std::vector<std::vector<OwnKey>> groups;
   for (const OwnKey& key : keys) {
     if (key.settings.empty()) continue;
-    const bool joins = !groups.empty() && groups.back().size() < together && !IsTriedAlone(key) &&
-                       !IsTriedAlone(groups.back().front()) && Needed(groups.back().front()) == Needed(key);
-    if (!joins) groups.emplace_back();
-    groups.back().push_back(key);
+    const auto joined = std::ranges::find_if(groups, [&](const std::vector<OwnKey>& group) {
+      return group.size() < together && !IsTriedAlone(key) && !IsTriedAlone(group.front()) &&
+             Needed(group.front()) == Needed(key);
+    });
+    (joined != groups.end() ? *joined : groups.emplace_back()).push_back(key);
   }
   return groups;
 }

@@ -32,9 +32,9 @@ const std::vector<OwnBench>& OwnBenches();
 struct OwnRun {
   std::string what = {};  // the settings or the effects
   Scenario scenario;
-  int stated = 1;  // so many keys or effects: neighbours in the list share a run where they can
+  int stated = 1;  // so many keys or effects: those that need the same beside them share a run
 };
-/// @param together  So many neighbours at the most share a run.
+/// @param together  So many share a run at the most.
 std::vector<OwnRun> KeyRuns(const OwnBench& bench, std::size_t together);
 /// Every effect of the catalogue at its default size.
 std::vector<OwnRun> EffectRuns(const OwnBench& bench, std::size_t together);

@@ -194,12 +194,13 @@ const std::vector<TwinComparison::KnownConstant>& CalibratedConstants() {
   return constants;
 }
 
-TwinComparison ComparisonWith(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator) {
+TwinComparison ComparisonWith(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator,
+                              const model::FollowMaker& follow) {
   const bool published = estimator == Estimator::kPublished;
   const std::vector<Reading> used = Usable(readings);
   TwinComparison comparison;
   comparison.format = &Format();
-  comparison.follow = FollowOnPsds(published);
+  comparison.follow = follow;
   comparison.unit = "um";
   comparison.to_SI = units::um;
   comparison.plausible = 0.5 * units::um;
@@ -236,9 +237,10 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& as_read, const Scena
   std::vector<diagnose::Cause> decided;
   if (!diagnose::IsExcluded(options, "convention")) decided = UndoLabelBlunder(stated, readings);
   const Scenario scenario = AsRead(stated, readings, options.model);
+  const model::FollowMaker follow = FollowOnPsds(options.model == Estimator::kPublished);
   diagnose::DiagnosisRun result = diagnose::DiagnoseByTwin(
       readings, scenario, options,
-      [&](const Scenario& believed) { return ComparisonWith(readings, believed, options.model); },
+      [&](const Scenario& believed) { return ComparisonWith(readings, believed, options.model, follow); },
       Alternatives(scenario), decided);
   for (const char* where : {"reverse_target", "reverse_reference", "index_offset"}) {
     result.diagnosis.invisible.push_back(
@@ -250,7 +252,8 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& as_read, const Scena
 diagnose::LinearRun Linear(const std::vector<Reading>& as_read, const Scenario& stated, Estimator estimator) {
   const std::vector<Reading> readings = Wanted(as_read);
   const Scenario scenario = AsRead(stated, readings, estimator);
-  return diagnose::CompareWithTwin(readings, scenario, ComparisonWith(readings, scenario, estimator));
+  const model::FollowMaker follow = FollowOnPsds(estimator == Estimator::kPublished);
+  return diagnose::CompareWithTwin(readings, scenario, ComparisonWith(readings, scenario, estimator, follow));
 }
 
 /// The unknowns begin with those of the target, position by position and the calibration last, and then those of the

@@ -14,9 +14,9 @@ namespace twinbench::benches::rotary {
 /// Four gains, two rolls, two distances, wavelength, incidence, as well as they are known once a bench has been set up.
 const std::vector<diagnose::TwinComparison::KnownConstant>& CalibratedConstants();
 
-/// @param readings  Those that are compared.
+/// @param readings  Those that are compared. @param follow  The twin on the PSDs.
 diagnose::TwinComparison ComparisonWith(const std::vector<Reading>& readings, const Scenario& scenario,
-                                        Estimator estimator);
+                                        Estimator estimator, const model::FollowMaker& follow);
 
 /// The twin that follows the record, its channels referred to the PSDs' surfaces [m].
 /// @param published  Of its light only equations 1-12 of Jywe et al. (2007) are believed, with what the scenario's

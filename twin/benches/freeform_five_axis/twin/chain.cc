@@ -1,28 +1,32 @@
 #include "twin/benches/freeform_five_axis/twin/chain.h"
 
+#include <cmath>
+
 namespace twinbench::sim {
 namespace {
 
 enum Squareness { kSyx, kSzx, kSzy, kSay, kSaz, kSbx, kSbz };
 
 Matrix3 Rx(double angle_rad) {
-  return Eigen::AngleAxisd(angle_rad, Vector3::UnitX()).toRotationMatrix();
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  return Matrix3{{1.0, 0.0, 0.0}, {0.0, c, -s}, {0.0, s, c}};
 }
 Matrix3 Ry(double angle_rad) {
-  return Eigen::AngleAxisd(angle_rad, Vector3::UnitY()).toRotationMatrix();
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  return Matrix3{{c, 0.0, s}, {0.0, 1.0, 0.0}, {-s, 0.0, c}};
 }
 Matrix3 Rz(double angle_rad) {
-  return Eigen::AngleAxisd(angle_rad, Vector3::UnitZ()).toRotationMatrix();
-}
-
-Pose Turned(const Matrix3& R) {
-  Pose pose = Pose::Identity();
-  pose.linear() = R;
-  return pose;
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  return Matrix3{{c, -s, 0.0}, {s, c, 0.0}, {0.0, 0.0, 1.0}};
 }
 
 Pose Moved(const Vector3& by_m) {
   return Pose(Eigen::Translation3d(by_m));
+}
+
+/// The frame with a body's error motion behind it.
+Pose Erring(Pose frame, const BodyError& e) {
+  return frame.translate(Vector3(e[0], e[1], e[2])).rotate(Rz(e[5]) * Ry(e[4]) * Rx(e[3]));
 }
 
 double Cubic(const CubicError& c, double t) {
@@ -32,7 +36,7 @@ double Cubic(const CubicError& c, double t) {
 }  // namespace
 
 Pose PoseOf(const BodyError& e) {
-  return Moved({e[0], e[1], e[2]}) * Turned(Rz(e[5]) * Ry(e[4]) * Rx(e[3]));
+  return Erring(Pose::Identity(), e);
 }
 
 MachineErrors ErrorsAt(const MachineSettings& machine, const MachineCommand& at) {
@@ -53,17 +57,19 @@ Pose X_MT(const MachineCommand& at, const MachineErrors& errors, double pivot_m)
   const Matrix3 S_a = Rz(s[kSaz]) * Ry(s[kSay]);
   const Matrix3 S_b = Rz(s[kSbz]) * Rx(s[kSbx]);
   const Vector3 pivot = pivot_m * Vector3::UnitZ();
-  return Moved(y_m * dir_y) * PoseOf(errors.body[1]) * Moved(z_m * dir_z) * PoseOf(errors.body[2]) * Moved(pivot) *
-         Turned(S_a * Rx(a_rad) * S_a.transpose()) * PoseOf(errors.body[3]) *
-         Turned(S_b * Ry(b_rad) * S_b.transpose()) * PoseOf(errors.body[4]) * Moved(-pivot);
+  Pose at_tool = Erring(Moved(y_m * dir_y), errors.body[1]);
+  at_tool = Erring(at_tool.translate(z_m * dir_z), errors.body[2]);
+  at_tool = Erring(at_tool.translate(pivot).rotate(S_a * Rx(a_rad) * S_a.transpose()), errors.body[3]);
+  at_tool = Erring(at_tool.rotate(S_b * Ry(b_rad) * S_b.transpose()), errors.body[4]);
+  return at_tool.translate(-pivot);
 }
 
 Pose X_MS(const MachineCommand& at, const MachineErrors& errors) {
-  return Moved(at[0] * Vector3::UnitX()) * PoseOf(errors.body[0]);
+  return Erring(Moved(at[0] * Vector3::UnitX()), errors.body[0]);
 }
 
 Pose X_SF(const MountSettings& mount, const BodyError& error) {
-  return Moved({mount.x_m, mount.y_m, mount.z_m}) * Turned(Rz(mount.yaw_rad)) * PoseOf(error);
+  return Erring(Moved({mount.x_m, mount.y_m, mount.z_m}).rotate(Rz(mount.yaw_rad)), error);
 }
 
 Vector3 VolumetricError_m(const MachineSettings& machine, const MachineCommand& at) {

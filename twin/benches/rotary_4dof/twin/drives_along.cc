@@ -75,16 +75,21 @@ std::vector<DrivenStop> DriveAlong(const Scenario& actual, const std::vector<Dri
 }
 
 DrivesOnce::Stops DrivesOnce::Along(const Scenario& actual, const std::vector<DriveStep>& steps) {
+  constexpr std::size_t kMostKept = 4;  // as believed, with a cause of the drives, and about either
   const RotarySettings& own = RotaryOf(actual);
-  const std::array<TableDrive, 2> tables = {DriveOf(own.target), DriveOf(own.reference)};
+  Driven asked{own.mechanics, {DriveOf(own.target), DriveOf(own.reference)}, steps};
   const std::scoped_lock lock(mutex_);
-  if (!stops_ || !(mechanics_ == own.mechanics) || tables_ != tables || steps_ != steps) {
-    stops_ = std::make_shared<const std::vector<DrivenStop>>(DriveAlong(actual, steps));
-    mechanics_ = own.mechanics;
-    tables_ = tables;
-    steps_ = steps;
+  const auto known = std::ranges::find_if(last_, [&](const Driven& driven) {
+    return driven.mechanics == asked.mechanics && driven.tables == asked.tables && driven.steps == asked.steps;
+  });
+  if (known != last_.end()) {
+    std::rotate(known, known + 1, last_.end());
+    return last_.back().stops;
   }
-  return stops_;
+  asked.stops = std::make_shared<const std::vector<DrivenStop>>(DriveAlong(actual, steps));
+  if (last_.size() == kMostKept) last_.erase(last_.begin());
+  last_.push_back(std::move(asked));
+  return last_.back().stops;
 }
 
 }  // namespace twinbench::sim

@@ -38,7 +38,7 @@ struct DrivenStop {
 /// One entry a step.
 std::vector<DrivenStop> DriveAlong(const Scenario& actual, const std::vector<DriveStep>& steps);
 
-/// Keeps what was driven last: a diagnosis asks for the same course again and again with other light, and dynamics
+/// Keeps what was driven last: a diagnosis asks for the same few courses again and again with other light, and dynamics
 /// that are stepped through cost a hundred times what the light does.
 class DrivesOnce {
  public:
@@ -46,11 +46,14 @@ class DrivesOnce {
   Stops Along(const Scenario& actual, const std::vector<DriveStep>& steps);
 
  private:
+  struct Driven {
+    MechanicsSettings mechanics;
+    std::array<TableDrive, 2> tables;
+    std::vector<DriveStep> steps;
+    Stops stops = {};
+  };
   std::mutex mutex_;
-  MechanicsSettings mechanics_;  // what was driven last depends on these ...
-  std::array<TableDrive, 2> tables_;
-  std::vector<DriveStep> steps_;  // ... and on these
-  Stops stops_;
+  std::vector<Driven> last_;
 };
 
 }  // namespace twinbench::sim
