@@ -43,22 +43,6 @@ TEST(EncoderFamilies, KeepMismatchAndQuadratureApartWhereTheZeroIsKnown) {
   EXPECT_GT(test::BestFit(test::FamilyOf(Families(encoder), "quadrature_error"), encoder.run).left, 0.99);
 }
 
-TEST(EncoderFamilies, RecoverBacklashOfStopsThatWereTakenWithoutRunUp) {
-  const Scenario scenario = EncoderScenario("stops");
-  auto readings = twinbench::test::RunEncoderTwin(scenario).readings;
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    const double way_rad = i == 0 ? 1.0 : readings[i].reference_rad - readings[i - 1].reference_rad;
-    const bool turning = way_rad == 0.0;  // the gap is still open to the side of the pass before
-    const int sense = turning ? -readings[i].direction : way_rad > 0.0 ? 1 : -1;
-    readings[i].measured_rad -= 0.5e-5 * sense;
-  }
-  const EncoderRun encoder = RunOf(readings, scenario);
-  const Family family = test::FamilyOf(Families(encoder), "backlash");
-  const test::Fit fit = test::BestFit(family, encoder.run);
-  EXPECT_LT(fit.left, 1e-9);
-  EXPECT_NEAR(test::ParametersOf(family, fit).at("width"), 1e-5, 1e-13);
-}
-
 // Its zero is taken from the mean offset of the run, which the clipping shifts a little.
 TEST(EncoderFamilies, RecoverClippingWithTheZeroFree) {
   const Scenario scenario = EncoderScenario("sweep");

@@ -84,21 +84,6 @@ TEST(EncoderPositioning, AZeroThatFollowsTheTemperatureIsNoFunctionOfTime) {
   EXPECT_EQ(answer.again.verdict, Verdict::kNone);
 }
 
-TEST(EncoderPositioning, AWalkIsNoSeriesOfSlips) {
-  for (const unsigned seed : {7u, 8u, 9u}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> step_deg(0.0, 0.002), noise_deg(0.0, 0.002);
-    Record record;
-    double walk_deg = 0.0;
-    for (int k = 0; k < 600; ++k) {
-      walk_deg += step_deg(random);
-      record.Add(0.5 * k, 2.0 * k, 2.0 * k + walk_deg + noise_deg(random), 1, 0);
-    }
-    const Answer answer = Ask(record);
-    EXPECT_FALSE(answer.Names("slip", 0.5)) << answer.Words();
-  }
-}
-
 TEST(EncoderPositioning, ASlipIsOneWhereItIsSuddenAndSmall) {
   for (const unsigned seed : {10u, 11u, 12u}) {
     std::mt19937_64 random(seed);

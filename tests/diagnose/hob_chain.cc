@@ -28,7 +28,6 @@ class Machine {
       amplitude_rad_.push_back(8.0 * arcsec * stream.Uniform() / k);
       phase_rad_.push_back(kTurn_rad * stream.Uniform());
     }
-    walk_ = Stream(chain.seed, "hob.walk");
   }
 
   std::vector<Reading> Run() {
@@ -107,8 +106,6 @@ class Machine {
       if (h.name == "tone") e_rad += WaveOf(h, kTurn_rad * Of(h, "frequency") * now_s_, 1.0);
       if (h.name == "unlisted_order") e_rad += WaveOf(h, th_rad, Of(h, "order"));
       if (h.name == "unlisted_direction") e_rad += direction * WaveOf(h, th_rad, Of(h, "order"));
-      if (h.name == "unlisted_growth") e_rad += now_s_ / 2400.0 * WaveOf(h, th_rad, Of(h, "order"));
-      if (h.name == "unlisted_walk") e_rad += walked_rad_;
     }
     return e_rad;
   }
@@ -149,7 +146,6 @@ class Machine {
     th_rad -= RingError_rad("table", th_rad - head_rad);
     now_s_ += std::abs(th_rad - at_rad_) / std::abs(v);
     Travel(th_rad);
-    walked_rad_ += Sum("unlisted_walk", "", [&](const HiddenCause& h) { return Of(h, "step"); }) * walk_.Normal();
     double hob_rad = th_rad / kRatio, e_rad = 0.0;
     for (int round = 0; round < 3; ++round) {
       e_rad = Motion_rad(th_rad, hob_rad, direction);
@@ -195,10 +191,10 @@ class Machine {
   }
 
   const HobChain& chain_;
-  Stream noise_, walk_{1, "hob.walk"};
+  Stream noise_;
   std::vector<double> amplitude_rad_, phase_rad_;
   std::vector<Reading> readings_;
-  double now_s_ = 0.0, at_rad_ = 0.0, torsion_ = 0.0, play_rad_ = 0.0, walked_rad_ = 0.0;
+  double now_s_ = 0.0, at_rad_ = 0.0, torsion_ = 0.0, play_rad_ = 0.0;
   int setup_ = 0, pass_ = 0;
 };
 

@@ -7,7 +7,6 @@
 
 #include "tests/diagnose/hob_chain.h"
 #include "tests/diagnose/told.h"
-#include "tests/support/night.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/diagnose.h"
@@ -125,18 +124,6 @@ TEST(HobDiagnosis, TellsADelayFromAGapAtTwoSpeeds) {
   EXPECT_FALSE(NamesIn(DiagnosisOf(chain).diagnosis).contains("latency"));
 }
 
-// 40 runs at a rate of 0.5 %: two or more in 2 % of cases; 12 at a rate of 30 %: fewer than two in 9 %.
-TEST(HobDiagnosis, RaisesHardlyAnyAlarmOnCleanRuns) {
-  int alarms = 0;
-  for (std::uint64_t seed = 100; seed < 100 + static_cast<std::uint64_t>(twinbench::test::ByNight(40, 12));
-       ++seed) {
-    HobChain chain = Short();
-    chain.seed = seed;
-    alarms += DiagnosisOf(chain).diagnosis.verdict != Verdict::kNone;
-  }
-  EXPECT_LE(alarms, 1);
-}
-
 TEST(HobDiagnosis, FindsStructureWithoutANameAsUnknown) {
   const std::vector<std::pair<HiddenCause, std::string>> unlisted = {
       {{"unlisted_order", "", {{"order", 7.0}, {"amplitude", 0.1 * arcsec}}},
@@ -194,17 +181,6 @@ TEST(HobDiagnosis, ExtendsTheScenarioSoThatNothingIsLeft) {
   EXPECT_NEAR(extended.effects[1].parameters.at("amplitude"), 0.3 * arcsec, 0.03 * arcsec);
   EXPECT_TRUE(extended.empiricals.empty());
   EXPECT_EQ(Diagnose(readings, extended, Options()).diagnosis.verdict, Verdict::kNone);
-}
-
-TEST(HobDiagnosis, MeasuresItsGainOnPassesThatItWasNotFittedTo) {
-  HobChain chain = Short();
-  chain.hidden = {{"worm", "", {{"amplitude", 0.3 * arcsec}, {"phase", 2.0}}}};
-  const Gain gain = DiagnosisOf(chain).diagnosis.gain;
-  EXPECT_TRUE(gain.positive);
-  EXPECT_EQ(gain.folds, 2);  // one pass of every set-up at a time
-  // 0.3 / sqrt(2) x 0.8 arcsec of the worm over 0.06 of noise can be removed, and nearly all of it is.
-  EXPECT_GT(gain.fraction_removed, 0.9);
-  EXPECT_LT(gain.fraction_removed, 1.1);
 }
 
 TEST(HobDiagnosis, TabulatesTheLinesOfTheChain) {

@@ -44,13 +44,6 @@ TEST(LombScargle, IsWhatTheLeastSquaresOfASineTakeOff) {
   }
 }
 
-TEST(LombScargle, OfASineIsHalfTheReadingsAtItsFrequencyAlone) {
-  const Eigen::VectorXd at = Eigen::VectorXd::LinSpaced(48, 0.0, 47.0) * units::turn / 48.0;
-  const Eigen::MatrixXd power = LombScargle(at, 1.0, 24).Of((5.0 * at.array() + 0.3).sin().matrix());
-  for (int order = 1; order <= 24; ++order)
-    EXPECT_NEAR(power(order - 1, 0), order == 5 ? 24.0 : 0.0, 1e-9) << order;
-}
-
 TEST(JarqueBera, OfTwoLevelsIsASixthOfTheReadings) {
   Eigen::VectorXd values(12);
   values << 3, 1, 3, 1, 1, 3, 1, 3, 3, 1, 1, 3;

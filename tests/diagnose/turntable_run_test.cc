@@ -17,7 +17,7 @@ namespace twinbench::diagnose::turntable {
 namespace {
 
 using test::BenchReadings, test::CarefulScenario, test::PublishedScenario, test::Wrong;
-using units::arcsec, units::deg;
+using units::arcsec;
 
 LinearRun RunOf(const std::vector<Reading>& readings, const Scenario& scenario) {
   return benches::turntable::Linear(readings, scenario, Estimator::kRigorous);
@@ -34,10 +34,6 @@ double LeftOver(const LinearRun& run) {
 Scenario Quiet(Scenario scenario) {
   scenario.noise_free = true;
   return scenario;
-}
-
-EffectSettings Effect(const std::string& name, const std::string& where, std::map<std::string, double> parameters) {
-  return {name, where, std::move(parameters), "", {}};
 }
 
 TEST(TurntableRun, AbsorbsAWholeBenchThatIsAsStated) {
@@ -78,38 +74,6 @@ TEST(TurntableRun, BelievesTheStatedInstrument) {
   EXPECT_GT(without([](Scenario& s) { TurntableOf(s).collimator.x_per_kelvin_rad = 0.0; }), 1.0);
   EXPECT_GT(without([](Scenario& s) { TurntableOf(s).mirror.flatness_m = 0.0; }), 1.0);
   EXPECT_GT(without([](Scenario& s) { TurntableOf(s).turntable.backlash_rad = 0.0; }), 1.0);
-}
-
-TEST(TurntableRun, BelievesTheEffectsOfTheScenario) {
-  Wrong wrong;
-  wrong.roll_rad = 5e-3;
-  wrong.gain_error = 0.004;
-  wrong.drift_rad_s = {1.0 * arcsec / 3600.0, 0.0};
-  wrong.curvature = 0.5;
-  wrong.creep_rad = {0.0, 0.6 * arcsec};
-  wrong.slip_rad = {2.0 * arcsec, 0.0};
-  wrong.tone_rad = {0.0, 1.0 * arcsec};
-  wrong.kelvin_rad = {2.0 * arcsec, 0.0};
-  wrong.ripple_rad = {0.0, 0.1 * arcsec};
-  wrong.settling_rad = 3.0 * arcsec;
-  wrong.settling_s = 4.0;
-  Scenario scenario = CarefulScenario();
-  const std::vector<Reading> readings = BenchReadings(Quiet(scenario), wrong, 4);
-  EXPECT_GT(LeftOver(RunOf(readings, scenario)), 10.0);
-  scenario.effects = {
-      Effect("autocollimator_roll", "", {{"angle", 5e-3}}),
-      Effect("autocollimator_scale", "", {{"gain_error", 0.004}}),
-      Effect("autocollimator_drift", "x", {{"rate", wrong.drift_rad_s[0]}, {"curvature", 0.5}}),
-      Effect("mount_creep", "y", {{"amplitude", 0.6 * arcsec}, {"time_constant", 60.0}}),
-      Effect("slip", "x", {{"step", 2.0 * arcsec}, {"at_reading", 100.0}}),
-      Effect("tone", "y", {{"amplitude", 1.0 * arcsec}, {"frequency", 1.0 / 900.0}, {"phase", 0.7}}),
-      Effect("autocollimator_temperature", "x", {{"coefficient", 2.0 * arcsec}}),
-      Effect("autocollimator_periodic", "y",
-             {{"amplitude", 0.1 * arcsec}, {"period", 1.7 * arcsec}, {"phase", 2.0}}),
-      Effect("settling", "", {{"amplitude", 3.0 * arcsec}, {"time_constant", 4.0}}),
-      Effect("outliers", "", {{"fraction", 0.01}, {"size", 3.0 * arcsec}})};
-  // The ripple is on the other axis than the temperature, whose zero it follows in the twin but not in this bench.
-  EXPECT_LT(LeftOver(RunOf(readings, scenario)), 0.2);
 }
 
 TEST(TurntableRun, TakesOffAnEmpiricalSignal) {
