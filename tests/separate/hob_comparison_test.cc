@@ -2,6 +2,7 @@
 
 #include "tests/separate/hob_bench.h"
 #include "twin/benches/hob_transmission/estimators/comparison.h"
+#include "twin/benches/hob_transmission/estimators/two_positions.h"
 
 namespace twinbench::separate::hob {
 namespace {
@@ -88,6 +89,108 @@ TEST(TransmissionByInterferometer, IsEmptyWithoutAnInterferometer) {
   const auto positions = MeasurePositions(Samples(machine, Heads({0.0})), OrdersUpTo(60), Signal::kInterferometer);
   EXPECT_TRUE(positions.empty());
   EXPECT_TRUE(TransmissionByInterferometer(positions, 1).orders.empty());
+}
+
+constexpr double kEncoder_arcsec = 5.8, kEncoderPhase_rad = 2.72;  // the interferometer's result in the paper
+
+/// |e_T + psi| = 13 and |e_T - psi| = 10 arcsec with |psi| = 5.8 arcsec: |e_T|^2 = (13^2 + 10^2) / 2 - 5.8^2 and
+/// 4 |e_T| |psi| cos(angle between them) = 13^2 - 10^2.
+struct OrderOne {
+  double amplitude_arcsec = std::sqrt((169.0 + 100.0) / 2.0 - kEncoder_arcsec * kEncoder_arcsec);
+  double phase_rad = kEncoderPhase_rad + std::acos(69.0 / (4.0 * amplitude_arcsec * kEncoder_arcsec));
+};
+
+/// The machine of the paper, its two positions 180 deg apart: 13 arcsec at 0, 10 arcsec at 180 deg.
+HobMachine PaperMachine() {
+  const OrderOne one;
+  return {
+      .transmission = {{1, one.amplitude_arcsec, one.phase_rad}, {2, 1.2, 0.3}, {22, 2.0, -1.0}, {44, 0.8, 2.0}},
+      .encoder = {{1, kEncoder_arcsec, kEncoderPhase_rad}},
+      .noise_arcsec = 0.5};
+}
+
+TEST(SeparateTwoPositions, RecoversTheEncoderErrorOfThePaper) {
+  for (const int direction : {1, -1}) {
+    const auto positions =
+        MeasurePositions(Samples(PaperMachine(), {{0, 0.0, direction, 0, 4}, {1, 180.0, direction, 0, 4}}), {});
+    // u of an order: 0.5 sqrt(2 / 5760) = 0.01 arcsec, four times that.
+    EXPECT_NEAR(Amplitude(positions[0].series.At(1)) / kArcsec, 13.0, 0.04);
+    EXPECT_NEAR(Amplitude(positions[1].series.At(1)) / kArcsec, 10.0, 0.04);
+    const TwoPositions result = SeparateTwoPositions(positions[0], positions[1]);
+    EXPECT_EQ(result.status, OrderStatus::kSeparated);
+    EXPECT_NEAR(Amplitude(result.encoder) / kArcsec, 5.8, 0.3);  // asked for by the task; u is 0.007
+    EXPECT_NEAR(Phase(result.encoder), 2.72, 0.01);
+    const OrderOne one;
+    EXPECT_NEAR(Amplitude(result.transmission) / kArcsec, one.amplitude_arcsec, 0.04);
+    EXPECT_NEAR(Phase(result.transmission), std::remainder(one.phase_rad, kTestTurn_rad), 0.004);
+  }
+}
+
+TEST(SeparateTwoPositions, GivesTheSameCorrectedOrderFromEitherPosition) {
+  // Anything but opposite heads: equation 15 is the same for the second set-up.
+  const auto positions = MeasurePositions(Samples(PaperMachine(), Heads({15.0, 170.0})), {});
+  const TwoPositions a = SeparateTwoPositions(positions[0], positions[1]);
+  const TwoPositions b = SeparateTwoPositions(positions[1], positions[0]);
+  EXPECT_LT(DistanceArcsec(a.transmission.value, b.transmission.value), 1e-9);  // rounding
+  EXPECT_LT(DistanceArcsec(a.corrected.At(1).value, a.transmission.value), 1e-12);
+  EXPECT_EQ(a.corrected.At(22).value, positions[0].series.At(22).value);
+  const Complex by_equation_15 =
+      positions[0].series.At(1).value - a.encoder.value * std::polar(1.0, -15.0 * units::deg);
+  EXPECT_LT(DistanceArcsec(a.transmission.value, by_equation_15), 1e-9);
+}
+
+/// Variance of both parts of e_T and psi over many runs, over what is stated.
+struct Ratios {
+  double transmission, encoder, transmission_factor;
+};
+
+Ratios ScatterOverStated(double second_head_deg, double u_head_deg) {
+  HobMachine machine = PaperMachine();
+  machine.samples_per_turn = 180;
+  machine.noise_arcsec = 1.0;
+  constexpr int kRuns = 300;
+  Stream heads(5, "heads");
+  double e2 = 0.0, p2 = 0.0, u_e2 = 0.0, u_p2 = 0.0, m2 = 0.0;
+  for (int run = 0; run < kRuns; ++run) {
+    // One truth; the head stands where nobody thinks it does.
+    std::vector<HobSample> samples =
+        Samples(machine, Heads({u_head_deg * heads.Normal(), second_head_deg + u_head_deg * heads.Normal()}, 3.0),
+                50 + run);
+    for (HobSample& s : samples) s.head_rad = s.setup == 0 ? 0.0 : second_head_deg * units::deg;
+    const auto positions = MeasurePositions(samples, OrdersUpTo(12));
+    const TwoPositions r = SeparateTwoPositions(positions[0], positions[1], u_head_deg * units::deg);
+    e2 += std::norm(r.transmission.value - CoefficientOf(machine.transmission, 1));
+    p2 += std::norm(r.encoder.value - CoefficientOf(machine.encoder, 1));
+    u_e2 += r.transmission.cov.trace();
+    u_p2 += r.encoder.cov.trace();
+    m2 += positions[0].series.At(1).cov.trace();
+  }
+  return {e2 / u_e2, p2 / u_p2, std::sqrt(u_e2 / m2)};
+}
+
+TEST(SeparateTwoPositions, StatesTheScatterOfItsResultsWithTheUncertaintyOfTheHeadAngles) {
+  // 0.5 deg of 5.8 arcsec is 0.05 arcsec, as much as the readings' 0.06 arcsec.
+  for (const auto& [head_deg, u_head_deg] : {std::pair{180.0, 0.0}, {120.0, 0.0}, {40.0, 0.0}, {120.0, 0.5}}) {
+    const Ratios ratios = ScatterOverStated(head_deg, u_head_deg);
+    // 600 squares: 6 %, three times that and something for the estimated scatter.
+    EXPECT_NEAR(ratios.transmission, 1.0, 0.2) << head_deg;
+    EXPECT_NEAR(ratios.encoder, 1.0, 0.2) << head_deg;
+    if (u_head_deg > 0.0) continue;
+    const double closed_form = std::sqrt(2.0) / (2.0 * std::sin(0.5 * head_deg * units::deg));
+    EXPECT_NEAR(ratios.transmission_factor / closed_form, 1.0, 0.05) << "both equally noisy on average";
+  }
+}
+
+TEST(SeparateTwoPositions, SaysSoIfBothHeadsStandAtOnePlace) {
+  const auto positions = MeasurePositions(Samples(PaperMachine(), Heads({30.0, 390.0})), {});
+  const TwoPositions result = SeparateTwoPositions(positions[0], positions[1]);
+  EXPECT_EQ(result.status, OrderStatus::kSumOnly);
+  EXPECT_TRUE(std::isnan(result.encoder.value.real()));
+}
+
+TEST(SeparateTwoPositions, RefusesDirectionsThatDiffer) {
+  const auto positions = MeasurePositions(Samples(PaperMachine(), {{0, 0.0, 1, 0, 2}, {1, 180.0, -1, 0, 2}}), {});
+  EXPECT_THROW(SeparateTwoPositions(positions[0], positions[1]), std::logic_error);
 }
 
 }  // namespace

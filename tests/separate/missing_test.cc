@@ -56,13 +56,6 @@ TEST(Separate, LosesEverythingThatATornRingLeavesOpen) {
   EXPECT_GE(lost, 11);  // one position may lie where the open slope crosses zero
 }
 
-TEST(Separate, AcceptsMountingConstantsOfEverySetUp) {
-  ExactCircles c = ReadExactly(36, {0, 1, 7, 11}, Clamping::kReclamp);
-  for (Motion& m : c.motions) m.SetValues(m.Values() + 1e-5 * (m.setup + 1) * Vector4(1, -2, 3, 1));
-  // Added, not turned: second order of 8 arcsec against 5 arcsec stays below the limits.
-  ExpectTruth(Separate(c.motions, Bench(), Options(36, Clamping::kReclamp)), c);
-}
-
 TEST(Separate, RefusesAnglesOffTheGridAReferenceThatDoesNotTurnBackAndAnEmptyRecord) {
   const std::vector<Motion> right = ReadExactly(12, {0, 1}, Clamping::kReseat).motions;
   std::vector<Motion> off_grid = right, not_back = right;

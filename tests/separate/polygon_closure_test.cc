@@ -124,35 +124,6 @@ TEST(ClosePolygon, IsDualClosureWhereClampingsAreAFaceApart) {
   EXPECT_NEAR(closure.polygon.U_rad(3), closure.noise.u_rad * std::sqrt(11.0) / 12.0, 1e-9 * arcsec);
 }
 
-TEST(ClosePolygon, ScattersAsItStates) {
-  constexpr int kSeeds = 200;
-  double curve = 0.0, faces = 0.0;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
-    Stream truth(static_cast<std::uint64_t>(seed), "truth"), noise(static_cast<std::uint64_t>(seed), "noise");
-    NulledPolygon polygon = AnyPolygon(12, {0.0, 11.0, 40.0, 147.0, 222.0}, {1, 2, 3}, truth);
-    polygon.noise_rad = 0.05 * arcsec;
-    polygon.passes = 2;
-    const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 12, 3);
-    const Eigen::VectorXd cs = closure.encoder.coefficients_rad.tail(6);
-    Eigen::VectorXd error(6);
-    for (int k = 0; k < 3; ++k) {
-      const TrueWave& w = polygon.encoder[static_cast<std::size_t>(k)];
-      error.segment<2>(2 * k) = cs.segment<2>(2 * k) - Eigen::Vector2d(w.cos_rad, w.sin_rad);
-    }
-    const Eigen::MatrixXd cov = closure.encoder.cov_rad2.bottomRightCorner(6, 6);
-    curve += (error.cwiseAbs2().array() / cov.diagonal().array()).sum() / 6.0 / kSeeds;
-    for (std::size_t i = 0; i < 12; ++i) {
-      const auto at = static_cast<Eigen::Index>(i);
-      const double off_rad =
-          closure.polygon.value_rad[at] - polygon.face_rad[static_cast<std::size_t>(closure.face[i])];
-      faces += std::pow(off_rad / closure.polygon.U_rad(at), 2) / 12.0 / kSeeds;
-    }
-  }
-  // Of 1200 and 2400 squares, some of them correlated; 60 degrees of freedom behind u make 1 / (1 - 2 / 60).
-  EXPECT_NEAR(curve, 1.034, 0.2);
-  EXPECT_NEAR(faces, 1.034, 0.15);
-}
-
 TEST(ClosePolygon, SaysThatThereAreOrdersAboveTheHighest) {
   Stream truth(5, "truth"), noise(5, "noise");
   NulledPolygon polygon = AnyPolygon(24, EvenOffsets(25), {1, 9}, truth);

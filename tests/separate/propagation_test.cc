@@ -112,56 +112,6 @@ void AddNoise(std::vector<Motion>& motions, const Matrix4& cov, Stream& stream) 
   }
 }
 
-struct Whitened {
-  Eigen::MatrixXd map;  // rows: unit-variance combinations of the table's values
-};
-
-Whitened Whiten(const Eigen::MatrixXd& cov) {
-  // Lengths in 0.1 m, as angles: the covariance has blocks of rad^2 and m^2.
-  const auto [values, vectors] = EigenOfSymmetric(cov);
-  const double least = 1e-6 * values.maxCoeff();
-  const auto kept = (values.array() > least).count();
-  const Eigen::VectorXd inverse_root = values.tail(kept).cwiseSqrt().cwiseInverse();
-  return {inverse_root.asDiagonal() * vectors.rightCols(kept).transpose()};
-}
-
-Eigen::VectorXd Stacked(const TableEstimate& estimate) {
-  std::vector<double> all;
-  for (const Component c : estimate.components) {
-    for (const double v : estimate.value[c]) all.push_back(v);
-  }
-  return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
-}
-
-class MonteCarlo : public testing::TestWithParam<Clamping> {};
-INSTANTIATE_TEST_SUITE_P(BothWays, MonteCarlo, testing::Values(Clamping::kReclamp, Clamping::kReseat));
-
-TEST_P(MonteCarlo, StatesACovarianceThatMatchesTheScatter) {
-  constexpr int kRuns = 200;
-  constexpr int n = 12;
-  const auto zero = EmptyMotions(n, {0, 1, 4}, 2, ReadingCovariance());
-  const Separator separator(zero, Bench(), Options(n, GetParam()));
-  const Separation at_zero = separator.Separate(zero);
-  const Whitened target = Whiten(at_zero.target.cov.ToDense()), reference = Whiten(at_zero.reference.cov.ToDense());
-  Stream stream(21, "test.noise");
-  double sum_target = 0.0, sum_reference = 0.0, sum_chi2 = 0.0;
-  for (int run = 0; run < kRuns; ++run) {
-    auto motions = zero;
-    AddNoise(motions, ReadingCovariance(), stream);
-    const Separation found = separator.Separate(motions);
-    sum_target += (target.map * Stacked(found.target)).squaredNorm();
-    sum_reference += (reference.map * Stacked(found.reference)).squaredNorm();
-    sum_chi2 += found.chi2.sum();
-  }
-  const auto expect_mean = [](double sum, double dof) {
-    // A chi-squared variable of `dof`, mean of 200: four standard deviations.
-    EXPECT_NEAR(sum / kRuns, dof, 4.0 * std::sqrt(2.0 * dof / kRuns));
-  };
-  expect_mean(sum_target, static_cast<double>(target.map.rows()));
-  expect_mean(sum_reference, static_cast<double>(reference.map.rows()));
-  expect_mean(sum_chi2, at_zero.dof);  // diagonal covariance: the four add up
-}
-
 TEST(Separate, ScalesUncertaintiesWhenTheResidualsExceedTheStatedNoise) {
   Stream stream(22, "test.noise");
   auto motions = EmptyMotions(12, {0, 1, 4}, 2, ReadingCovariance());

@@ -1,10 +1,15 @@
-#include "twin/benches/rotary_4dof/estimators/published.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "tests/separate/bench.h"
+#include "tests/support/oracle_poses.h"
+#include "tests/support/truth_rows.h"
+#include "twin/benches/rotary_4dof/estimators/chain.h"
+#include "twin/benches/rotary_4dof/estimators/grating_model.h"
+#include "twin/benches/rotary_4dof/estimators/published.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::separate {
@@ -94,6 +99,116 @@ TEST(SeparatePublished, StatesTheNoiseOfItsElimination) {
 TEST(SeparatePublished, NeedsTwoSetUpsOneStepApart) {
   const auto motions = EmptyMotions(12, {0, 4}, 1, Matrix4::Identity());
   EXPECT_THROW(SeparatePublished(motions, Bench(), Layouts(12, Clamping::kReseat)), InputError);
+}
+
+using nlohmann::json;
+
+const std::string kOracle = std::string(TWINBENCH_TEST_DATA) + "/oracle/full_circle_";
+
+Truth OracleTruth(const std::string& mode) {
+  const json truth = test::ReadTruthFile(kOracle + mode + "_truth.json");
+  return {test::ErrorsOfRows(truth.at("target"), false),
+          test::ErrorsOfRows(truth.at("reference_rotor_frame"), true)};
+}
+
+Separation SeparateOracle(const std::string& mode, Estimator estimator = Estimator::kRigorous) {
+  const auto readings = ReadReadingsCsv(kOracle + mode + ".csv");
+  const auto motions = measure::Measure(readings, Bench(), measure::Calibration{}, estimator);
+  return Separate(motions, Bench(),
+                  Options(36, mode == "reclamp" ? Clamping::kReclamp : Clamping::kReseat, estimator));
+}
+
+class Oracle : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Modes, Oracle, testing::Values("reclamp", "reseat"));
+
+TEST_P(Oracle, ComesBackWithZeroMeanAndWithinTheUncertaintyOfARunWithoutNoise) {
+  const Separation found = SeparateOracle(GetParam());
+  double largest = 0.0;
+  for (const test::SeparatedTable& t : test::BothTables(found, OracleTruth(GetParam()))) {
+    for (const Component c : t.estimate.components) {
+      // The acceptance limit of the bench; what is left is third order and the nine digits of the files.
+      EXPECT_LT(t.RmsError(c), IsAngle(c) ? 0.02 * units::arcsec : 0.02 * units::um) << t.Name(c);
+      largest = std::max(largest, t.ErrorOverU(c));
+      const std::vector<double>& values = t.estimate.value[c];
+      EXPECT_NEAR(std::accumulate(values.begin(), values.end(), 0.0), 0.0, 1e-16);  // 36 values of 1e-5: rounding
+    }
+  }
+  EXPECT_LT(found.residual_rms.head<3>().maxCoeff(), 0.01 * units::arcsec);
+  // The second-order terms nobody reads are known by size only: of order 1, within three.
+  EXPECT_LT(largest, 3.0);
+  EXPECT_GT(largest, 0.1);
+}
+
+TEST(OracleRuns, OfReclampGivesBothRadialComponentsOfTheReferenceAndReseatOnlyOne) {
+  const json reclamp = ToJson(SeparateOracle("reclamp")), reseat = ToJson(SeparateOracle("reseat"));
+  EXPECT_EQ(reclamp["reference"].count("dx_um"), 1u);
+  EXPECT_EQ(reseat["reference"].count("dx_um"), 0u);
+  EXPECT_EQ(reclamp["target"].count("dx_um"), 0u);
+  EXPECT_EQ(reseat["target"]["position_deg"].size(), 36u);
+  EXPECT_NEAR(reseat["target"]["position_deg"][35].get<double>(), 350.0, 1e-9);  // rounding
+}
+
+TEST(OracleRuns, ShowsWhatThePublishedEquationsMissWhenTheGratingIsReclamped) {
+  // Same tables, same readings: the scalar equations are right in `reseat` up to order one, wrong in `reclamp` by
+  // the full wobble of the reference (docs/theory.md 3.1: 1.5 arcsec of 2).
+  const Separation reclamp = SeparateOracle("reclamp", Estimator::kPublished);
+  EXPECT_GT(test::BothTables(reclamp, OracleTruth("reclamp"))[0].RmsError(Component::kEx), 1.0 * units::arcsec);
+}
+
+/// The oracle's poses give the reference's error in its base frame.
+Vector6 ToRotorFrame(Vector6 e, double reference_rad) {
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(-reference_rad).toRotationMatrix();
+  e.head<2>() = turn * e.head<2>();
+  e.segment<2>(3) = turn * e.segment<2>(3);
+  return e;
+}
+
+TEST(GratingPose, PutsTheSpotsWhereTheIndependentOraclePutsThem) {
+  const auto poses = test::OraclePoses();
+  ASSERT_GE(poses.size(), 100u);
+  for (const test::OraclePose& pose : poses) {
+    const bool reclamp = pose.is_reclamped;
+    const Stop stop{pose.target_rad, pose.reference_rad, reclamp ? 0.0 : -pose.shift_rad,
+                    reclamp ? pose.shift_rad : 0.0};
+    PoseErrors errors;
+    errors.target = Eigen::Map<const Vector6>(pose.target.data());
+    errors.reference = ToRotorFrame(Eigen::Map<const Vector6>(pose.reference.data()), stop.reference_rad);
+    const Vector4 spots_m = measure::PredictSpots(MotionOf(GratingPose(stop, errors, Bench())), Bench());
+    // The oracle prints nine digits of a micrometre.
+    EXPECT_LT((spots_m - Eigen::Map<const Vector4>(pose.spots_m.data())).cwiseAbs().maxCoeff(), 2e-15) << reclamp;
+  }
+}
+
+/// Exact chain of one stop as a function of the columns of its first-order model.
+Vector4 ChainAt(const Design& design, int setup, int target, const Eigen::VectorXd& x) {
+  const bool reseat = design.setups[static_cast<std::size_t>(setup)].clamping == Clamping::kReseat;
+  PoseErrors errors;
+  errors.target << x[0], x[1], x[2], 0.0, kLengthUnit_m * x[3], 0.0;
+  errors.reference << x[4], x[5], x[6], kLengthUnit_m * x[7], kLengthUnit_m * x[8], 0.0;
+  errors.mount << x[10], x[11], x[9], 0.0, kLengthUnit_m * x[12], 0.0;
+  if (reseat) errors.seat << x[13], x[14], 0.0, kLengthUnit_m * x[15], kLengthUnit_m * x[16], 0.0;
+  const Stop stop = design.StopAt(design.setups[static_cast<std::size_t>(setup)], target);
+  Vector4 motion = MotionOf(GratingPose(stop, errors, Bench()));
+  motion[3] /= kLengthUnit_m;
+  return motion;
+}
+
+TEST(ModelStop, IsTheDerivativeOfTheExactChain) {
+  constexpr double kStep = 1e-5;
+  for (const Clamping clamping : {Clamping::kReclamp, Clamping::kReseat}) {
+    const Design design = MakeDesign(12, {0, 1, 5}, clamping, Bench());
+    for (int setup = 0; setup < 3; ++setup) {
+      for (int target = 0; target < 12; ++target) {
+        const StopModel model = ModelStop(design, setup, target);
+        for (int c = 0; c < model.columns; ++c) {
+          const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(StopModel::kMost, c);
+          const Vector4 difference = ChainAt(design, setup, target, step) - ChainAt(design, setup, target, -step);
+          // Third derivatives are of order 1: step^2 = 1e-10.
+          EXPECT_LT((difference / (2 * kStep) - model.d.col(c)).cwiseAbs().maxCoeff(), 1e-9) << c;
+        }
+      }
+    }
+  }
 }
 
 }  // namespace
