@@ -117,14 +117,6 @@ TEST_F(BadInput, OfASizeThatNobodyBuildsIsRefused) {
   }
 }
 
-TEST_F(BadInput, OfAFileThatIsNotThereIsRefused) {
-  ExpectRefused({"run", "none.toml", "-o", "out"}, "none.toml: ");
-  ExpectRefused({"export", "none", "--readings", "r.csv"}, "none: ");
-  ExpectRefused({"separate", "none"}, "none: ");
-  ExpectRefused({"score", "none"}, "none");
-  ExpectRefused({"import", "none.csv", "--scenario", "small.toml", "-o", "out"}, "none.csv");
-}
-
 TEST_F(BadInput, OfANearlyRightFileNamesTheRightOneBesideItOrAmongTheShippedScenarios) {
   ExpectRefused({"run", "smal.toml", "-o", "out"}, "smal.toml: ");
   ExpectRefused({"check", "here/small.toml"}, "here/small.toml: ");

@@ -43,13 +43,6 @@ TEST_F(Commands, EveryKeyOfANewScenarioIsReadWhenItsHashIsTakenAway) {
   }
 }
 
-TEST_F(Commands, AScenarioThatCannotBeIsNotFine) {
-  Write("bad.toml", "bench = \"rotary_4dof\"\n[laser]\nwavelength_nm = \"red\"\n");
-  ExpectRefused({"check", "bad.toml"}, "bad.toml:3: ");
-  Write("small.toml", kSmall);
-  EXPECT_EQ(Json({"check", "small.toml", "--json", "-"}).at("readings"), 124);
-}
-
 TEST_F(Commands, ACheckSaysDurationLossesAndWhichUTheRunStates) {
   Write("small.toml", kSmall);
   const nlohmann::json expected = Json({"check", "small.toml", "--json", "-"}).at("expected");

@@ -101,11 +101,6 @@ TEST_F(Diagnose, OfAFolderTestsTheResidualsOfTheScenario) {
   EXPECT_THAT(text, HasSubstr("of 5 show"));
 }
 
-TEST_F(Diagnose, OfARunWithItsOwnScenarioFindsNothing) {
-  // The folder's scenario holds the effect: readings and belief agree.
-  EXPECT_EQ(Json({"diagnose", "run", "--cache", "cache", "--json", "-"}).at("verdict"), "none");
-}
-
 TEST_F(Diagnose, DoesNotNameAnEffectThatIsStruck) {
   const nlohmann::json diagnosis = Json(Arguments({"--json", "-", "--strike", "psd_gain"}));
   EXPECT_EQ(diagnosis.at("verdict"), "unknown") << "what it does to the readings is seen all the same";

@@ -86,17 +86,6 @@ TEST_F(Evaluate, SeparationJsonHasTheAgreedKeys) {
   EXPECT_TRUE(json.at("residual_rms").is_object());
 }
 
-TEST_F(Evaluate, EstimatesHaveZeroMeanAndPositionsOfACircle) {
-  const auto target = Json({"separate", "run", "--json", "-"}).at("target");
-  double sum_arcsec = 0.0;
-  for (std::size_t k = 0; k < 12; ++k) {
-    EXPECT_NEAR(target.at("position_deg")[k], 30.0 * static_cast<double>(k), 1e-9);
-    sum_arcsec += target.at("ez_arcsec")[k].get<double>();
-    EXPECT_GT(target.at("u_ez_arcsec")[k].get<double>(), 0.0);
-  }
-  EXPECT_NEAR(sum_arcsec, 0.0, 1e-6);  // values of 10 arcsec, doubles
-}
-
 TEST_F(Evaluate, ScorePrintsEveryComponentAndIsWithinItsUncertainty) {
   const std::string text = Succeed({"score", "run"});
   const auto json = Json({"score", "run", "--json", "-"});

@@ -40,17 +40,6 @@ TEST_F(Run, GivesTheSameBytesForTheSameSeedOnlyAndTakesEverySeedOf64Bits) {
   EXPECT_EQ(ReadingsOf("last"), ReadingsOf("again"));
 }
 
-TEST_F(Run, OfItsOwnResolvedScenarioGivesTheSameBytes) {
-  Write("t.csv", "position_deg,ez_arcsec,dy_um\n0,1.1,0.3\n120,-3.3,0.1\n240,2.2,-0.4\n");
-  MakeRun("a", {"--errors", "target=t.csv", "--fidelity", "linear", "--set", "mechanics.payload_mass_kg=1.3"});
-  std::filesystem::remove(At("t.csv"));  // the resolved scenario stands alone
-  Succeed({"run", "a/scenario.toml", "-o", "b"});
-  EXPECT_EQ(ReadingsOf("a"), ReadingsOf("b"));
-  EXPECT_EQ(Read("a/scenario.toml"), Read("b/scenario.toml"));
-  EXPECT_EQ(Read("a/truth.json"), Read("b/truth.json"));
-  EXPECT_EQ(Read("a/results.json"), Read("b/results.json"));
-}
-
 TEST_F(Run, TakesOverridesFidelityAndNoiseFree) {
   std::vector<std::string> options = {"--set", "procedure.positions=8", "--set", "procedure.shifts=[0,3]",
                                       "--fidelity", "bullet", "--noise-free"};
@@ -62,15 +51,6 @@ TEST_F(Run, TakesOverridesFidelityAndNoiseFree) {
   options.insert(options.end(), {"--seed", "5"});
   MakeRun("b", options);
   EXPECT_EQ(ReadingsOf("a"), ReadingsOf("b"));
-}
-
-TEST_F(Run, WithoutNoiseIsTheSameReadingOnEveryVisit) {
-  // Two passes over the same stops, nothing random: the columns of the voltages agree to every digit.
-  MakeRun("a", {"--noise-free", "--set", "procedure.phases=[\"full_circle\"]", "--set", "procedure.passes=[1,1]",
-                "--set", "procedure.shifts=[0]"});
-  const std::vector<Reading> readings = RunRecord::Open(At("a"))->Readings();
-  ASSERT_EQ(readings.size(), 24u);
-  for (std::size_t k = 0; k < 12; ++k) EXPECT_NEAR(readings[k].mean_V[0], readings[12 + k].mean_V[0], 1e-9);
 }
 
 TEST_F(Run, TakesTheErrorsOfATableFromAFile) {
@@ -94,14 +74,6 @@ TEST_F(Run, WithoutUsableReadingsSaysSoAndSucceeds) {
 TEST_F(Run, WritesImagesOnDemand) {
   MakeRun("a", {"--images", "--set", "laser.beam=gaussian"});
   EXPECT_TRUE(Exists("a/images/irradiance.exr"));
-}
-
-TEST_F(Run, SeesAFixtureInTheLight) {
-  Write("small.toml", std::string(kSmall) +
-                          "[[fixture]]\nname = \"plate\"\nbox_mm = [10, 10, 10]\nposition_mm = [23.4, 55.2, 0]\n");
-  MakeRun("a");
-  const auto results = nlohmann::json::parse(Read("a/results.json"));
-  EXPECT_EQ(results.at("readings_by_status"), (nlohmann::json{{"no_light", 124}}));
 }
 
 TEST_F(Run, EntersItsMountingsInTheRecord) {
