@@ -1,8 +1,16 @@
-#include "twin/plan/advice.h"
+#include <gmock/gmock.h>
 
-#include <gtest/gtest.h>
-
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "tests/uncertainty/bench_budget.h"
+#include "twin/benches/registry.h"
+#include "twin/plan/advice.h"
+#include "twin/plan/harmonics.h"
+#include "twin/plan/next_run.h"
+#include "twin/plan/unseen.h"
 
 namespace twinbench::plan {
 namespace {
@@ -41,6 +49,123 @@ TEST(Rank, PutsWhatBuysMostPerMinuteFirst) {
   advice[1].minutes = 10.0;
   Rank(advice);
   EXPECT_EQ(advice.front().minutes, 10.0);
+}
+
+TEST(BiasesOf, AreChangesByTheirOwnUncertaintyTheMostFirst) {
+  const auto without = nlohmann::json::parse(
+      R"({"ez_arcsec": [1.0, 2.0], "u_ez_arcsec": [0.5, 0.5], "dy_um": [0.0, 0.0], "u_dy_um": [0.1, 0.1]})");
+  const auto with = nlohmann::json::parse(
+      R"({"ez_arcsec": [4.0, 6.0], "u_ez_arcsec": [0.5, 0.5], "dy_um": [0.1, -0.1], "u_dy_um": [0.1, 0.1]})");
+  const std::vector<Bias> biases = BiasesOf(without, with);
+  ASSERT_EQ(biases.size(), 2u);
+  EXPECT_EQ(biases[0].name, "ez_arcsec");
+  EXPECT_NEAR(biases[0].rms, std::sqrt(12.5), 1e-12);
+  EXPECT_NEAR(biases[0].per_u, std::sqrt(12.5) / 0.5, 1e-12);
+  EXPECT_NEAR(biases[1].per_u, 1.0, 1e-12);
+}
+
+TEST(BiasesOf, APhaseComesRound) {
+  const auto without = nlohmann::json::parse(R"({"phase_deg": 179.0, "u_phase_deg": 1.0})");
+  const auto with = nlohmann::json::parse(R"({"phase_deg": -179.0, "u_phase_deg": 1.0})");
+  EXPECT_NEAR(BiasesOf(without, with).front().rms, 2.0, 1e-12);
+}
+
+using testing::ElementsAre;
+
+TEST(HarmonicsOf, ReadsTermsColumnsAndTables) {
+  const auto results = nlohmann::json::parse(R"({
+    "model": {"terms": [{"order": 1, "amplitude_arcsec": 3.0, "u_amplitude_arcsec": 0.2},
+                        {"order": 5, "amplitude_arcsec": 1.0, "u_amplitude_arcsec": 0.3}]},
+    "encoder": {"order": [1, 2], "amplitude_arcsec": [1.0, 2.0], "u_amplitude_arcsec": [0.5, null]},
+    "target": {"ez_arcsec": [1.0], "u_ez_arcsec": [0.1], "u_harmonics": {"order": [1, 2], "ez_arcsec": [0.7, 0.8]}},
+    "against": [{"order": 1, "u_amplitude_difference_arcsec": 0.1}]})");
+  const std::vector<HarmonicCertainty> found = HarmonicsOf(results);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].name, "encoder_arcsec");
+  EXPECT_THAT(found[0].u, ElementsAre(0.5, testing::IsNan()));
+  EXPECT_EQ(found[1].name, "model.terms_arcsec");
+  EXPECT_THAT(found[1].orders, ElementsAre(1, 5));
+  EXPECT_THAT(found[1].u, ElementsAre(0.2, 0.3));
+  EXPECT_EQ(found[2].name, "target.ez_arcsec");
+  EXPECT_THAT(found[2].u, ElementsAre(0.7, 0.8));
+}
+
+TEST(MeanOf, AveragesVariancesOfRunsThatStateThem) {
+  Outlook a, b;
+  a.results = {{"ez_arcsec", 2, 3.0, 3.0}, {"dy_um", 1, 1.0, 1.0}};
+  b.results = {{"ez_arcsec", 2, 4.0, 4.0}};
+  a.harmonics = {{"ez_arcsec", {1}, {1.0}}};
+  b.harmonics = {{"ez_arcsec", {1}, {7.0}}};
+  const Outlook mean = MeanOf({a, b});
+  EXPECT_NEAR(mean.results[0].rms_u, std::sqrt(12.5), 1e-12);
+  EXPECT_NEAR(mean.results[1].rms_u, 1.0, 1e-12);
+  EXPECT_NEAR(mean.harmonics[0].u[0], 5.0, 1e-12);
+  EXPECT_NEAR(LargestDifference(a, b), 1.0 / 3.0, 1e-12);
+}
+
+TEST(MeanOf, IsKnownByTheScatterOfTheRunsButForPhases) {
+  std::vector<Outlook> runs;
+  for (const double u : {0.9, 1.1, 0.9, 1.1}) {
+    Outlook& run = runs.emplace_back();
+    run.results = {{"ez_arcsec", 1, u, u}, {"terms[].phase_deg", 1, u > 1.0 ? 50.0 : 1.0, 50.0}};
+  }
+  // Standard deviation 0.1 sqrt(4 / 3), of the mean of four half of it; the mean is 1.
+  EXPECT_NEAR(UncertaintyOfMean(runs), 0.05 * std::sqrt(4.0 / 3.0), 1e-12);
+  EXPECT_NEAR(LargestDifference(runs[0], runs[1]), 0.2 / 0.9, 1e-12);
+}
+
+/// One of the runs that a bench offers next, made on the twin beside the scenario's own.
+struct Beside {
+  std::vector<Reading> own, next;
+  Scenario scenario, of_next;
+};
+
+Beside RunsOf(const std::string& file, std::vector<std::string> sets, const std::string& name) {
+  Beside runs;
+  runs.scenario = LoadScenario(test::ScenarioPath(file), sets);
+  const std::vector<NextRun> offered = BenchOf(runs.scenario).next_runs(runs.scenario);
+  const auto run = std::ranges::find(offered, name, &NextRun::name);
+  if (run == offered.end()) throw std::runtime_error("no run " + name);
+  sets.insert(sets.end(), run->sets.begin(), run->sets.end());
+  runs.of_next = LoadScenario(test::ScenarioPath(file), sets);
+  runs.own = test::ReadingsOf(runs.scenario);
+  runs.next = test::ReadingsOf(runs.of_next);
+  return runs;
+}
+
+double MeanVariance(const Scenario& scenario, const std::vector<Reading>& readings, const std::string& kind) {
+  double sum = 0.0;
+  int count = 0;
+  for (const uncertainty::Quantity& q : test::QuantitiesFrom(scenario, readings)) {
+    if (uncertainty::KindOf(q.name) != kind) continue;
+    sum += q.u * q.u;
+    ++count;
+  }
+  return sum / count;
+}
+
+/// Half of the uncertainty in the time of one run, where a second run would leave 0.7 of it.
+TEST(NextRuns, OfASweepReadItAsOftenAsAReadingTakes) {
+  const Beside runs = RunsOf("encoder_comparison.toml", {"encoder_procedure.kind=sweep"}, "denser");
+  EXPECT_EQ(runs.next.size(), 4 * runs.own.size()) << "every 0.02 s, not every 0.08 s";
+  EXPECT_NEAR(ToSeconds(runs.next.back().time), ToSeconds(runs.own.back().time), 0.1);
+  const std::string kind = "device.ez_arcsec";
+  EXPECT_NEAR(MeanVariance(runs.of_next, runs.next, kind) / MeanVariance(runs.scenario, runs.own, kind), 0.25,
+              0.03);
+}
+
+/// 18000 lines, of which every third may be kept where the computer looks each 2 s, every fifteenth where it does
+/// each 10 s.
+TEST(NextRuns, OfATransmissionLeaveTheCounterTimeToBeEmptied) {
+  for (const auto& [poll, times] : {std::pair{"2.0", 6000.0 / 720.0}, std::pair{"10.0", 1200.0 / 720.0}}) {
+    const Beside runs = RunsOf(
+        "hob_transmission.toml",
+        {"mechanics.fidelity=kinematic", "hob_procedure.turns=1", std::string("hob_procedure.poll_s=") + poll},
+        "denser");
+    const double count = static_cast<double>(runs.next.size());
+    EXPECT_NEAR(count / static_cast<double>(runs.own.size()), times, 0.03 * times) << poll;
+    EXPECT_TRUE(std::ranges::all_of(runs.next, [](const Reading& r) { return r.status == ReadingStatus::kOk; }));
+  }
 }
 
 }  // namespace
