@@ -42,39 +42,6 @@ double LostMotion(double, int sense) {
 double OncePerTurn(double angle_deg, int) {
   return 0.05 * Cosine(1.0, angle_deg, 40.0);
 }
-double FivePerTurn(double angle_deg, int) {
-  return 0.05 * Cosine(5.0, angle_deg, 40.0);
-}
-
-TEST_F(TwoCommands, TakeAScopeExportToItsBacklash) {
-  const auto samples = DriveAxis({.speed_deg_s = 36.0, .interval_s = 0.1}, LostMotion);
-  EXPECT_THAT(Named("scope.csv", ScopeExport(samples), {"--map", "twincat"}), Contains("backlash"));
-  EXPECT_NEAR(Parameter("backlash", "width"), 0.05, 0.002);
-}
-
-TEST_F(TwoCommands, TakeACamonitorLogToTheOrderOfItsError) {
-  const auto samples =
-      DriveAxis({.speed_deg_s = 10.0, .interval_s = 0.25, .rest_s = 2.0, .passes = {1, -1}}, FivePerTurn);
-  EXPECT_THAT(Named("pv.log", CamonitorLog(samples, 0.0), {"--map", "camonitor"}), Contains("periodic"));
-}
-
-TEST_F(TwoCommands, TakeAGuideLogToItsWorm) {
-  const auto worm = [](double angle_deg) { return 12.0 * Cosine(72.0, angle_deg, 20.0); };
-  EXPECT_THAT(Named("phd2.txt", GuideLog(worm, 900), {"--map", "phd2", "--set", "device.teeth=72"}),
-              testing::AnyOf(Contains("gear_mesh"), Contains("periodic")));
-}
-
-TEST_F(TwoCommands, TakeATableOfAFirmwareToTheOffCentreMagnet) {
-  EXPECT_THAT(Named("lookup.cpp", FirmwareTable(OncePerTurn, 512), {"--map", "lookup_table"}),
-              Contains("eccentricity"));
-}
-
-TEST_F(TwoCommands, TakeSamplesOfLinuxCncToTheirBacklash) {
-  const auto samples =
-      DriveAxis({.speed_deg_s = 180.0, .interval_s = 0.001, .rest_s = 0.1, .passes = {1, -1}}, LostMotion);
-  EXPECT_THAT(Named("hal.txt", HalSamples(samples), {"--map", "halsampler", "--most-readings", "500"}),
-              Contains("backlash"));
-}
 
 TEST_F(TwoCommands, TakeAPositioningReportToItsReversalError) {
   std::mt19937_64 random(3);
@@ -137,17 +104,6 @@ TEST_F(TwoCommands, LookAndFailWhereNothingCanBeImported) {
   EXPECT_THAT(unclear.err, HasSubstr("which column is reference_deg is not clear"));
   Write("three.csv", "reference [deg],measured [deg]\n0,0.1\n10,10.2\n20,20.1\n");
   EXPECT_EQ(Call({"import", "three.csv", "--look"}).exit_code, 2) << "three readings cannot be trusted";
-}
-
-TEST_F(TwoCommands, RefuseWhatCannotBe) {
-  const auto samples = DriveAxis({.turns = 0.5}, LostMotion);
-  std::string dead = "time_s,reference_deg,measured_deg\n";
-  for (const auto& s : samples) dead += fmt::format("{},{},0\n", s.time_s, s.angle_deg);
-  Write("dead.csv", dead);
-  const Outcome outcome = Call({"import", "dead.csv", "-o", "run"});
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("the channel is dead"));
-  EXPECT_FALSE(Exists("run"));
 }
 
 }  // namespace
