@@ -1,7 +1,7 @@
-#include "tools/live/gate.h"
-
 #include <gtest/gtest.h>
 
+#include "tools/live/feed.h"
+#include "tools/live/gate.h"
 #include "twin/core/secret_token.h"
 
 namespace twinbench::live {
@@ -85,6 +85,31 @@ TEST(Token, IsLongAndNeverTheSame) {
   EXPECT_EQ(token.size(), 64u);
   EXPECT_NE(token, NewToken());
   EXPECT_TRUE(IsToken(token, token));
+}
+
+TEST(Feed, GivesWholeEventsOnceAndInOrder) {
+  Feed feed(100);
+  for (const char* json : {"1", "2", "3"}) feed.Add("reading", json);
+  std::uint64_t next = 1;
+  EXPECT_EQ(feed.From(next, 1), "id: 1\nevent: reading\ndata: 2\n\n");
+  EXPECT_EQ(feed.From(next, 1000), "id: 2\nevent: reading\ndata: 3\n\n");
+  EXPECT_EQ(feed.From(next, 1000), "");
+  EXPECT_EQ(next, feed.end());
+}
+
+TEST(Feed, KeepsTheNewestAndGoesOnWithThem) {
+  Feed feed(2);
+  for (const char* json : {"1", "2", "3"}) feed.Add("reading", json);
+  std::uint64_t next = 0;
+  EXPECT_EQ(feed.From(next, 1000), "id: 1\nevent: reading\ndata: 2\n\nid: 2\nevent: reading\ndata: 3\n\n");
+  EXPECT_EQ(next, 3u);
+}
+
+TEST(Feed, HasNothingForAPageThatIsAheadOfIt) {
+  Feed feed(2);
+  feed.Add("reading", "1");
+  std::uint64_t next = 500;  // of a program that ran before at the same port
+  EXPECT_EQ(feed.From(next, 1000), "");
 }
 
 }  // namespace
