@@ -1,12 +1,16 @@
-#include "twin/investigate/evidence.h"
-
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
 
 #include "tests/hidden/bench_runs.h"
 #include "tests/investigate/hidden_investigation.h"
 #include "tools/twinbench/passing_run.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
+#include "twin/investigate/evidence.h"
+#include "twin/investigate/expected_information.h"
+#include "twin/investigate/taken_run.h"
 
 namespace twinbench::investigate {
 namespace {
@@ -93,6 +97,99 @@ TEST(Overtones, OfSeveralPlansCountTogetherAndUnseenOnesNotAtAll) {
   EXPECT_NEAR(ProbabilityOfNoSine({{{"a=1"}, unseen}, {{"a=2"}, 0.9}}), 0.9, 1e-12);
   EXPECT_GT(ProbabilityOfNoSine({{{"a=1"}, 1.0}, {{"a=2"}, 0.02}}), 0.99);
 }
+
+Expectation At(double probability, double mean, double spread = 0.0) {
+  return {probability, Eigen::VectorXd::Constant(1, mean), Eigen::MatrixXd::Constant(1, 1, spread)};
+}
+
+double Normal(double x, double mean, double sd) {
+  const double z = (x - mean) / sd;
+  return std::exp(-0.5 * z * z) / (sd * std::sqrt(2.0 * std::numbers::pi));
+}
+
+/// Mutual information of two normal distributions in one dimension, by the trapezoidal rule.
+double ByIntegral(double p, double mean_a, double sd_a, double mean_b, double sd_b) {
+  double bits = 0.0;
+  constexpr double kStep = 0.001, kNone = 1e-200;
+  for (double x = -40.0; x < 40.0; x += kStep) {
+    const double a = p * Normal(x, mean_a, sd_a), b = (1.0 - p) * Normal(x, mean_b, sd_b);
+    if (a > kNone) bits += kStep * a * std::log2(a / (p * (a + b)));
+    if (b > kNone) bits += kStep * b * std::log2(b / ((1.0 - p) * (a + b)));
+  }
+  return bits;
+}
+
+TEST(ExpectedInformation, IsNothingWhereAllShowTheSame) {
+  EXPECT_NEAR(ExpectedInformation_bit({At(0.5, 1.0), At(0.5, 1.0)}), 0.0, 1e-9);
+}
+
+TEST(ExpectedInformation, IsTheWholeEntropyWhereTheyAreFarApart) {
+  EXPECT_NEAR(ExpectedInformation_bit({At(0.7, 0.0), At(0.2, 30.0), At(0.1, 60.0)}), Entropy_bit({0.7, 0.2, 0.1}),
+              1e-6);
+}
+
+TEST(ExpectedInformation, AgreesWithTheIntegral) {
+  // 400 draws a hypothesis of a log ratio that scatters by about a bit: 0.05 bit.
+  for (const double apart : {0.5, 1.0, 2.0, 3.0}) {
+    EXPECT_NEAR(ExpectedInformation_bit({At(0.4, 0.0), At(0.6, apart)}), ByIntegral(0.4, 0.0, 1.0, apart, 1.0),
+                0.05)
+        << apart;
+  }
+  EXPECT_NEAR(ExpectedInformation_bit({At(0.5, 0.0), At(0.5, 2.0, 3.0)}),
+              ByIntegral(0.5, 0.0, 1.0, 2.0, std::sqrt(10.0)), 0.05);
+}
+
+TEST(ExpectedInformation, IsSmallWhereTheRivalCanBeFittedToTheSame) {
+  // Both sizes unknown along the direction in which they differ: the readings fit either.
+  const double known = ExpectedInformation_bit({At(0.5, 0.0), At(0.5, 4.0)});
+  const double unknown = ExpectedInformation_bit({At(0.5, 0.0, 40.0), At(0.5, 4.0, 40.0)});
+  EXPECT_GT(known, 0.8);
+  EXPECT_LT(unknown, 0.05);
+}
+
+// A run asks its own twin what another scenario leaves; a run that is built anew against that scenario, with slopes and
+// a fit of its own, says the same.
+
+struct Asked {
+  hidden::Design design;
+  std::string effect, where, size;
+  double value;
+};
+
+class LeftByAnotherScenario : public testing::TestWithParam<Asked> {};
+
+TEST_P(LeftByAnotherScenario, IsWhatARunBuiltAnewLeaves) {
+  const Scenario believed = hidden::Believed(GetParam().design);
+  const Means means = MeansOf(believed);
+  TakenRun run = TakenOf({}, believed, hidden::TakeReadings(hidden::Drawn(GetParam().design, 5)), means, 0);
+  ASSERT_TRUE(run.linear.left_by_another);
+  Supposed cause;
+  cause.name = GetParam().effect;
+  cause.where = GetParam().where;
+  cause.parameters[GetParam().size] = GetParam().value;
+  const Hypothesis hypothesis{{cause}, {}, 0.0};
+  const Eigen::VectorXd asked = LeftBy(hypothesis, run, means);
+  run.linear.left_by_another = nullptr;
+  const Eigen::VectorXd anew = LeftBy(hypothesis, run, means);
+  const auto length = [&run](const Eigen::VectorXd& white) { return std::sqrt(Product(run, white, white)(0, 0)); };
+  EXPECT_GT(length(asked - run.left), 5.0);
+  EXPECT_LT(length(asked - anew), 0.1);  // noise standard deviations, of all readings together
+}
+
+// Mirrors turned out of an autocollimator's range would show nothing. Readings that were there speak against that.
+TEST(LeftByAScenario, ThatShowsNothingIsTheWhole) {
+  const Scenario believed = hidden::Believed(hidden::Design::kTurntable);
+  const Means means = MeansOf(believed);
+  const TakenRun run = TakenOf({}, believed, hidden::TakeReadings(believed), means, 0);
+  Supposed cause;
+  cause.name = "settling";
+  cause.parameters = {{"amplitude", 1.0 * units::deg}, {"time_constant", 1000.0}};
+  EXPECT_EQ(LeftBy({{cause}, {}, 0.0}, run, means), run.left);
+}
+
+INSTANTIATE_TEST_SUITE_P(Benches, LeftByAnotherScenario,
+                         testing::Values(Asked{hidden::Design::kRotary, "psd_roll", "psd_a", "roll", 2e-3},
+                                         Asked{hidden::Design::kTurntable, "autocollimator_scale", "", "gain_error", 0.02}));
 
 }  // namespace
 }  // namespace twinbench::investigate

@@ -1,11 +1,11 @@
-#include "twin/investigate/goal.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/core/input_error.h"
+#include "tests/investigate/hidden_investigation.h"
+#include "twin/investigate/goal.h"
 
 namespace twinbench::investigate {
 namespace {
@@ -82,6 +82,22 @@ TEST(Goal, OfWhatARunStatesTheStandardsPartIsNotCountedAgain) {
   Certainty certainty(ParseGoal("target.ez 0.2arcsec"));
   certainty.Add(results);
   EXPECT_NEAR(certainty.u(), 0.3, 1e-12);
+}
+
+// Five of the score's seeds in a row: a scale, an ellipticity, a slip, a drift, an order of a half. More of them by
+// tools/scores --set investigate.
+TEST(InvestigateAProgram, TellsWhatABenchHidesThatSharesNothingWithTheTwin) {
+  const TemporaryFolder folder;
+  constexpr std::uint64_t kFirst = 5, kLast = 9;
+  int right = 0;
+  for (std::uint64_t seed = kFirst; seed <= kLast; ++seed) {
+    const Judged judged = InvestigateProgram(TWINBENCH_TEST_DATA "/program/acquire_hidden.py", seed,
+                                             folder.File(std::to_string(seed)));
+    right += judged.IsRight() ? 1 : 0;
+    EXPECT_FALSE(judged.result == Result::kWrong && judged.probability > 0.95)
+        << judged.truth << ": " << judged.answer;
+  }
+  EXPECT_GE(right, 4);
 }
 
 }  // namespace

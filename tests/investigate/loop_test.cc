@@ -186,15 +186,6 @@ TEST(HiddenRun, IsMadeOnEveryBench) {
   }
 }
 
-TEST(NextRuns, AreRunsThatTheirBenchCanMake) {
-  for (const std::string& name : BenchNames()) {
-    const Scenario scenario = LoadScenario(test::ScenarioPath(name + ".toml"));
-    const std::vector<plan::NextRun> runs = BenchOf(scenario).next_runs(scenario);
-    EXPECT_GE(runs.size(), 4u) << name;
-    for (const plan::NextRun& run : runs) EXPECT_NO_THROW(Altered(scenario, run.sets)) << name << " " << run.name;
-  }
-}
-
 // A run that the bench's own diagnosis refuses is none.
 TEST(NextRuns, LeaveSomethingToFindCausesBy) {
   for (const hidden::Design design : {hidden::Design::kRotary, hidden::Design::kTurntable, hidden::Design::kSweep}) {
