@@ -1,8 +1,7 @@
-#include "twin/benches/freeform_five_axis/estimators/identification.h"
-
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "tests/freeform/freeform_run.h"
+#include "twin/benches/freeform_five_axis/estimators/identification.h"
 #include "twin/benches/freeform_five_axis/estimators/volumetric.h"
 
 namespace twinbench::freeform_test {
@@ -122,6 +121,51 @@ TEST(VolumetricErrors, HaveNoneOfTheMotionOfTheWholeMachine) {
     EXPECT_LT(WithoutRigidMotion(points, moved).cwiseAbs().maxCoeff(), 1e-12) << "about axis " << axis;
   }
 }
+
+constexpr const char* kShorter = "[freeform_procedure]\nposes = 45\n";  // for the time it takes
+
+diagnose::Diagnosis DiagnosisWith(const std::string& hidden) {
+  return DiagnosisOf(RunOf(FreeformScenario(kShorter + hidden)), FreeformScenario(kShorter));
+}
+
+/// Set-ups are a quarter of an hour apart: what the spindle did in between counts.
+TEST(FreeformDiagnosis, SizesGrowthThatLagsBehindTheTemperature) {
+  const std::string warm = "[environment]\nswing_mK = 700.0\nswing_period_s = 7000.0\n";
+  const diagnose::Diagnosis diagnosis = DiagnosisWith("[[effect]]\nname = \"thermal_growth\"\nwhere = \"y\"\ngrowth_um_K = 4.0\nlag_s = 500.0\n" + warm);
+  ASSERT_THAT(NamesOf(diagnosis), testing::ElementsAre("thermal_growth"));
+  for (const auto& [name, truth] : {std::pair{"growth", 4e-6}, std::pair{"lag", 500.0}}) {
+    const auto& all = diagnosis.causes.front().parameters;
+    const auto found = std::ranges::find(all, name, &diagnose::ParameterEstimate::name);
+    ASSERT_NE(found, all.end());
+    EXPECT_NEAR(found->value, truth, 3.0 * found->u);
+    EXPECT_LT(found->u, 0.3 * truth);
+  }
+}
+
+std::string CasePath(const std::string& number, const std::string& file) {
+  return TWINBENCH_TEST_DATA "/challenge_freeform/" + number + "/" + file;
+}
+
+/// Runs of an implementation that shares nothing with the twin, each with one hidden effect or none.
+class FreeformChallenge : public testing::TestWithParam<std::string> {};
+
+TEST_P(FreeformChallenge, IsAnsweredRightly) {
+  using enum diagnose::Verdict;
+  const nlohmann::json truth = nlohmann::json::parse(std::ifstream(CasePath(GetParam(), "truth.json")));
+  const std::string effect = truth.at("effect");
+  const diagnose::Diagnosis diagnosis =
+      DiagnosisOf(ReadReadingsCsv(CasePath(GetParam(), "readings.csv"), kFreeformBench), FreeformScenario());
+  if (effect == "none" || effect == "unknown") {
+    EXPECT_EQ(diagnosis.verdict, effect == "none" ? kNone : kUnknown);
+    return;
+  }
+  EXPECT_THAT(NamesOf(diagnosis), testing::Contains(effect));
+  EXPECT_THAT(NamesOf(diagnosis), testing::IsSubsetOf(truth.at("alike").get<std::vector<std::string>>()));
+  EXPECT_THAT(diagnosis.verdict, testing::AnyOf(kNamed, kTie));
+}
+
+INSTANTIATE_TEST_SUITE_P(Freeform, FreeformChallenge, testing::Values("002", "007", "012", "016", "017"),
+                         [](const testing::TestParamInfo<std::string>& test) { return "Case" + test.param; });
 
 }  // namespace
 }  // namespace twinbench::freeform_test
