@@ -36,27 +36,6 @@ std::string NameOf(const Scenario& is, const Scenario& believed) {
   return NameOf(DiagnosisOf(test::CircleReadings(is), believed));
 }
 
-/// What a run with one effect of this size is diagnosed as.
-std::string NameOfHidden(const std::string& effect, const std::string& where, const std::string& parameter,
-                         double value_SI) {
-  Scenario with = Believed();
-  EffectSettings hidden{effect, where, {}, ""};
-  for (const EffectParameter& p : FindEffect(effect, with.bench)->parameters)
-    hidden.parameters[p.name] = p.default_SI;
-  hidden.parameters[parameter] = value_SI;
-  with.effects = {hidden};
-  return NameOf(with, Believed());
-}
-
-TEST(CircularDiagnosis, NamesWhatTheTwinWasGivenAndRaisesNoAlarmWithoutACause) {
-  EXPECT_EQ(NameOf(Believed(), Believed()), "none");
-  using units::um, units::arcsec;
-  EXPECT_EQ(NameOfHidden("squareness", "", "angle", 0.4 * arcsec), "squareness");
-  EXPECT_EQ(NameOfHidden("backlash", "x", "width", 0.3 * um), "backlashx");
-  EXPECT_EQ(NameOfHidden("servo_mismatch", "", "lag", 5e-5), "servo_mismatch");
-  EXPECT_EQ(NameOfHidden("ball_form", "", "cosine", 0.2 * um), "ball_form");
-}
-
 /// Of two small circles, which are soon driven.
 Scenario BelievedBodies() {
   return ParseScenario("bench = \"circular_motion\"\nseed = 7\n[mechanics]\nfidelity = \"bullet\"", "believed", ".",
