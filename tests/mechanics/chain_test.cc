@@ -3,10 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "tests/mechanics/test_units.h"
 #include "tests/support/oracle_poses.h"
@@ -14,31 +10,20 @@
 namespace twinbench::mechanics {
 namespace {
 
-using test::Number;
-
 PoseError ErrorOf(const test::OracleError& e) {
   return {e[0], e[1], e[2], e[3], e[4], e[5]};
 }
 
-/// A mounting by this shift, and the tables at these angles.
-ChainState StateAt(double target_rad, double reference_rad, ErrorFrame frame) {
-  ChainState state;
-  state.target_rad = target_rad;
-  state.reference_rad = reference_rad;
-  state.reference_frame = frame;
-  return state;
-}
-ChainGeometry Mounted(bool is_reclamped, double shift_rad) {
-  ChainGeometry geometry;
-  (is_reclamped ? geometry.clamp_rad : geometry.reseat_rad) = is_reclamped ? shift_rad : -shift_rad;
-  return geometry;
-}
-
 Pose GratingAt(const test::OraclePose& pose, ErrorFrame frame) {
-  ChainState state = StateAt(pose.target_rad, pose.reference_rad, frame);
+  ChainGeometry geometry;
+  (pose.is_reclamped ? geometry.clamp_rad : geometry.reseat_rad) = pose.is_reclamped ? pose.shift_rad : -pose.shift_rad;
+  ChainState state;
+  state.target_rad = pose.target_rad;
+  state.reference_rad = pose.reference_rad;
+  state.reference_frame = frame;
   state.target_error = ErrorOf(pose.target);
   state.reference_error = ErrorOf(pose.reference);
-  return Chain(Mounted(pose.is_reclamped, pose.shift_rad)).GratingPose(state);
+  return Chain(geometry).GratingPose(state);
 }
 
 /// Where an order meets its PSD: vector grating equation, then ray and plane. `side` is +1 for PSD A, -1 for B.
@@ -73,49 +58,6 @@ TEST(Chain, AgreesWithTheIndependentSpotsToANanometre) {
     n_other += (Spots(GratingAt(pose, ErrorFrame::kRotor)) - spots_m).head<2>().norm() > 1e-9;
   }
   EXPECT_GT(n_other, 250);  // the other reading of the reference's frame would be seen in nearly every row
-}
-
-std::vector<PoseError> Errors(const nlohmann::json& rows) {
-  std::vector<PoseError> errors;
-  for (const auto& e : rows) {
-    errors.push_back({e.at(0).get<double>() * kArcsec, e.at(1).get<double>() * kArcsec,
-                      e.at(2).get<double>() * kArcsec, e.at(3).get<double>() * kMicrometre,
-                      e.at(4).get<double>() * kMicrometre, e.at(5).get<double>() * kMicrometre});
-  }
-  return errors;
-}
-
-std::size_t Position(double angle_rad, std::size_t n) {
-  const long step = std::lround(angle_rad / (2.0 * kPi) * static_cast<double>(n));
-  const long count = static_cast<long>(n);
-  return static_cast<std::size_t>(((step % count) + count) % count);
-}
-
-/// Largest difference [um] between the spots of an oracle run and the chain's.
-double WorstOfFullCircle(const std::string& mode, ErrorFrame frame) {
-  const std::string folder = TWINBENCH_TEST_DATA "/oracle/full_circle_";
-  const nlohmann::json truth = nlohmann::json::parse(std::ifstream(folder + mode + "_truth.json"));
-  const std::vector<PoseError> target = Errors(truth.at("target"));
-  const std::vector<PoseError> reference = Errors(truth.at("reference_rotor_frame"));
-  double worst_um = 0.0;
-  for (const test::CsvRow& row : test::ReadCsvRows(folder + mode + ".csv")) {
-    ChainState state =
-        StateAt(Number(row, "target_deg") * kDegree, Number(row, "reference_deg") * kDegree, frame);
-    state.target_error = target[Position(state.target_rad, target.size())];
-    state.reference_error = reference[Position(-state.reference_rad, reference.size())];
-    const Pose X_LG = Chain(Mounted(mode == "reclamp", state.target_rad + state.reference_rad)).GratingPose(state);
-    const Eigen::Vector4d volts(Number(row, "psd_a_x_V"), Number(row, "psd_a_y_V"), Number(row, "psd_b_x_V"),
-                                Number(row, "psd_b_y_V"));
-    worst_um = std::max(worst_um, (Spots(X_LG) - volts / 2000.0).cwiseAbs().maxCoeff() / kMicrometre);
-  }
-  return worst_um;
-}
-
-TEST(Chain, TakesTheReferencesErrorsInItsRotorFrame) {
-  for (const char* mode : {"reclamp", "reseat"}) {
-    EXPECT_LT(WorstOfFullCircle(mode, ErrorFrame::kRotor), 1e-6);  // the file prints 1e-9 V = 5e-7 um
-    EXPECT_GT(WorstOfFullCircle(mode, ErrorFrame::kBase), 1.0);    // the other reading would be seen
-  }
 }
 
 TEST(Chain, EqualsTheProductOfItsFactorsForEveryInput) {

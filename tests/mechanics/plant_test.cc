@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
 #include "mechanics/sag.h"
@@ -237,24 +235,6 @@ TEST(Plant, BacklashHoldsTheRotorBackByHalfTheGapInBothDirectionsAndEquallyByLin
     plant->AdvanceUntilSettled(2.0);
   }
   EXPECT_NEAR(linear->State().target_rad, bullet->State().target_rad, 1e-4 * kArcsec);  // as their yaw
-}
-
-TEST(Plant, GivesTheSameBitsInTwoThreads) {
-  const StackParameters p = ReseatedStack();
-  const auto run = [&p](Fidelity fidelity, std::array<double, 14>& out) {
-    const auto plant = MakePlant(fidelity, p);
-    StartCounterRotation(*plant, 1, 0.3);
-    plant->Advance(0.35);
-    out = Numbers(plant->State());
-  };
-  for (Fidelity fidelity : kAll) {
-    std::array<double, 14> first;
-    std::array<double, 14> second;
-    std::thread other([&] { run(fidelity, first); });
-    run(fidelity, second);
-    other.join();
-    EXPECT_EQ(0, std::memcmp(&first, &second, sizeof(first)));
-  }
 }
 
 TEST(Plant, SleepsWhenSettledAndWakesForTheNextMove) {

@@ -1,8 +1,14 @@
-#include "mechanics/servo.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "mechanics/linear_model.h"
+#include "mechanics/profile.h"
+#include "mechanics/servo.h"
+#include "tests/mechanics/eccentric_stack.h"
+#include "tests/mechanics/test_units.h"
 
 namespace twinbench::mechanics {
 namespace {
@@ -59,6 +65,109 @@ TEST(Backlash, KeepsTheRotorUntilTheGapIsCrossedAndOfZeroWidthIsTheEncoder) {
   EXPECT_EQ(none.Follow(0.123), 0.123);
   EXPECT_FALSE(none.active());
   EXPECT_DOUBLE_EQ(play.Follow(1.0), 1.0 - 1e-5);
+}
+
+TEST(QuinticProfile, RestsExactlyBeforeAndAfterTheMove) {
+  const QuinticProfile profile(0.1, 0.3, 0.6);
+  EXPECT_EQ(profile.At(-1.0).position_rad, 0.1);
+  EXPECT_EQ(profile.At(0.6).position_rad, 0.3);
+  EXPECT_EQ(profile.At(9.0).velocity_rad_s, 0.0);
+}
+
+/// Speed and acceleration are the derivatives. Central differences: h^2/6 times a third derivative below
+/// 60 travel/T^3 = 110, plus rounding 1e-15/h.
+void ExpectDerivatives(const QuinticProfile& profile, const std::vector<double>& times_s) {
+  const double h = 1e-6;
+  for (const double t : times_s) {
+    const ProfilePoint before = profile.At(t - h), after = profile.At(t + h);
+    EXPECT_NEAR(profile.At(t).velocity_rad_s, (after.position_rad - before.position_rad) / (2.0 * h), 1e-8);
+    EXPECT_NEAR(profile.At(t).acceleration_rad_s2, (after.velocity_rad_s - before.velocity_rad_s) / (2.0 * h),
+                1e-6);
+  }
+}
+
+TEST(QuinticProfile, IsThePolynomialOfFifthDegreeWithItsDerivatives) {
+  const QuinticProfile profile(0.1, -0.3, 0.6);
+  for (double s = 0.0; s <= 1.0; s += 0.05)  // whose speed and acceleration vanish at both ends
+    EXPECT_NEAR(profile.At(0.6 * s).position_rad, 0.1 - 0.4 * s * s * s * (10.0 - 15.0 * s + 6.0 * s * s), 1e-15);
+  ExpectDerivatives(profile, {0.05, 0.2, 0.3, 0.55});
+  // The peak of the speed and, by 10 / sqrt(3), that of the acceleration.
+  EXPECT_NEAR(profile.At(0.3).velocity_rad_s, 15.0 / 8.0 * -0.4 / 0.6, 1e-14);
+  const double steepest_s = 0.6 * (0.5 - std::sqrt(1.0 / 12.0));
+  EXPECT_NEAR(profile.At(steepest_s).acceleration_rad_s2, 10.0 / std::sqrt(3.0) * -0.4 / 0.36, 1e-13);
+}
+
+TEST(QuinticProfile, TakesAMotionUpWithItsSpeedAndBendAndBringsItToRest) {
+  const QuinticProfile move(0.2, 2.0, 0.5);
+  const ProfilePoint cut = move.At(0.2);
+  const QuinticProfile stop(cut, cut.position_rad + 0.1, 0.3);
+  EXPECT_FALSE(stop.from_rest());
+  const ProfilePoint first = stop.At(0.0), last = stop.At(0.3);
+  EXPECT_DOUBLE_EQ(first.position_rad, cut.position_rad);
+  EXPECT_DOUBLE_EQ(first.velocity_rad_s, cut.velocity_rad_s);
+  EXPECT_DOUBLE_EQ(first.acceleration_rad_s2, cut.acceleration_rad_s2);
+  EXPECT_EQ(last.position_rad, cut.position_rad + 0.1);
+  // Just before its end it is as good as there: speed and bend vanish with the square and the first power of what
+  // is left, which is a millionth of the duration.
+  EXPECT_NEAR(stop.At(0.3 * (1.0 - 1e-6)).velocity_rad_s, 0.0, 1e-9);
+  EXPECT_NEAR(stop.At(0.3 * (1.0 - 1e-6)).acceleration_rad_s2, 0.0, 1e-2);
+  ExpectDerivatives(stop, {0.05, 0.15, 0.25});
+}
+
+TEST(QuinticProfile, RefusesADurationThatIsNotPositive) {
+  for (const double duration_s : {0.0, -1.0})
+    EXPECT_THROW(QuinticProfile(0.0, 1.0, duration_s), std::invalid_argument);
+  EXPECT_THROW(QuinticProfile(0.0, std::nan(""), 1.0), std::invalid_argument);
+}
+
+TEST(LinearModel, FollowsBulletsVibrationOfADisplacedBearing) {
+  StackParameters p = EccentricStack();
+  p.gravity_m_s2 = 0.0;  // the linear model counts from the static deflection
+  const LinearModel model(p);
+  StackDynamics dynamics(p);
+  Vector12 q = Vector12::Zero();
+  q << 1e-7, -2e-7, 3e-7, 1e-7, 2e-7, 0.0, -1e-7, 1e-7, 2e-7, -3e-7, 1e-7, 0.0;
+  q *= 0.01;  // the rotors, held by nothing, drift by the square of the vibration: 1e-5 of it at this size
+  Vector12 qd = Vector12::Zero();
+  LinearModel::State state;
+  state << q, qd;
+  for (int i = 0; i < 40; ++i) {  // 20 ms
+    for (int k = 0; k < 40; ++k) dynamics.Step(Integrator::kRungeKutta4, 12.5e-6, {0.0, 0.0}, q, qd);
+    state = model.Step(state, LinearModel::Input::Zero());
+  }
+  // Fourth-order steps of 0.067 rad of the stiffest mode err by 1e-8 each over 1600 steps: 2e-5 at most.
+  const double scale = q.cwiseAbs().maxCoeff();
+  EXPECT_GT(scale, 1e-10);
+  EXPECT_LT((state.head<kCoordinates>() - q).cwiseAbs().maxCoeff(), 1e-4 * scale);
+}
+
+TEST(MoveResponse, ScaledAndAddedIsTheResponseToTheMove) {
+  const StackParameters p = EccentricStack();
+  const LinearModel model(p);
+  const MoveResponse response(p, model, 0.2, 0.1);
+  LinearStack stack(p, model);
+  const double t = 10.0 * kDegree, r = -7.0 * kDegree;
+  const MoveResponse::Shapes shapes = (MoveResponse::Shapes() << t, r, t * t, t * r, r * r).finished();
+  Eigen::Vector2d peak = Eigen::Vector2d::Zero();
+  for (int i = 0; i < response.size(); ++i) {
+    const MoveResponse::Row row = response.At(i, shapes);
+    // Same equations in another order of summation: rounding of 1e-5 rad and 1e-2 rad/s
+    ASSERT_LT((row.head<kCoordinates>() - stack.state().head<kCoordinates>()).cwiseAbs().maxCoeff(), 1e-16);
+    ASSERT_DOUBLE_EQ(row[SpinIndex(1)], response.At(i, shapes, SpinIndex(1)));
+    PeriodCommand command;
+    const double h = p.servo_period_s;
+    const QuinticProfile target(0.0, t, 0.2), reference(0.0, r, 0.2);
+    command.Set(0, target.At(i * h), target.At((i + 1) * h), h);
+    command.Set(1, reference.At(i * h), reference.At((i + 1) * h), h);
+    const double vt = target.At((i + 0.5) * h).velocity_rad_s, vr = reference.At((i + 0.5) * h).velocity_rad_s;
+    command.speed_products << vt * vt, vt * vr, vr * vr;
+    stack.Step(command);
+    peak = peak.cwiseMax(stack.torque_Nm().cwiseAbs());
+  }
+  const Eigen::Vector2d bound = response.TorqueBound_Nm(shapes);
+  EXPECT_GE(bound[0], peak[0]);
+  EXPECT_GE(bound[1], peak[1]);
+  EXPECT_LT(bound[0], 2.0 * peak[0]);
 }
 
 }  // namespace
