@@ -1,14 +1,46 @@
-#include "twin/report/controller_tables.h"
-
 #include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
 
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"
 #include "twin/core/units.h"
 #include "twin/report/compensation_text.h"
+#include "twin/report/controller_tables.h"
+#include "twin/report/curve_score.h"
+#include "twin/report/text_table.h"
 
 namespace twinbench::report {
 namespace {
+
+TEST(TextTable, AlignsColumnsAndCellsOfSeveralLines) {
+  EXPECT_KEPT(TextTable({{"cause"}, {"share", true}}, {{"play\n  lost motion", "97 %"}, {"drift", "3 %"}}, 80));
+}
+
+TEST(TextTable, BreaksTheWidestColumnAtWordsAndKeepsItsIndent) {
+  EXPECT_KEPT(TextTable({{"a"}, {"b"}}, {{"name\n  one two three four five six", "1"}}, 20));
+}
+
+TEST(TextTable, KeepsAWholeColumnAsLongAsOthersCanGiveWay) {
+  const std::string title = "some thirty letters of a title of";
+  EXPECT_KEPT(TextTable({{"a"}, {"b", false, true}}, {{title, "1.0000000 ± 0.0000001 µm"}}, 56));
+}
+
+TEST(TextTable, LeavesOutColumnsWithoutCells) {
+  EXPECT_EQ(TextTable({{"a"}, {"b"}}, {{"1"}}, 80), "a\n-\n1\n");
+  EXPECT_EQ(TextTable({{"a"}}, {}, 80), "");
+}
+
+TEST(TextTable, CountsCharactersAndNotBytes) {
+  EXPECT_EQ(WidthOf("10 µm ●"), 7u);
+  EXPECT_KEPT(TextTable({{"a"}, {"b"}}, {{"µµµ", "1"}, {"mmm", "2"}}, 80));
+}
+
+TEST(Paragraph, HangsBehindItsHead) {
+  EXPECT_EQ(Paragraph("! ", "one two three", 2, 9), "! one two\n  three\n");
+}
 
 using testing::HasSubstr, units::arcsec, units::deg;
 
@@ -57,6 +89,15 @@ TEST(ControllerTable, NamesTheFormsThereAre) {
 TEST(OrderRanges, JoinsNeighbours) {
   EXPECT_EQ(OrderRanges({1, 2, 3, 18, 90, 91}), "orders 1-3, 18, 90-91");
   EXPECT_EQ(OrderRanges({7}), "order 7");
+}
+
+TEST(CurveScore, TellsTheLargestErrorOfEitherSignAndLeavesOutWhatIsNotKnown) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const CurveScore curve{"turntable", "ez_arcsec", "position_deg", {0.0, 90.0, 180.0, 270.0}, {1.0, -2.5, 0.5, kNaN},
+                         {0.5, 0.5, 0.5, 0.5}, {0.0, 0.5, 0.0, 0.0}};
+  const nlohmann::json score = ToJson({curve})["turntable"]["ez"];
+  EXPECT_DOUBLE_EQ(score["worst_error_arcsec"].get<double>(), 3.0);
+  EXPECT_NEAR(score["rms_error_arcsec"].get<double>(), std::sqrt((1.0 + 9.0 + 0.25) / 3.0), 1e-12);
 }
 
 }  // namespace
