@@ -1,11 +1,12 @@
-#include "twin/report/page/diagnosis_page.h"
-
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
 #include "tests/report_page/blocks.h"
 #include "twin/report/page/causes.h"
+#include "twin/report/page/diagnosis_page.h"
+#include "twin/report/page/investigation_page.h"
+#include "twin/report/page/plan_page.h"
 
 namespace twinbench::report {
 namespace {
@@ -82,6 +83,76 @@ TEST(DiagnosisSections, ShowTheLoudestResidualFirstAndAllOthersToo) {
   EXPECT_EQ(choice.figures[0].series[0].role, SeriesRole::kBefore);
   EXPECT_EQ(choice.figures[0].x.unit, "s");
   EXPECT_EQ(choice.figures[0].y.unit, "µm");
+}
+
+const json kPlan = json::parse(R"({
+  "runs": [
+    {"run": "as is", "readings": 100, "minutes": 12, "dof": 80, "not_separable": ["dx: nobody reads it"],
+     "shifts": {"mean_variance_factor": 1.5, "worst_variance_factor": 2.5, "least_possible_mean_factor": 1.25},
+     "results": [{"name": "separation.target.ez_arcsec", "rms_u": 0.05, "worst_u": 0.06, "values": 36}],
+     "harmonics": [{"name": "separation.target.ez_arcsec", "order": [1, 2], "u": [0.01, 0.02]}]},
+    {"run": "other", "readings": 50, "minutes": 6, "dof": 30, "not_separable": [], "shifts": {},
+     "results": [{"name": "separation.target.ez_arcsec", "rms_u": 0.1, "worst_u": 0.2, "values": 36}],
+     "harmonics": [{"name": "separation.target.ez_arcsec", "order": [1, 2], "u": [0.03, 0.04]}]}],
+  "next": "best", "advice": [{"name": "best", "words": "two more mountings", "bit_per_minute": 0.5, "minutes": 30, "readings": 90,
+                              "of_causes_bit": 10, "of_results_bit": 5, "sets": ["procedure.shifts=[0, 5]"]}],
+  "ties": [{"present": {"effect": "a", "where": "x"}, "blamed": {"effect": "b", "where": ""}, "told_from": 0.002, "unit": "1"}],
+  "never_told_apart": [[{"effect": "c", "where": ""}, {"effect": "d", "where": "y"}]], "detectable": [], "invisible": []})");
+
+TEST(PlanPage, ComparesTheRunsOrderByOrder) {
+  const std::vector<Figure> figures = test::BlocksOf<Figure>(PlanPage({}, kPlan).sections);
+  ASSERT_EQ(figures.size(), 2u);
+  EXPECT_EQ(figures[0].title, "u of target ez");
+  ASSERT_EQ(figures[0].series.size(), 2u);
+  EXPECT_THAT(figures[0].series[0].y, ElementsAre(0.01, 0.02));
+  EXPECT_THAT(figures[0].series[1].y, ElementsAre(0.03, 0.04));
+  EXPECT_THAT(figures[1].categories, ElementsAre("two more mountings"));
+}
+
+TEST(PlanPage, SaysWhichRunToMakeAndWhatMayBeMistaken) {
+  const Page page = PlanPage({}, kPlan);
+  EXPECT_EQ(page.verdict, "Most information per minute: two more mountings.");
+  std::vector<std::vector<std::string>> rows;
+  for (const PageTable& table : test::BlocksOf<PageTable>(page.sections)) rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+  EXPECT_THAT(rows, Contains(ElementsAre("a at x", "b", "0.002", "1")));
+  EXPECT_THAT(rows, Contains(ElementsAre("c, d at y")));
+  EXPECT_THAT(rows, Contains(ElementsAre("target ez", "arcsec", "0.05", "0.1")));
+}
+
+TEST(PlanPage, BeginsWithTheProgrammeAndTheUncertaintyAfterIt) {
+  json plan = kPlan;
+  plan["programme"] = {{"u_after_over_before", {{{"name", "separation.target.ez_arcsec"}, {"ratio", 0.5}}}},
+                       {"d_optimal", {{"runs", {{{"name", "best"}, {"times", 2}}}}}}};
+  const Page page = PlanPage({}, plan);
+  EXPECT_EQ(page.verdict, "Best runs to add: 2 x best. Most information per minute: two more mountings.");
+  const std::vector<PageTable> tables = test::BlocksOf<PageTable>(page.sections);
+  EXPECT_THAT(tables.front().columns, ElementsAre("result", "unit", "as is", "other", "with the programme after it"));
+  EXPECT_THAT(tables.front().rows.front(), ElementsAre("target ez", "arcsec", "0.05", "0.1", "0.025"));
+}
+
+TEST(InvestigationPage, ShowsProbabilitiesOverTheRuns) {
+  const json investigation = json::parse(R"({
+    "told": "tied", "ended": "nothing more can be told", "minutes": 52, "goal": {"text": "target.ez 0.1arcsec", "u": 0.05, "met": true},
+    "unlisted": 0.02, "refused": [], "causes": [{"name": "a", "probability": 0.8, "chi2": 100, "effects": [{"effect": "a", "parameters": {"width_deg": 0.004, "u_width_deg": 0.001}}]}, {"name": "b", "probability": 0.18, "chi2": 103}],
+    "steps": [{"number": 1, "run": "first", "words": "own", "reason": "first", "minutes": 30, "expected_bit": 0, "gained_bit": 0, "u_goal": 0.2,
+               "unlisted": 0, "believed": [{"name": "a", "probability": 0.5}, {"name": "b", "probability": 0.5}]},
+              {"number": 2, "run": "slow", "words": "slowly", "reason": "tells most", "minutes": 22, "expected_bit": 1.5, "gained_bit": 1.25, "u_goal": 0.05,
+               "unlisted": 0.02, "believed": [{"name": "a", "probability": 0.8}, {"name": "b", "probability": 0.18}]}]})");
+  const Page page = InvestigationPage({}, investigation, {"01-first/report.html"});
+  EXPECT_EQ(page.verdict, "Not resolvable on this bench: a 80 %, b 18 %");
+  const std::vector<Figure> figures = test::BlocksOf<Figure>(page.sections);
+  ASSERT_EQ(figures.size(), 3u);
+  EXPECT_THAT(figures[0].series[0].y, ElementsAre(0.5, 0.8));
+  EXPECT_EQ(figures[0].y.high, 1.0) << "a probability is seen on the whole of its axis";
+  EXPECT_EQ(figures[0].series[2].name, "not in the catalogue");
+  EXPECT_THAT(figures[0].series[2].x, ElementsAre(2));
+  EXPECT_THAT(figures[1].series[1].y, ElementsAre(0, 1.25));
+  EXPECT_EQ(page.tiles[0].value, "a, 80 %");
+  EXPECT_EQ(page.tiles[0].note, "width 0.0040 ± 0.0010°");
+  const std::vector<PageTable> tables = test::BlocksOf<PageTable>(page.sections);
+  EXPECT_THAT(tables[0].links, ElementsAre("01-first/report.html"));
+  EXPECT_EQ(tables[1].rows[0][1], "width 0.0040 ± 0.0010°");
+  EXPECT_EQ(figures[2].note, "target.ez 0.1arcsec, met");
 }
 
 }  // namespace
