@@ -1,0 +1,217 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/core/input_error.h"
+#include "tests/core/refusals.h"
+#include "twin/core/reading.h"
+#include "twin/core/scenario.h"
+#include "twin/core/scenario_uncertainty.h"
+#include "twin/core/schema_table.h"
+#include "twin/core/toml_reader.h"
+#include "twin/core/units.h"
+
+/// [[effect]] blocks named "signal": structure that no cause of the catalogue has.
+namespace twinbench {
+namespace {
+
+Scenario Parse(const std::string& bench, const std::string& block) {
+  return ParseScenario("bench = \"" + bench + "\"\n[[effect]]\nname = \"signal\"\n" + block, "s.toml", ".");
+}
+std::string Refusal(const std::string& block) {
+  return MessageOf([&] { Parse("rotary_4dof", block); });
+}
+
+TEST(ScenarioSignal, IsReadInSIWithAnAmplitudeOfItsBenchsKind) {
+  const EffectSettings signal = Parse("rotary_4dof",
+                                      "point = \"psd_b_y\"\nsignal = \"harmonic\"\nby = \"target\"\n"
+                                      "times = \"temperature\"\norder = 3\namplitude_um = 1.5\nphase_deg = 40\n"
+                                      "about_K = 0.2\nper_K = 0.5\n")
+                                    .effects.at(0);
+  EXPECT_EQ(signal.where, "psd_b_y");
+  EXPECT_EQ(signal.signal, "harmonic");
+  EXPECT_EQ(signal.by, "target");
+  EXPECT_EQ(signal.times, "temperature");
+  EXPECT_DOUBLE_EQ(signal.parameters.at("amplitude"), 1.5 * units::um);
+  EXPECT_DOUBLE_EQ(signal.parameters.at("phase"), 40.0 * units::deg);
+  EXPECT_EQ(signal.parameters.at("per"), 0.5);
+  const std::string constant =
+      "point = \"angle\"\nsignal = \"constant\"\ntimes = \"velocity\"\namplitude_arcsec = 2\n";
+  const EffectSettings of_angles = Parse("encoder_comparison", constant).effects.at(0);
+  EXPECT_DOUBLE_EQ(of_angles.parameters.at("amplitude"), 2.0 * units::arcsec);
+  EXPECT_DOUBLE_EQ(of_angles.parameters.at("per"), 1.0 * units::deg);
+}
+
+TEST(ScenarioSignal, IsWrittenAsItIsRead) {
+  const Scenario scenario =
+      Parse("turntable_autocollimator", "point = \"y\"\nsignal = \"share\"\nby = \"x\"\nshare = 0.01\n");
+  const Scenario again = ParseScenario(WriteScenario(scenario), "again.toml", ".");
+  EXPECT_EQ(WriteScenario(again), WriteScenario(scenario));
+  EXPECT_EQ(again.effects.at(0).by, "x");
+  EXPECT_EQ(again.effects.at(0).where, "y");
+}
+
+TEST(ScenarioSignal, IsRefusedWithWhatWasExpected) {
+  const std::string tone = "point = \"psd_a_x\"\nsignal = \"tone\"\n";
+  ExpectRefused("s.toml", Refusal,
+                {{2, "signal = \"tone\"\n"}, {2, "point = \"psd_a_x\"\n"},
+                 {4, "point = \"psd_c_x\"\nsignal = \"tone\"\n"}, {5, "point = \"psd_a_x\"\nsignal = \"wobble\"\n"},
+                 {2, "point = \"psd_a_x\"\nsignal = \"harmonic\"\n"}, {2, tone + "by = \"target\"\n"},
+                 {6, tone + "order = 3\n"}, {6, tone + "about_K = 3\n"}, {6, tone + "where = \"psd_a\"\n"}});
+}
+
+// What a diagnosis adds to a scenario: findings in [[effect]] blocks, and [[empirical]] blocks.
+
+using testing::ElementsAre;
+
+Scenario ParseFinding(const std::string& text) {
+  return ParseScenario("bench = \"rotary_4dof\"\n" + text, "s.toml", ".");
+}
+std::string FindingError(const std::string& text) {
+  return MessageOf([&] { ParseFinding(text); });
+}
+
+TEST(ScenarioFinding, TakesUncertaintiesToSIKeepsTheRestAndIsNotNeeded) {
+  const Scenario s = ParseFinding(
+      "[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\nroll_mrad = 2\nu_roll_mrad = 0.1\n"
+      "log_evidence = 31.5\nprobability = 0.97\nprovenance = \"run 7\"\n");
+  const EffectFinding& finding = s.effects.at(0).finding;
+  EXPECT_EQ(finding.u.at("roll"), 0.1 * units::mrad);
+  EXPECT_EQ(finding.log_evidence, 31.5);
+  EXPECT_EQ(finding.probability, 0.97);
+  EXPECT_EQ(finding.provenance, "run 7");
+  const Scenario without = ParseFinding("[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\n");
+  EXPECT_TRUE(without.effects.at(0).finding.u.empty());
+  EXPECT_TRUE(std::isnan(without.effects.at(0).finding.probability));
+}
+
+TEST(ScenarioFinding, RefusesWhatCannotBe) {
+  const std::string roll = "[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\n";
+  ExpectRefused(
+      "s.toml", FindingError,
+      {{5, roll + "u_roll_mrad = -1\n"}, {5, roll + "probability = 1.5\n"}, {5, roll + "u_gain_error = 1\n"}});
+}
+
+constexpr const char* kEmpirical =
+    "[[empirical]]\nsignature = \"order 7\"\nchannel = \"psd_b_y\"\nreading = [3, 5]\nvalue_um = [0.5, -0.25]\n";
+
+TEST(ScenarioEmpirical, IsTabulatedByReadingOrByTime) {
+  const EmpiricalSettings by_reading = ParseFinding(kEmpirical).empiricals.at(0);
+  EXPECT_EQ(by_reading.signature, "order 7");
+  EXPECT_EQ(by_reading.channel, "psd_b_y");
+  EXPECT_THAT(by_reading.reading, ElementsAre(3, 5));
+  EXPECT_THAT(by_reading.value_m, ElementsAre(0.5 * units::um, -0.25 * units::um));
+  const std::string timed = "channel = \"psd_b_y\"\nby = \"time\"\ntime_s = [1.5, 2]\nvalue_um = [0.5, 1]\n";
+  const EmpiricalSettings by_time = ParseFinding("[[empirical]]\n" + timed).empiricals.at(0);
+  EXPECT_EQ(by_time.by, "time");
+  EXPECT_THAT(by_time.time_s, ElementsAre(1.5, 2.0));
+  EXPECT_THAT(by_time.reading, testing::IsEmpty());
+}
+
+TEST(ScenarioEmpirical, RefusesATableThatDoesNotFit) {
+  const std::string x = "[[empirical]]\nchannel = \"psd_a_x\"\n", by_time = x + "by = \"time\"\n";
+  ExpectRefused("s.toml", FindingError,
+                {{2, x + "reading = [1, 2]\nvalue_um = [1.0]\n"},
+                 {2, x + "reading = [1, 1]\nvalue_um = [1.0, 2.0]\n"},
+                 {2, x + "reading = [1]\nvalue_deg = [1.0]\n"},
+                 {2, "[[empirical]]\nchannel = \"angle\"\nreading = [1]\nvalue_deg = [1.0]\n"},
+                 {2, by_time + "time_s = [2, 1]\nvalue_um = [1.0, 2.0]\n"},
+                 {2, by_time + "time_s = [2]\nvalue_um = [1.0, 2.0]\n"},
+                 {2, by_time + "time_s = [2]\nreading = [1]\nvalue_um = [1.0]\n"},
+                 {2, x + "reading = [1, 2]\ntime_s = [1]\nvalue_um = [1, 2]\n"},
+                 {3, "[[empirical]]\nchanel = \"psd_a_x\"\n"}});
+}
+
+Scenario Parsed(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return ParseScenario("bench = \"rotary_4dof\"\n" + text, "s.toml", "", overrides);
+}
+
+TEST(ScenarioUncertainty, IsReadInTheUnitOfItsKeyAlsoOnTheCommandLine) {
+  EXPECT_DOUBLE_EQ(Parsed("", {"psd_a.u_distance_mm=0.1"}).uncertainties.at(0).u, 0.1 * units::mm);
+  const Scenario s = Parsed(
+      "[laser]\nu_wavelength_nm = 0.01\n[psd_a]\nu_distance_mm = { half_width = 0.3, distribution = \"uniform\" "
+      "}\n");
+  ASSERT_EQ(s.uncertainties.size(), 2U);
+  EXPECT_EQ(s.uncertainties[0].key, "laser.wavelength_nm");
+  EXPECT_DOUBLE_EQ(s.uncertainties[0].u, 0.01 * units::nm);
+  EXPECT_TRUE(std::isinf(s.uncertainties[0].dof));
+  EXPECT_EQ(s.uncertainties[1].distribution, Distribution::kUniform);
+  EXPECT_DOUBLE_EQ(s.uncertainties[1].u, 0.3 * units::mm / std::sqrt(3.0));
+  EXPECT_DOUBLE_EQ(HalfWidth(s.uncertainties[1]), 0.3 * units::mm);
+}
+
+TEST(ScenarioUncertainty, ComesBackFromTheFileThatIsWritten) {
+  const Scenario s = Parsed(
+      "[psd_b]\nu_distance_mm = { u = 0.25, dof = 8, distribution = \"triangular\" }\n[grating]\nu_point_mm = "
+      "0.5\n");
+  const Scenario again = ParseScenario(WriteScenario(s), "again.toml", "");
+  ASSERT_EQ(again.uncertainties.size(), s.uncertainties.size());
+  for (std::size_t i = 0; i < s.uncertainties.size(); ++i) {
+    EXPECT_EQ(again.uncertainties[i].key, s.uncertainties[i].key);
+    EXPECT_EQ(again.uncertainties[i].u, s.uncertainties[i].u);
+    EXPECT_EQ(again.uncertainties[i].dof, s.uncertainties[i].dof);
+    EXPECT_EQ(again.uncertainties[i].distribution, s.uncertainties[i].distribution);
+  }
+}
+
+TEST(ScenarioUncertainty, WhatCannotBeIsRefusedWithWhatIsExpected) {
+  ExpectRefused("s.toml", [](const auto& text) { return MessageOf([&] { Parsed(text); }); },
+                {{3, "[laser]\nu_wavelength_nm = -0.01\n"},
+                 {3, "[laser]\nu_wavelength_nm = { half_width = 0.1 }\n"},
+                 {3, "[laser]\nu_wavelength_nm = { u = 0.1, width = 2 }\n"},
+                 {3, "[laser]\nu_beam = 0.1\n"}});  // a word has none
+}
+
+TEST(ScenarioUncertainty, FindsTheNumbersOfAKey) {
+  Scenario s = Parsed("");
+  NumbersAt(s, "psd_a.distance_mm")[0] = 0.2;
+  EXPECT_NE(WriteScenario(s).find("distance_mm = 200.0"), std::string::npos);
+  EXPECT_EQ(NumbersAt(s, "grating.point_mm").size(), 3U);
+  EXPECT_THROW(NumbersAt(s, "laser.beam"), std::logic_error);
+}
+
+/// One entry of the list.
+struct Place {
+  std::string what = "bar";
+  double at_m = 0.5;
+  int turns = 2;
+};
+
+void AddPlace(schema::Table& table, Place& place) {
+  table.Text("what", &place.what, {"bar", "grid"}, "");
+  table.Add("at", schema::kMm, schema::UpTo(1000), &place.at_m, "");
+  table.Add("turns", schema::kPure, {1, 9}, &place.turns, "");
+}
+
+std::vector<Place> ReadPlaces(const std::string& text) {
+  std::vector<Place> places = {{}};
+  schema::Keys keys;
+  schema::Table(keys, "run").Records("places", places, AddPlace, "");
+  ReadToml(text, "s.toml", keys);
+  return places;
+}
+
+std::string RecordError(const std::string& text) {
+  return MessageOf([&] { ReadPlaces(text); });
+}
+
+TEST(RecordList, IsReplacedAsAWholeAndWhatATableLeavesOutKeepsItsDefault) {
+  const std::vector<Place> places =
+      ReadPlaces("[run]\nplaces = [{ what = \"grid\", at_mm = 60 }, { turns = 3 }]\n");
+  ASSERT_EQ(places.size(), 2u);
+  EXPECT_EQ(places[0].what, "grid");
+  EXPECT_EQ(places[0].at_m, 0.060);
+  EXPECT_EQ(places[0].turns, 2);
+  EXPECT_EQ(places[1].what, "bar");
+  EXPECT_EQ(places[1].at_m, 0.5);
+  EXPECT_EQ(places[1].turns, 3);
+  EXPECT_EQ(ReadPlaces("").size(), 1u);
+}
+
+TEST(RecordList, SaysWhatIsWrongInsideATable) {
+  for (const char* places : {"[{ at = 60 }]", "[{ at_mm = 2000 }]", "[{ what = \"ball\" }]", "[7]", "[]"})
+    ExpectRefused("s.toml", RecordError, {{2, "[run]\nplaces = " + std::string(places) + "\n"}});
+}
+
+}  // namespace
+}  // namespace twinbench
