@@ -126,6 +126,22 @@ TEST(SolveEquation5, LeavesOutPositionsThatOneSetUpDidNotRead) {
   EXPECT_EQ(points[36].status, PointStatus::kOk);
 }
 
+TEST(SolveEquation5, StatesAnUncertaintyThatMatchesItsScatterAwayFromPoles) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    const auto [bench, stops] = ReadPublished(seed, 0.2 * arcsec);
+    for (const PointwiseError& point : SolvedOfTwoTilts(stops)) {
+      if (point.status != PointStatus::kOk || point.u_rad == 0.0) continue;
+      const double truth = bench.Index(point.turntable_rad / deg, 0.0) - bench.Index(0.0, 0.0);
+      sum += std::pow((point.value_rad - truth) / point.u_rad, 2);
+      ++count;
+    }
+  }
+  // Points of a run share the start's noise: about 2 independent ones a run, sqrt(2 / 400) = 0.07.
+  EXPECT_NEAR(sum / count, 1.0, 0.2);
+}
+
 TEST(SolveEquation5, RefusesSetUpsOfDifferentShift) {
   const auto stops = ReadIdeal({{0, 60 * arcsec, 0.4}, {5, 100 * arcsec, 2.1}}, 72);
   EXPECT_THROW(SolveEquation5(stops, 0, 1, Stated(0.2 * arcsec)), InputError);
