@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "tests/core/input_error.h"
 #include "tests/hidden/clean_cases.h"
 #include "tests/hidden/reduced.h"
 #include "tests/hidden/twin_cases.h"
@@ -153,31 +152,10 @@ TEST(Controls, AFormOfManyWavesIsSeenAndNotNamed) {
   EXPECT_EQ(Diagnosed(TakeReadings(actual)).verdict, diagnose::Verdict::kUnknown);
 }
 
-TEST(Controls, OppositeSizesGiveOppositeEstimates) {
-  const auto fitted = [](double size) {
-    const Diagnosis d = Diagnosed(ReadingsWith(Effect("psd_roll", "psd_a", {{"roll", size}})));
-    const Cause* cause = Find(d, "psd_roll", "psd_a");
-    return cause ? cause->parameters.at(0) : diagnose::ParameterEstimate{};
-  };
-  const auto plus = fitted(8e-3), minus = fitted(-8e-3);
-  // Same seed, same noise: the estimates differ from +-8 mrad by the same error; 4 standard uncertainties of a sum.
-  EXPECT_NEAR(plus.value + minus.value, 0.0, 4.0 * std::hypot(plus.u, minus.u));
-  EXPECT_NEAR(plus.value - minus.value, 16e-3, 4.0 * std::hypot(plus.u, minus.u));
-}
-
 TEST(Controls, ACauseAHundredTimesItsUsualSizeIsNotPassedOverInSilence) {
   const Diagnosis d = Diagnosed(ReadingsWith(Effect("psd_roll", "psd_b", {{"roll", 0.3}})));
   EXPECT_NE(d.verdict, diagnose::Verdict::kNone);
   EXPECT_LT(d.alarm_p, 1e-3);
-}
-
-TEST(Controls, TwoSetUpsAndOnePassAreRefusedForWantOfRedundancy) {
-  Scenario scenario = Drawn(Design::kRotary, kSeed);
-  RotaryOf(scenario).procedure.shifts = {0, 1};
-  RotaryOf(scenario).procedure.passes = {1};
-  RotaryOf(scenario).procedure.phases = {"full_circle"};
-  EXPECT_THAT(MessageOf([&] { Diagnosed(TakeReadings(scenario), scenario); }),
-              testing::HasSubstr("2 mountings with 1 pass each leave 0 degrees of freedom"));
 }
 
 /// Readings without noise, evaluated with the published equations.
