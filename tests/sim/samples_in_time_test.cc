@@ -139,25 +139,6 @@ TEST(SamplesInTime, SettlingBeginsWithTheMove) {
   }
 }
 
-TEST(SamplesInTime, EveryDeviceSchedulesItsEvents) {
-  Scenario scenario = Quiet();
-  RotaryOf(scenario).mechanics.fidelity = "linear";
-  Twin twin(scenario);
-  RotaryBench bench = twin.Bench();
-  bench.fixture.Mount(0, 0.0, 0.0);
-  bench.goniometer.MoveTo(units::arcsec, 0.0);
-  bench.target.StartMove(units::arcsec);
-  bench.reference.StartMove(units::arcsec);
-  bench.target.WaitSettled();
-  bench.reference.WaitSettled();
-  bench.autocollimator.Read();
-  bench.thermometer.Read_degC();
-  bench.adc.Acquire(10, false);
-  for (const char* device :
-       {"fixture", "goniometer", "target", "reference", "autocollimator", "thermometer", "adc"})
-    EXPECT_GT(twin.ScheduledEvents().at(device), 0U) << device;
-}
-
 Acquisition Block(const Scenario& scenario, int scans) {
   Twin twin(scenario);
   return twin.Bench().adc.Acquire(scans, false);

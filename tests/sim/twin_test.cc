@@ -22,11 +22,6 @@ std::array<double, kChannels> ReadOnce(Twin& twin) {
   return {block.channel[0].mean_V, block.channel[1].mean_V, block.channel[2].mean_V, block.channel[3].mean_V};
 }
 
-TEST(Twin, TheNominalBenchSeesBothSpotsInTheirCentres) {
-  Twin twin(Quiet());
-  for (const double voltage_V : ReadOnce(twin)) EXPECT_NEAR(voltage_V, 0.0, 1e-9);
-}
-
 TEST(Twin, AFifoThatIsNotDrainedOverruns) {
   Scenario scenario = test::RotaryScenario();
   RotaryOf(scenario).adc.fifo_samples = 1024;
