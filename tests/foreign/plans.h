@@ -21,7 +21,6 @@ std::vector<Plan> CleanPlans(int count, std::uint64_t first_seed);
 
 /// Causes of the catalogue by a bench's twin, spread over its effects and places. Their other run is one of the
 /// same bench on another day: these measure what is written of a cause, not how well it is found.
-std::vector<Plan> TwinPlans(const std::string& bench, int count, std::uint64_t first_seed,
-                            const std::string& cache_folder);
+std::vector<Plan> TwinPlans(const std::string& bench, int count, std::uint64_t first_seed);
 
 }  // namespace twinbench::foreign

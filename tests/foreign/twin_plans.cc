@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <map>
-#include <memory>
 
 #include "tests/foreign/dice.h"
 #include "tests/foreign/plans.h"
@@ -56,19 +54,15 @@ Machine MakeTwinMachine(const Placement& at, std::uint64_t seed, const Signature
 
 }  // namespace
 
-std::vector<Plan> TwinPlans(const std::string& bench, int count, std::uint64_t first_seed,
-                            const std::string& cache_folder) {
+std::vector<Plan> TwinPlans(const std::string& bench, int count, std::uint64_t first_seed) {
   const std::vector<Placement> places = RepeatingPlacements(bench);
-  std::map<hidden::Design, std::shared_ptr<const SignatureScale>> scales;
   std::vector<Plan> plans;
   std::uint64_t seed = 3000000 + first_seed;
   for (int k = 0; k < count; ++k) {
     const Placement at = places[static_cast<std::size_t>(k) * places.size() / static_cast<std::size_t>(count)];
-    auto& scale = scales[at.design];
-    if (!scale) scale = std::make_shared<const SignatureScale>(at.design, cache_folder);
     seed += 10;
     plans.push_back({"twins " + bench, hidden::CaseName(at, seed),
-                     [at, seed, scale = scale] { return MakeTwinMachine(at, seed, *scale); }});
+                     [at, seed] { return MakeTwinMachine(at, seed, hidden::ScaleOf(at.design)); }});
   }
   return plans;
 }

@@ -14,6 +14,7 @@
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
+#include "twin/core/bench.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::hidden {
@@ -190,12 +191,9 @@ const SignatureScale::Clean& SignatureScale::CleanRun(std::uint64_t seed) const 
   const std::scoped_lock lock(one_at_a_time_);
   Clean& clean = clean_[schedule];
   if (clean.projector) return clean;
-  diagnose::DiagnoseOptions options;
-  options.cache_folder = cache_folder_;
-  const diagnose::DiagnosisRun diagnosed =
-      diagnose::Diagnose(TakeReadings(Drawn(design_, schedule)), Believed(design_), options);
-  clean.run = diagnosed.run;
-  clean.noise = diagnosed.noise;
+  const Bench& bench = BenchNamed(BenchOf(design_));
+  clean.run = bench.linear_run(TakeReadings(Drawn(design_, schedule)), Believed(design_), Estimator::kRigorous);
+  clean.noise = {clean.run.sigma, {}};
   clean.projector = std::make_unique<diagnose::Projector>(
       clean.noise.Whiten(clean.run, clean.run.nuisance.jacobian), clean.run.nuisance);
   return clean;
@@ -225,6 +223,13 @@ double SignatureScale::Rho(const std::vector<Reading>& with, const std::vector<R
   signature = signature.array().isFinite().select(signature, 0.0);
   const Eigen::MatrixXd white = clean.noise.Whiten(clean.run, signature);
   return std::sqrt(std::max(0.0, white.cwiseProduct(clean.projector->Apply(white)).sum()));
+}
+
+const SignatureScale& ScaleOf(Design design) {
+  static std::mutex one_at_a_time;
+  static std::map<Design, SignatureScale> scales;
+  const std::scoped_lock lock(one_at_a_time);
+  return scales.try_emplace(design, design).first->second;
 }
 
 }  // namespace twinbench::hidden

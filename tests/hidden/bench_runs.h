@@ -50,13 +50,11 @@ std::vector<Reading> TakeReadings(const Scenario& actual);
 /// y; circles: radial and tangential; five axes: quadrants' x and y [V], camera [px]; the others: the angle.
 void AddTo(const std::string& bench, const Eigen::MatrixXd& signal, std::vector<Reading>& readings);
 
-/// Measures signatures in units of noise after projection, by a clean run of the design that is diagnosed when the
+/// Measures signatures in units of noise after projection, by what a clean run of the design leaves open, made when the
 /// first one is asked for; where a design draws its schedule, by one of the same schedule.
 class SignatureScale {
  public:
-  /// @param cache_folder  Of calibrated thresholds.
-  SignatureScale(Design design, std::string cache_folder)
-      : design_(design), cache_folder_(std::move(cache_folder)) {}
+  explicit SignatureScale(Design design) : design_(design) {}
 
   /// Length of what two runs of the same schedule differ by.
   /// @param seed  Of the scenario that both were drawn by.
@@ -73,10 +71,12 @@ class SignatureScale {
   Eigen::VectorXd Rows(const std::vector<Reading>& readings, const diagnose::LinearRun& clean) const;
 
   Design design_;
-  std::string cache_folder_;
   mutable std::mutex one_at_a_time_;
   mutable std::map<std::uint64_t, Clean> clean_;  // by the seed of the schedule
 };
+
+/// Of the design, one a process.
+const SignatureScale& ScaleOf(Design design);
 
 double UniformIn(Stream& stream, double lower, double upper);
 double LogUniformIn(Stream& stream, double lower, double upper);

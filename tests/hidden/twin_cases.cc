@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <map>
-#include <memory>
 
 #include "tests/hidden/effect_size.h"
 #include "tests/hidden/placements.h"
@@ -16,23 +14,6 @@
 namespace twinbench::hidden {
 namespace {
 
-using SharedScale = std::shared_ptr<const SignatureScale>;
-
-/// Scales of the designs that were asked for, each made once.
-class Scales {
- public:
-  explicit Scales(std::string cache_folder) : cache_folder_(std::move(cache_folder)) {}
-  SharedScale Of(Design design) {
-    SharedScale& scale = scales_[design];
-    if (!scale) scale = std::make_shared<const SignatureScale>(design, cache_folder_);
-    return scale;
-  }
-
- private:
-  std::string cache_folder_;
-  std::map<Design, SharedScale> scales_;
-};
-
 /// How many sizes an effect is hidden with: a swap has but one.
 int MagnitudesOf(const Placement& at, const std::string& bench, const TwinOptions& options) {
   const bool comes_in_sizes =
@@ -40,11 +21,10 @@ int MagnitudesOf(const Placement& at, const std::string& bench, const TwinOption
   return comes_in_sizes ? options.magnitudes : 1;
 }
 
-Plan SinglePlan(const std::string& set, const Placement& at, double rho, std::uint64_t seed,
-                const SharedScale& scale) {
+Plan SinglePlan(const std::string& set, const Placement& at, double rho, std::uint64_t seed) {
   const Wanted wanted{at.effect, at.where, rho};
   return {set, CaseName(at, seed),
-          [wanted, seed, scale, design = at.design] { return MakeTwinCase(design, seed, {wanted}, *scale); }};
+          [wanted, seed, design = at.design] { return MakeTwinCase(design, seed, {wanted}, ScaleOf(design)); }};
 }
 
 Case WithoutItsCause(Case made) {
@@ -92,11 +72,10 @@ double TwinOptions::RhoOf(int k) const {
 
 std::vector<Plan> SinglePlans(const std::string& bench, const TwinOptions& options) {
   std::vector<Plan> plans;
-  Scales scales(options.cache_folder);
   std::uint64_t seed = options.first_seed;
   for (const Placement& at : Placements(bench)) {
     for (int k = 0; k < MagnitudesOf(at, bench, options) * options.seeds; ++k)
-      plans.push_back(SinglePlan("twin " + bench, at, options.RhoOf(k), ++seed, scales.Of(at.design)));
+      plans.push_back(SinglePlan("twin " + bench, at, options.RhoOf(k), ++seed));
   }
   return plans;
 }
@@ -104,12 +83,11 @@ std::vector<Plan> SinglePlans(const std::string& bench, const TwinOptions& optio
 std::vector<Plan> LeaveOneOutPlans(const std::string& bench, const TwinOptions& options) {
   constexpr double kRho = 20.0;
   std::vector<Plan> plans;
-  Scales scales(options.cache_folder);
   std::uint64_t seed = 200000 + options.first_seed;
   for (const Placement& at : Placements(bench)) {
     if (!HasSize(at.effect, at.where, bench)) continue;
     for (int k = 0; k < options.seeds; ++k) {
-      Plan plan = SinglePlan("leave-one-out", at, kRho, ++seed, scales.Of(at.design));
+      Plan plan = SinglePlan("leave-one-out", at, kRho, ++seed);
       plan.make = [make = std::move(plan.make)] { return WithoutItsCause(make()); };
       plans.push_back(std::move(plan));
     }
@@ -119,14 +97,13 @@ std::vector<Plan> LeaveOneOutPlans(const std::string& bench, const TwinOptions& 
 
 std::vector<Plan> PairPlans(int count, const TwinOptions& options) {
   std::vector<Plan> plans;
-  const auto scale = std::make_shared<const SignatureScale>(Design::kRotary, options.cache_folder);
   const std::vector<Wanted> all = SizedEffects(kRotaryBench);
   Stream stream(options.first_seed, "hidden.pairs");
   while (std::ssize(plans) < count) {
     const std::vector<Wanted> pair = DrawPair(all, options.rho_to, stream);
     const std::uint64_t seed = 100000 + options.first_seed + plans.size();
     plans.push_back(
-        {"pairs", std::to_string(seed), [=] { return MakeTwinCase(Design::kRotary, seed, pair, *scale); }});
+        {"pairs", std::to_string(seed), [=] { return MakeTwinCase(Design::kRotary, seed, pair, ScaleOf(Design::kRotary)); }});
   }
   return plans;
 }
@@ -137,14 +114,13 @@ std::vector<Plan> CreepPlans(const std::string& bench, const std::vector<Clamped
   std::uint64_t seed = 500000 + options.first_seed;
   for (const Placement& at : Placements(bench)) {
     if (at.effect != "mount_creep") continue;
-    const auto scale = std::make_shared<const SignatureScale>(at.design, options.cache_folder);
     for (const Clamped& way : ways) {
       ++seed;
       const Wanted wanted{at.effect, at.where, options.RhoOf(0), {{"time_constant", way.time_constant_s}}};
       const auto clamp = [way](Scenario& actual) { Remount_s(actual) = way.before_s; };
       plans.push_back({"creep " + bench,
                        fmt::format("{}:{:.0f}s:{:.0f}s", CaseName(at, seed), way.before_s, way.time_constant_s),
-                       [=] { return MakeTwinCase(at.design, seed, {wanted}, *scale, clamp); }});
+                       [=] { return MakeTwinCase(at.design, seed, {wanted}, ScaleOf(at.design), clamp); }});
     }
   }
   return plans;

@@ -15,7 +15,6 @@ struct TwinOptions {
   int seeds = 2;       // of each size
   std::uint64_t first_seed = 1;
   double rho_from = 5.0, rho_to = 30.0;
-  std::string cache_folder;
 
   /// The size of the k-th of magnitudes x seeds cases.
   double RhoOf(int k) const;

@@ -24,7 +24,6 @@ TwinOptions OneSize() {
   TwinOptions options;
   options.magnitudes = options.seeds = 1;
   options.rho_from = options.rho_to = 20.0;
-  options.cache_folder = CacheFolder();
   return options;
 }
 

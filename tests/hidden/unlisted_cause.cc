@@ -1,7 +1,6 @@
 #include "tests/hidden/unlisted_cause.h"
 
 #include <cmath>
-#include <memory>
 
 #include "tests/hidden/placements.h"
 #include "tests/hidden/unlisted.h"
@@ -140,13 +139,12 @@ std::vector<Plan> UnlistedPlans(const std::string& bench, const TwinOptions& opt
   std::vector<Plan> plans;
   std::uint64_t seed = 400000 + options.first_seed;
   for (const Design design : PlainDesigns(bench)) {
-    const auto scale = std::make_shared<const SignatureScale>(design, options.cache_folder);
     for (const UnlistedCause& cause : UnlistedCausesOf(bench)) {
       for (int k = 0; k < options.magnitudes * options.seeds; ++k) {
         ++seed;
         const double rho = options.RhoOf(k);
         plans.push_back({"unlisted " + bench, std::to_string(seed),
-                         [=] { return MakeUnlisted(design, cause, rho, seed, *scale); }});
+                         [=] { return MakeUnlisted(design, cause, rho, seed, ScaleOf(design)); }});
       }
     }
   }

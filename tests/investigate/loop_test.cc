@@ -26,8 +26,7 @@ InvestigationOptions TenHours() {
 
 Judged Hidden(hidden::Design design, const std::string& effect, const std::string& where, double rho,
               double budget_min = 600.0, std::uint64_t seed = 7, const std::optional<Wish>& wish = {}) {
-  const hidden::SignatureScale scale(design, "");
-  return InvestigateHidden({effect, where, design}, seed, rho, scale, WithBudget(budget_min), wish);
+  return InvestigateHidden({effect, where, design}, seed, rho, hidden::ScaleOf(design), WithBudget(budget_min), wish);
 }
 
 TEST(Investigate, TellsACauseThatTheFirstRunDoesNotTellFromOthers) {
@@ -53,7 +52,7 @@ TEST(Investigate, EndsWithItsBudget) {
 
 // A wander may look like a slip in one run, and goes on in the next.
 TEST(Investigate, SeesWhetherASlipHappensAgain) {
-  const hidden::SignatureScale scale(hidden::Design::kTurntable, "");
+  const hidden::SignatureScale& scale = hidden::ScaleOf(hidden::Design::kTurntable);
   InvestigationOptions options = TenHours();
   options.conclusive = 0.9;
   const Judged judged = InvestigateHidden({"slip", "x", hidden::Design::kTurntable}, 7, 15.0, scale, options);
@@ -69,7 +68,7 @@ TEST(Investigate, LooksAgainWhereOneRunMayHideACause) {
   const std::vector<hidden::UnlistedCause> causes = hidden::UnlistedCausesOf("encoder_comparison");
   const auto line = std::ranges::find(causes, "non-integer line", &hidden::UnlistedCause::name);
   ASSERT_NE(line, causes.end());
-  const hidden::SignatureScale scale(hidden::Design::kSweep, "");
+  const hidden::SignatureScale& scale = hidden::ScaleOf(hidden::Design::kSweep);
   const Judged judged = InvestigateUnlisted(hidden::Design::kSweep, *line, 7, 4.0, scale, TenHours());
   const std::vector<Step>& steps = judged.investigation.steps;
   EXPECT_EQ(steps.front().believed.front().first, "nothing");

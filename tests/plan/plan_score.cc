@@ -23,7 +23,6 @@ struct ClaimOptions {
 
 void ScoreTies(const ClaimOptions& options) {
   std::vector<hidden::Placement> placements = hidden::Placements(options.bench);
-  std::map<hidden::Design, std::unique_ptr<hidden::SignatureScale>> scales;
   std::map<hidden::Design, diagnose::Isolability> foretold;
   int pairs = 0, named_beforehand = 0, tied_cases = 0;
   for (int k = 0; k < options.cases; ++k) {
@@ -31,11 +30,9 @@ void ScoreTies(const ClaimOptions& options) {
     Stream stream(seed, "plan.score");
     const auto place = static_cast<std::size_t>(stream.Uniform() * static_cast<double>(placements.size()));
     const hidden::Placement& at = placements[place];
-    auto& scale = scales[at.design];
-    if (!scale) scale = std::make_unique<hidden::SignatureScale>(at.design, "");
     if (!foretold.contains(at.design)) foretold[at.design] = ForetoldOf(at.design);
     const double rho = hidden::LogUniformIn(stream, diagnose::tuning::kBaarda, 20.0);
-    const TieCase judged = DiagnoseHidden(at, seed, rho, *scale, foretold[at.design]);
+    const TieCase judged = DiagnoseHidden(at, seed, rho, hidden::ScaleOf(at.design), foretold[at.design]);
     tied_cases += judged.pairs.empty() ? 0 : 1;
     for (const BlamedPair& pair : judged.pairs) {
       ++pairs;

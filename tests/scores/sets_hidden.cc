@@ -62,7 +62,6 @@ hidden::TwinOptions TwinOptionsOf(const Amount& amount, double rho_from, double 
   options.first_seed = amount.first_seed;
   options.rho_from = rho_from;
   options.rho_to = rho_to;
-  options.cache_folder = amount.cache_folder;
   return options;
 }
 

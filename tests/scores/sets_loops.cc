@@ -45,11 +45,11 @@ Judged OfTwin(const std::string& bench, std::uint64_t seed) {
   const hidden::Placement& at = DrawnFrom(placements, stream);
   const double rho = hidden::LogUniformIn(stream, 2.0, 20.0);
   if (stream.Uniform() >= kUnlistedShare)
-    return InvestigateHidden(at, seed, rho, hidden::SignatureScale(at.design, ""), TenHours());
+    return InvestigateHidden(at, seed, rho, hidden::ScaleOf(at.design), TenHours());
   const std::vector<hidden::Design> designs = hidden::PlainDesigns(bench);
   const hidden::Design design = DrawnFrom(designs, stream);
   const hidden::UnlistedCause& cause = DrawnFrom(hidden::UnlistedCausesOf(bench), stream);
-  return InvestigateUnlisted(design, cause, seed, rho, hidden::SignatureScale(design, ""), TenHours());
+  return InvestigateUnlisted(design, cause, seed, rho, hidden::ScaleOf(design), TenHours());
 }
 
 /// An encoder that a program in Python measures, which shares nothing with the twin.

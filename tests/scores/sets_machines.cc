@@ -48,7 +48,7 @@ Plans ForeignSet(const std::string& bench, const Amount& amount) {
 Plans TwoRunsSet(const std::string& bench, const Amount& amount) {
   Plans plans;
   AppendMachines("two_runs", bench, "",
-                 foreign::TwinPlans(bench, amount.is_long ? 32 : 8, amount.first_seed, amount.cache_folder),
+                 foreign::TwinPlans(bench, amount.is_long ? 32 : 8, amount.first_seed),
                  amount.cache_folder, plans);
   return plans;
 }
