@@ -144,6 +144,43 @@ TEST(BringingToRest, TellsAllBeforeItLooksAtAnyAndSaysWhoMoves) {
   EXPECT_KEPT(BringToRest(clock, {mute.Part(), moving.Part()}).why_not);
 }
 
+/// Seconds until a link is given up on which every word is waited for so long, and whether it was told that all rest.
+std::pair<double, bool> TriedFor(double timeout_s, int parts, double answers_from_s = 1e9) {
+  CountingClock clock;
+  const auto ask = [&] {
+    if (ToSeconds(clock.now) >= answers_from_s) return;
+    clock.now += FromSeconds(timeout_s);
+    throw kMute;
+  };
+  std::vector<ScriptedAxis> axes(static_cast<std::size_t>(parts));
+  std::vector<Stoppable> all;
+  for (ScriptedAxis& axis : axes) {
+    axis.when_stopped = axis.when_looked_at = [&](ScriptedAxis&) { ask(); };
+    all.push_back(axis.Part());
+  }
+  const bool is_sure = BringToRest(clock, all, [&] { return HostTime(clock.now.time_since_epoch()); }).is_sure;
+  return {ToSeconds(clock.now), is_sure};
+}
+
+TEST(BringingToRest, OverADeadLinkIsGivenUpWithinFiveSecondsHoweverManyHangOnIt) {
+  for (const double timeout_s : {0.3, 1.0, 2.0}) {
+    for (const int parts : {1, 2}) {
+      const auto [took_s, is_sure] = TriedFor(timeout_s, parts);
+      EXPECT_FALSE(is_sure);
+      EXPECT_LE(took_s, 5.0) << timeout_s << " " << parts;
+      EXPECT_GT(took_s, 2.0) << timeout_s << " " << parts;  // it is no hiccup
+    }
+  }
+}
+
+TEST(BringingToRest, OverALinkThatAnswersAgainBeforeThatEndsAtRest) {
+  for (const double timeout_s : {0.3, 1.0}) {
+    const auto [took_s, is_sure] = TriedFor(timeout_s, 2, 2.0);
+    EXPECT_TRUE(is_sure) << timeout_s;
+    EXPECT_LE(took_s, 5.0) << timeout_s;
+  }
+}
+
 TEST(WhetherAtRest, IsAskedThreeTimesOrUntilSomethingMoves) {
   ScriptedAxis rests, moves;
   EXPECT_TRUE(WhetherAtRest({rests.Part().look}).is_sure);

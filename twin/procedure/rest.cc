@@ -14,8 +14,6 @@
 namespace twinbench::procedure {
 namespace {
 
-using SteadyClock = std::chrono::steady_clock;
-
 constexpr Duration kBetweenLooks = std::chrono::milliseconds(500);
 constexpr int kLooksOfRest = 3;
 constexpr int kLooksInTime = 10;  // behind which nobody waits any more ...
@@ -23,7 +21,7 @@ constexpr int kMostLooks = 20;    // ... but for what gets slower
 constexpr double kSlower = 0.95;  // from look to look
 constexpr int kLooksUntilSaidAgain = 3;  // to what moves on; some are busy for a moment with every word
 constexpr int kFailuresOfADeadLink = 8;
-constexpr auto kDeadAfter = std::chrono::milliseconds(3500);  // of nothing but failures, the next of which would be as long as the last
+constexpr Duration kDeadAfter = std::chrono::milliseconds(3500);  // of nothing but failures
 constexpr double kRestsWithin = 1e-5;                 // m or rad: where no in-position limit is known
 
 /// What an axis has shown since it was last seen to move.
@@ -78,10 +76,25 @@ class AxesWatch {
   std::vector<RestWatch> axes_;
 };
 
+/// Failures without any answer between them.
+struct Silence {
+  int failures = 0;
+  HostTime since;
+  Duration latest{0};  // took so long
+
+  void Note(HostTime asked, HostTime now) {
+    if (failures++ == 0) since = asked;
+    latest = now - asked;
+  }
+  /// The next would be as long as the last.
+  bool IsOfADeadLink(HostTime now) const { return failures > 1 && now - since + latest > kDeadAfter; }
+};
+
 /// One part on its way to rest.
 class Stopping {
  public:
-  explicit Stopping(const Stoppable& part) : part_(&part) {}
+  /// @param silence  Of all parts, which may hang on one link.
+  Stopping(const Stoppable& part, Silence& silence, const std::function<HostTime()>& now) : part_(&part), of_all_(&silence), now_(&now) {}
 
   void Say() {
     said_at_look_ = looks_;
@@ -99,7 +112,7 @@ class Stopping {
     Try([this] {
       watch_.Look(part_->look());
       ++looks_;
-      failures_ = 0;
+      silence_ = {};
     });
   }
 
@@ -108,24 +121,25 @@ class Stopping {
   /// Whether another look may tell more.
   bool IsOpen() const { return !AtRest() && !IsDead(); }
   std::string WhyNot() const {
-    return failures_ > 0 ? why_not_ : fmt::format("still moving after the stop: {}", watch_.Places(&RestWatch::Restless));
+    return silence_.failures > 0 ? why_not_ : fmt::format("still moving after the stop: {}", watch_.Places(&RestWatch::Restless));
   }
 
  private:
   bool IsDead() const {
-    return failures_ >= kFailuresOfADeadLink || (failures_ > 1 && SteadyClock::now() - failing_since_ + took_ > kDeadAfter);
+    const HostTime now = (*now_)();
+    return silence_.failures >= kFailuresOfADeadLink || silence_.IsOfADeadLink(now) || (silence_.failures > 0 && of_all_->IsOfADeadLink(now));
   }
 
   /// What fails may be the fault that is being dealt with.
   void Try(const std::function<void()>& ask) {
-    const SteadyClock::time_point asked = SteadyClock::now();
+    const HostTime asked = (*now_)();
     try {
       ask();
+      *of_all_ = {};
     } catch (const NothingMoves&) {
       is_recording_ = true;
     } catch (const BenchError& error) {
-      if (failures_++ == 0) failing_since_ = asked;
-      took_ = SteadyClock::now() - asked;
+      for (Silence* silence : {&silence_, of_all_}) silence->Note(asked, (*now_)());
       why_not_ = error.what();
     }
   }
@@ -133,9 +147,10 @@ class Stopping {
   const Stoppable* part_;
   AxesWatch watch_;
   bool was_heard_ = false, is_recording_ = false;
-  int looks_ = 0, said_at_look_ = 0, failures_ = 0;  // failures: since the last look that was answered
-  SteadyClock::time_point failing_since_;
-  SteadyClock::duration took_{};  // the latest failure
+  int looks_ = 0, said_at_look_ = 0;
+  Silence silence_;  // since the last look that was answered
+  Silence* of_all_;
+  const std::function<HostTime()>* now_;
   std::string why_not_;
 };
 
@@ -165,8 +180,10 @@ std::vector<SeenAxis> LookAt(MachineController& machine, const std::vector<AxisL
   return seen;
 }
 
-Standstill BringToRest(Clock& clock, const std::vector<Stoppable>& parts) {
-  std::vector<Stopping> all(parts.begin(), parts.end());
+Standstill BringToRest(Clock& clock, const std::vector<Stoppable>& parts, const std::function<HostTime()>& now) {
+  Silence silence;
+  std::vector<Stopping> all;
+  for (const Stoppable& part : parts) all.emplace_back(part, silence, now);
   for (Stopping& part : all) part.Say();
   for (int look = 0; look < kMostLooks && std::ranges::any_of(all, &Stopping::IsOpen); ++look) {
     if (look >= kLooksInTime && std::ranges::none_of(all, &Stopping::Slows)) break;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -18,6 +19,7 @@ struct SeenAxis {
   double encoder = kNaN;    // NaN: its origin is lost, and the controller's word is all there is
   double in_position = std::numeric_limits<double>::infinity();  // of its limits
 };
+using HostTime = std::chrono::steady_clock::time_point;
 using AxesLook = std::function<std::vector<SeenAxis>()>;
 
 /// What is told to stop by one word and looked at by one question.
@@ -37,7 +39,8 @@ std::vector<SeenAxis> LookAt(MachineController& machine, const std::vector<AxisL
 /// within a second: the controller says so and no encoder leaves the width that counts as in position. A word that was refused is
 /// no matter where rest is seen. A link is dead behind some seconds of failures; one part that does not answer keeps nobody from
 /// stopping the others. Never throws what devices throw.
-Standstill BringToRest(Clock& clock, const std::vector<Stoppable>& parts);
+/// @param now  Of the computer: a bench's clock may fail with its link.
+Standstill BringToRest(Clock& clock, const std::vector<Stoppable>& parts, const std::function<HostTime()>& now = std::chrono::steady_clock::now);
 
 /// Whether all are at rest by the same looks; nothing is told to them. Takes a second of real time.
 /// @throws what the looks throw.
