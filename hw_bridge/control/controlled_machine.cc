@@ -25,7 +25,7 @@ std::string ControlledMachine::Place(std::size_t axis, double at) const {
 }
 
 void ControlledMachine::AgreeOnLimits() {
-  const std::vector<AxisLimits> travel = Travel();
+  const std::vector<AxisLimits> travel = allowed_ = Travel();
   for (std::size_t k = 0; k < axes_.size(); ++k) {
     AxisLimits& ours = limits_[k];
     if (std::isinf(ours.lower)) ours.lower = travel[k].lower;
@@ -35,6 +35,17 @@ void ControlledMachine::AgreeOnLimits() {
     line_.Fail(FaultKind::kRefused, fmt::format("the controller allows axis {} {} to {}; the bench file {} to {}",
                                                 axes_[k].name, Place(k, travel[k].lower), Place(k, travel[k].upper),
                                                 Place(k, ours.lower), Place(k, ours.upper)));
+  }
+}
+
+void ControlledMachine::RequireTravelAsBefore() {
+  if (allowed_.empty()) return;
+  const std::vector<AxisLimits> travel = Travel();
+  for (std::size_t k = 0; k < axes_.size(); ++k) {
+    if (travel[k].lower == allowed_[k].lower && travel[k].upper == allowed_[k].upper) continue;
+    line_.Fail(FaultKind::kMoved, fmt::format("the controller allowed axis {} {} to {} and now allows {} to {}: somebody else set its limits",
+                                              axes_[k].name, Place(k, allowed_[k].lower), Place(k, allowed_[k].upper),
+                                              Place(k, travel[k].lower), Place(k, travel[k].upper)));
   }
 }
 

@@ -51,6 +51,9 @@ class ControlledMachine : public MachineController {
   std::string Place(std::size_t axis, double at) const;
   double Feed_m_s(double feed_m_s) const { return feed_m_s > 0.0 ? feed_m_s : manner_.traverse_m_s; }
 
+  /// Before a move, of a controller that answers at once.
+  /// @throws DeviceFault kMoved if it allows another travel than when limits were agreed on.
+  void RequireTravelAsBefore();
   void RequireWithinLimits(std::size_t axis, double to);
   void RequireReady(const std::vector<AxisState>& states);
   [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why) {
@@ -68,7 +71,7 @@ class ControlledMachine : public MachineController {
 
   DeviceLine line_;
   std::vector<MachineAxis> axes_;
-  std::vector<AxisLimits> limits_;
+  std::vector<AxisLimits> limits_, allowed_;  // allowed: by the controller, when limits were agreed on
   MachineManner manner_;
   std::function<bool()> stop_asked_;
 };

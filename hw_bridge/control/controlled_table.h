@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "hw_bridge/control/command_numbers.h"
@@ -27,7 +28,7 @@ class ControlledTable : public RotaryTable {
   void Stop() override;
   void Home() override;
 
-  /// Takes over the controller's own limits where the bench file gives none.
+  /// Takes over the controller's own limits where the bench file gives none; one that allows others before a later move is kMoved.
   /// @throws DeviceFault kRefused if the controller allows less than the bench file.
   void AgreeOnLimits();
   const TableLimits& limits() const { return limits_; }
@@ -52,6 +53,7 @@ class ControlledTable : public RotaryTable {
 
   bool AwaitSettledOrStop(Duration within);
   void RequireWithinLimits(double angle_rad) const;
+  void RequireLimitsAsBefore();
   void RequireOrigin(const TableState& now) const;
   void RequireUnderstood(double angle_rad, const TableState& now);
   [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why) {
@@ -60,6 +62,7 @@ class ControlledTable : public RotaryTable {
 
   DeviceLine line_;
   TableLimits limits_;
+  std::optional<std::pair<double, double>> allowed_rad_;  // by the controller, when limits were agreed on
   CommandNumbers numbers_;
   std::function<bool()> stop_asked_;
 };

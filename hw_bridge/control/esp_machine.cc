@@ -58,6 +58,7 @@ void EspMachine::StartMove(const std::vector<double>& to, double feed_m_s) {
   Require(to.size() == Axes().size(), "a move has one coordinate an axis");
   for (std::size_t k = 0; k < to.size(); ++k) RequireWithinLimits(k, to[k]);
   RequireReady(State());
+  RequireTravelAsBefore();
   if (IsGroup()) SetFeed(feed_m_s);
   std::string command = IsGroup() ? "1HL" : "1PA";
   for (std::size_t k = 0; k < to.size(); ++k) command += (k > 0 ? "," : "") + Text(to[k], Axes()[k].to_SI());

@@ -24,7 +24,7 @@ struct EspGroupModel {
   std::mutex mutex;
   std::array<double, 2> at_mm{};
   std::array<bool, 2> motor_on = {true, true};
-  int decimals = 4, error = 0;
+  int decimals = 4, error = 0, upper_mm = 100;
   std::string group;  // that somebody else has formed: "1,2"; it cannot be formed again
 
   /// Several questions stand on one line.
@@ -51,7 +51,7 @@ struct EspGroupModel {
     if (verb == "MD?") return "1";
     if (verb == "PA?" || verb == "TP?") return fmt::format("{}", at_mm[axis]);
     if (verb == "SL?") return "-100";
-    if (verb == "SR?") return "100";
+    if (verb == "SR?") return std::to_string(upper_mm);
     Obey(axis, verb);
     return "";
   }
@@ -111,6 +111,17 @@ TEST_F(EspMachineWithoutStatus, AnAxisWhoseMotorIsOffAtTheStartHasNoOrigin) {
   Restart();
   EspMachine machine = Machine();
   EXPECT_EQ(test::KindOf([&] { machine.StartMove({0.01, 0.0}, 0.0); }), FaultKind::kRestarted);
+}
+
+TEST_F(EspMachineWithoutStatus, LimitsThatSomebodyElseSetAreToldBeforeAnythingMoves) {
+  EspMachine machine = Machine();
+  machine.AgreeOnLimits();
+  machine.StartMove({0.01, 0.0}, 0.0);
+  for (const int upper_mm : {1000, 50}) {
+    model_.upper_mm = upper_mm;
+    EXPECT_EQ(test::KindOf([&] { machine.StartMove({0.02, 0.0}, 0.0); }), FaultKind::kMoved);
+    EXPECT_NEAR(machine.State()[0].encoder, 0.01, 1e-12);
+  }
 }
 
 TEST_F(EspMachineWithoutStatus, AGroupThatIsThereAlreadyIsOursIfItIsOfOurAxes) {

@@ -148,6 +148,15 @@ TEST_F(ScpiTables, TheControllersOwnLimitsHoldWhereTheFileGivesNoneAndItMayNotAl
 }
 
 // PyMeasure sends 30.123456 deg as 30.1235; a controller that drops digits does the same.
+TEST_F(ScpiTables, LimitsThatSomebodyElseSetAreToldBeforeAnythingMoves) {
+  ScpiTable table = Table(1);
+  table.AgreeOnLimits();
+  table.StartMove(0.5);
+  model_.axis[1].upper_deg += 1.0;
+  EXPECT_EQ(test::KindOf([&] { table.StartMove(0.25); }), FaultKind::kMoved);
+  EXPECT_NEAR(table.State().encoder_rad, 0.5, 1e-15);
+}
+
 TEST_F(ScpiTables, AControllerThatUnderstoodAnotherAngleIsStoppedAndTheDifferenceTold) {
   model_.resolution_deg = 1e-4;
   ScpiTable table = Table(1);
