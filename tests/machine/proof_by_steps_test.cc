@@ -67,6 +67,7 @@ TEST(ProofBySteps, InstrumentsWhoseSignsAxesOrUnitsChangeAreNoticedAtOnceWhereSi
     bool is_of_size;
   };
   for (const auto& [scenario, x, y, is_of_size] : {Case{ShortTurntable(), "autocollimator_x_arcsec", "autocollimator_y_arcsec", true},
+                                                   Case{ShortPolygon(), "autocollimator_x_arcsec", "autocollimator_y_arcsec", true},
                                                    Case{ShortFreeform(), "qpd_x_V", "qpd_y_V", false}}) {
     const auto value = [&, &s = scenario](Reading& r, const std::string& column) -> double& { return In(r, s, column); };
     EXPECT_EQ(RunWith(scenario, 0, 0, {}).fault, "") << scenario.bench;
@@ -146,18 +147,37 @@ class ChangedCard : public AdConverter {
   std::array<ChannelBlock, kChannels> last_{};
 };
 
+using ChangesAngles = std::function<AutocollimatorReading(AutocollimatorReading)>;
+
+/// An autocollimator whose angles are others from the same block on.
+class ChangedAutocollimator : public Autocollimator {
+ public:
+  ChangedAutocollimator(Autocollimator& inner, const int& blocks, int good, ChangesAngles changes)
+      : inner_(inner), blocks_(blocks), good_(good), changes_(std::move(changes)) {}
+  AutocollimatorReading Read() override { return blocks_ < good_ || !changes_ ? inner_.Read() : changes_(inner_.Read()); }
+
+ private:
+  Autocollimator& inner_;
+  const int& blocks_;
+  int good_;
+  ChangesAngles changes_;
+};
+
 struct TableShares {
   double target = 1.0, reference = 1.0;
 };
 
-std::string EndOfTables(int good, const ChangesVolts& changes, TableShares shares, std::size_t& kept) {
+std::string EndOfTables(int good, const ChangesVolts& changes, TableShares shares, std::size_t& kept,
+                        const std::string& phase = "full_circle", const ChangesAngles& changes_angles = {}) {
   Scenario scenario = RestlessBench();
-  RotaryOf(scenario).procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.phases = {phase};
+  RotaryOf(scenario).procedure.stability_s = 60.0;
   sim::Twin twin(scenario);
   const RotaryBench inner = twin.Bench();
   ChangedCard card(inner.adc, good, changes);
   Lying target(inner.target, card.blocks, good, shares.target), reference(inner.reference, card.blocks, good, shares.reference);
-  RotaryBench bench = {inner.clock, target, reference, card, inner.autocollimator, inner.thermometer, inner.goniometer, inner.fixture};
+  ChangedAutocollimator autocollimator(inner.autocollimator, card.blocks, good, changes_angles);
+  RotaryBench bench = {inner.clock, target, reference, card, autocollimator, inner.thermometer, inner.goniometer, inner.fixture};
   MemoryLog log;
   procedure::Options options;
   options.log = &log;
@@ -172,25 +192,67 @@ std::string EndOfTables(int good, const ChangesVolts& changes, TableShares share
   return fault;
 }
 
-TEST(ProofBySteps, TablesThatStandOrAreMirroredAndChannelsOfAnotherUnitOrOrderLeaveNoReading) {
-  std::size_t kept = 0;
-  EXPECT_EQ(EndOfTables(1000, {}, {}, kept), "");
-  EXPECT_EQ(kept, 24u);
-  using Blocks = std::array<ChannelBlock, kChannels>;
-  const std::vector<ChangesVolts> changes = {
+using Blocks = std::array<ChannelBlock, kChannels>;
+
+const std::vector<ChangesVolts>& WrongVolts() {
+  static const std::vector<ChangesVolts> changes = {
       [](Blocks& c, const Blocks&) { for (ChannelBlock& one : c) one.mean_V *= 1e-3; },
       [](Blocks& c, const Blocks&) { for (ChannelBlock& one : c) one.mean_V = -one.mean_V; },
       [](Blocks& c, const Blocks&) { std::swap(c[0], c[1]); },
       [](Blocks& c, const Blocks& before) { c[2] = before[2]; }};
-  constexpr int kBlocksAReading = 2, kGood = 7;
-  for (std::size_t k = 0; k < changes.size(); ++k) {
-    EXPECT_NE(EndOfTables(kBlocksAReading * kGood, changes[k], {}, kept), "") << k;
-    EXPECT_EQ(kept, static_cast<std::size_t>(kGood)) << k;
+  return changes;
+}
+
+constexpr TableShares kWrongShares[] = {{0.0, 0.0}, {-1.0, -1.0}, {1e-3, 1e-3}};  // of one alone the spots leave the PSDs
+
+TEST(ProofBySteps, TablesThatStandOrAreMirroredAndChannelsOfAnotherUnitOrOrderLeaveNoReading) {
+  constexpr std::size_t kGood = 5;
+  constexpr int kGoodBlocks = 3 * kGood;
+  const std::pair<const char*, std::size_t> phases[] = {{"full_circle", 24}, {"calibration", 12}, {"verification", 7}};
+  for (const auto& [phase, readings] : phases) {
+    std::size_t kept = 0;
+    EXPECT_EQ(EndOfTables(1000, {}, {}, kept, phase), "") << phase;
+    EXPECT_EQ(kept, readings) << phase;
+    for (const ChangesVolts& changes : WrongVolts()) {
+      EXPECT_NE(EndOfTables(kGoodBlocks, changes, {}, kept, phase), "") << phase;
+      EXPECT_EQ(kept, kGood) << phase;
+    }
+    for (const TableShares shares : kWrongShares) {
+      EXPECT_NE(EndOfTables(kGoodBlocks, {}, shares, kept, phase), "") << phase << " " << shares.target;
+      EXPECT_EQ(kept, kGood) << phase << " " << shares.target;
+    }
   }
-  for (const TableShares shares : {TableShares{0.0, 0.0}, {-1.0, -1.0}, {1e-3, 1e-3}}) {  // of one alone the spots leave the PSDs
-    EXPECT_NE(EndOfTables(kBlocksAReading * kGood, {}, shares, kept), "") << shares.target << " " << shares.reference;
-    EXPECT_EQ(kept, static_cast<std::size_t>(kGood)) << shares.target << " " << shares.reference;
+}
+
+TEST(ProofBySteps, AZeroThatIsSetWhileTheStepIsGoneBackLeavesNoReading) {
+  std::size_t kept = 0;
+  constexpr std::size_t kGood = 5;
+  const ChangesVolts stays_away = [](Blocks& c, const Blocks& before) { c = before; };  // as beside the reading
+  EXPECT_NE(EndOfTables(3 * kGood + 2, stays_away, {}, kept), "");
+  EXPECT_EQ(kept, kGood);
+}
+
+TEST(ProofBySteps, AnAutocollimatorWhoseSignsUnitsOrAxesChangeLeavesNoReadingOfACalibration) {
+  constexpr std::size_t kGood = 5;
+  const ChangesAngles changes[] = {[](AutocollimatorReading a) { return AutocollimatorReading{-a.yaw_rad, a.tilt_rad}; },
+                                   [](AutocollimatorReading a) { return AutocollimatorReading{a.tilt_rad, a.yaw_rad}; },
+                                   [](AutocollimatorReading a) { return AutocollimatorReading{0.206 * a.yaw_rad, 0.206 * a.tilt_rad}; }};
+  for (const ChangesAngles& change : changes) {
+    std::size_t kept = 0;
+    EXPECT_NE(EndOfTables(3 * kGood + 1, {}, {}, kept, "calibration", change), "");  // which is read before the converter is
+    EXPECT_EQ(kept, kGood);
   }
+}
+
+TEST(ProofBySteps, InAStabilityTestTablesGoAStepBeforeItsFirstReadingAndBehindItsLast) {
+  std::size_t kept = 0;
+  EXPECT_EQ(EndOfTables(1000, {}, {}, kept, "stability"), "");
+  EXPECT_EQ(kept, 6u);
+  EXPECT_NE(EndOfTables(0, {}, {0.0, 0.0}, kept, "stability"), "");
+  EXPECT_EQ(kept, 0u);
+  constexpr int kBefore = 3;  // blocks
+  EXPECT_NE(EndOfTables(kBefore + 3, {}, {0.0, 0.0}, kept, "stability"), "");
+  EXPECT_EQ(kept, 5u);
 }
 
 }  // namespace

@@ -45,6 +45,15 @@ TEST(StepProof, SignsAndGainsOfWiresAreWhatTheFirstStepSaysThatNeitherStandsNorI
   EXPECT_FALSE(IsProved(proof, Went(-1.0, 0.1)));
 }
 
+TEST(StepProof, BehindComingBackAllIsShownAsBefore) {
+  StepProof proof(false);
+  const auto came_back = [](double off) { return std::vector<ColumnInStep>{{"x", 1.0, 1.0, 0.01, true, off}, {"y", 0.0, 0.0, 0.01}}; };
+  EXPECT_TRUE(IsProved(proof, came_back(0.3)));
+  EXPECT_FALSE(IsProved(proof, came_back(1.0)));
+  EXPECT_FALSE(IsProved(proof, came_back(-0.5)));
+  EXPECT_FALSE(IsProved(proof, came_back(kNaN)));
+}
+
 TEST(StepProof, OfASizeThatNobodyKnowsTheSignIsSureWhereNoiseLeavesIt) {
   StepProof proof(false);
   const auto went = [](double did) { return std::vector<ColumnInStep>{{"x", 1.0, did, 0.01, false}}; };

@@ -62,6 +62,21 @@ Reading Beside(const Reading& reading, const std::vector<double>& by, const std:
   return beside;
 }
 
+bool ShowsAngles(const Reading& reading) {
+  return std::isfinite(reading.autocollimator_yaw_rad);
+}
+
+/// What converter and, where the reading shows its angles, autocollimator show now.
+Reading ShownNow(RotaryBench& bench, Reading reading, int samples) {
+  const Acquisition block = bench.adc.Acquire(samples, false);
+  reading.n_samples = block.n_samples;
+  for (std::size_t c = 0; c < kChannels; ++c) reading.mean_V[c] = block.channel[c].mean_V, reading.std_V[c] = block.channel[c].std_V;
+  if (!ShowsAngles(reading)) return reading;
+  const AutocollimatorReading angles = bench.autocollimator.Read();
+  reading.autocollimator_yaw_rad = angles.yaw_rad, reading.autocollimator_tilt_rad = angles.tilt_rad;
+  return reading;
+}
+
 }  // namespace
 
 std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scenario& scenario, const procedure::MachineOptions& options) {
@@ -76,13 +91,15 @@ std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scen
     std::vector<double> by = step;
     if (Reading here = reading; NumberIn(here, scenario, columns[0].column) > 0.0)
       for (double& way : by) way = -way;  // towards the middle of its range
-    Reading shown = procedure::ShownBeside(bench, by, options), here = reading;
+    Reading shown = procedure::ShownBeside(bench, by, options), back = bench.instruments.Look(), here = reading;
     const Reading there = Beside(reading, by, bench.machine.Axes(), scenario);
     std::vector<ColumnInStep> in_step;
     for (const Expected& c : columns) {
-      const double did = NumberIn(shown, scenario, c.column) - NumberIn(here, scenario, c.column);
-      in_step.push_back({c.column, c.by_axes(there) - c.by_axes(reading), c.is_angle ? std::remainder(did, units::turn) : did, c.noise,
-                         !c.is_loose});
+      const auto since = [&](Reading& later) {
+        const double went = NumberIn(later, scenario, c.column) - NumberIn(here, scenario, c.column);
+        return c.is_angle ? std::remainder(went, units::turn) : went;
+      };
+      in_step.push_back({c.column, c.by_axes(there) - c.by_axes(reading), since(shown), c.noise, !c.is_loose, since(back)});
     }
     proof->Require(in_step);
     proved = reading.setup;
@@ -90,21 +107,30 @@ std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scen
 }
 
 std::function<void(const Reading&)> ProofBySteps(RotaryBench& bench, const Scenario& scenario, const procedure::Options& options) {
-  const auto proof = std::make_shared<procedure::StepProof>(true);
+  const auto wires = std::make_shared<procedure::StepProof>(true), angles = std::make_shared<procedure::StepProof>(false);
   const RotarySettings& own = RotaryOf(scenario);
-  return [&bench, &options, &own, proof, columns = MovedByAxes(scenario)](const Reading& reading) {
+  return [&bench, &options, &own, wires, angles, columns = MovedByAxes(scenario)](const Reading& reading) {
     if (reading.status != ReadingStatus::kOk) return;
-    Reading unit_yaw, at_zero;
+    const Reading here = reading.n_samples > 0 ? reading : ShownNow(bench, reading, own.adc.samples);
+    Reading unit_yaw, at_zero, beside;
     unit_yaw.target_rad = 1.0, unit_yaw.reference_rad = at_zero.target_rad = at_zero.reference_rad = 0.0;
     const auto V_rad = [&](const Expected& column) { return column.by_axes(unit_yaw) - column.by_axes(at_zero); };
-    const double towards = reading.mean_V[0] * V_rad(columns[0]) > 0.0 ? -1.0 : 1.0;  // the middle of its range
+    const double yaw = ShowsAngles(here) ? here.autocollimator_yaw_rad : here.mean_V[0] * V_rad(columns[0]);
+    const double towards = yaw > 0.0 ? -1.0 : 1.0;  // the middle of its range
     double yaw_rad = towards * InSteps(kShareOfVolts * own.adc.range_V / std::abs(V_rad(columns[0])));
-    const Acquisition beside = procedure::ShownBeside(bench, yaw_rad, own.adc.samples, options);
+    procedure::LookBeside(bench, yaw_rad, options, [&] { beside = ShownNow(bench, here, own.adc.samples); });
+    const Reading back = ShownNow(bench, here, own.adc.samples);
     std::vector<ColumnInStep> in_step;
     for (std::size_t c = 0; c < kChannels; ++c)
-      in_step.push_back({columns[c].column, V_rad(columns[c]) * yaw_rad, beside.channel[c].mean_V - reading.mean_V[c],
-                         reading.std_V[c] / std::sqrt(reading.n_samples) + 0.3 * own.amplifier.hum_V});
-    proof->Require(in_step);
+      in_step.push_back({columns[c].column, V_rad(columns[c]) * yaw_rad, beside.mean_V[c] - here.mean_V[c],
+                         here.std_V[c] / std::sqrt(here.n_samples) + 0.3 * own.amplifier.hum_V, true, back.mean_V[c] - here.mean_V[c]});
+    wires->Require(in_step);
+    if (!ShowsAngles(here)) return;
+    const auto angle = [&](const char* column, double should_rad, double Reading::*shown_rad) {
+      return ColumnInStep{column, should_rad, beside.*shown_rad - here.*shown_rad, own.autocollimator.noise_rad, true, back.*shown_rad - here.*shown_rad};
+    };
+    angles->Require({angle("autocollimator_yaw_arcsec", yaw_rad, &Reading::autocollimator_yaw_rad),
+                     angle("autocollimator_tilt_arcsec", 0.0, &Reading::autocollimator_tilt_rad)});
   };
 }
 

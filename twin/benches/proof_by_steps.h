@@ -12,7 +12,8 @@ namespace twinbench {
 /// that its readings prove themselves.
 ///
 /// turntable_autocollimator: the turntable goes a twentieth of the autocollimator's range, x with it, y stands. rotary_4dof: the
-/// tables go so that the spots move by a hundredth of the converter's range; which way is learned from the first step.
+/// tables go so that the spots move by a hundredth of the converter's range; which way is learned from the first step, and that of
+/// the autocollimator's angles is known. Of a reading without volts what shows them is asked first.
 /// freeform_five_axis: A and B go until the spot has moved by two fifths of its size, each coordinate its own way. encoder_comparison:
 /// the shaft goes 5 deg beside the first reading of a mounting, from where on reference, device and axis are compared with each other.
 ///

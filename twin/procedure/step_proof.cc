@@ -58,6 +58,10 @@ void StepProof::Require(std::vector<ColumnInStep> columns) {
     const double noise = kTimesOfNoise * column.noise;
     const bool is_elsewhere = !(std::abs(column.did - column.should) <= kShareOfStep * size + noise);  // or shows nothing
     const bool is_against = column.did * column.should < 0.0 && std::min(std::abs(column.did), std::abs(column.should)) > noise;
+    if (column.is_of_size && !(std::abs(column.back) <= kShareOfStep * size + noise))
+      throw DeviceFault(FaultKind::kMoved, "instruments",
+                        fmt::format("behind a short way and back {} is by {:.4g} (SI) another than at the reading: did a zero jump?", column.name,
+                                    column.back));
     if (column.is_of_size ? !is_elsewhere : !is_against) continue;
     throw DeviceFault(FaultKind::kMoved, "instruments",
                       fmt::format("beside the reading the axes went a short way, in which {} went {:.4g} of the {:.4g} (SI) that it should: is a "
@@ -80,16 +84,15 @@ Reading ShownBeside(MachineBench& bench, std::vector<double>& by, const MachineO
   return shown;
 }
 
-Acquisition ShownBeside(RotaryBench& bench, double& yaw_rad, int samples, const Options& options) {
+void LookBeside(RotaryBench& bench, double& yaw_rad, const Options& options, const std::function<void()>& look) {
   const std::array<double, 2> here_rad = {bench.target.State().commanded_rad, bench.reference.State().commanded_rad};
   const auto there_rad = [&] { return std::array{here_rad[0] + 2.0 * yaw_rad, here_rad[1] - yaw_rad}; };
   const auto is_beyond = [](double at_rad, const TableLimits& limits) { return at_rad < limits.lower_rad || at_rad > limits.upper_rad; };
   if (is_beyond(there_rad()[0], options.target) || is_beyond(there_rad()[1], options.reference)) yaw_rad = -yaw_rad;
   const std::array<double, 2> away_rad = there_rad();
   MoveBoth(bench, away_rad[0], away_rad[1], options, here_rad);
-  Acquisition shown = bench.adc.Acquire(samples, false);
+  look();
   MoveBoth(bench, here_rad[0], here_rad[1], options, away_rad);
-  return shown;
 }
 
 }  // namespace twinbench::procedure

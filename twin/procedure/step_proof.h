@@ -15,6 +15,7 @@ struct ColumnInStep {
   double should = 0.0, did = 0.0;
   double noise = 0.0;        // of what is shown once
   bool is_of_size = true;    // false: by the place that nobody knows so well its size may be any, and its sign is sure
+  double back = 0.0;         // what it shows behind coming back, less what it showed before; asked of those of a size
 };
 
 /// Proves beside readings at rest that what is shown follows the axes: with their signs, units, zeros and channels, and that no axis
@@ -24,7 +25,8 @@ class StepProof {
   /// @param learns  The first step says which sign the columns of a size have and how far they go, within a factor of three of what
   ///                they should: wiring and gains are the bench's own.
   explicit StepProof(bool learns) : learns_(learns) {}
-  /// @throws DeviceFault kMoved where a column did not what it should: by a quarter of the step that shows most, or the other way.
+  /// @throws DeviceFault kMoved where a column did not what it should, or is not what it was behind coming back: by a quarter of the
+  ///         step that shows most, or the other way.
   void Require(std::vector<ColumnInStep> columns);
 
  private:
@@ -41,6 +43,7 @@ Reading ShownBeside(MachineBench& bench, std::vector<double>& by, const MachineO
 /// The same of two tables on each other: the target goes twice as far and the reference back by half of that, so that one which
 /// stands, or goes against its command, changes the yaw by no less than all of it.
 /// @param yaw_rad  Of what stands on both.
-Acquisition ShownBeside(RotaryBench& bench, double& yaw_rad, int samples, const Options& options);
+/// @param look     Called beside where they stand.
+void LookBeside(RotaryBench& bench, double& yaw_rad, const Options& options, const std::function<void()>& look);
 
 }  // namespace twinbench::procedure

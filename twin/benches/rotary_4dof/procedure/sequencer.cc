@@ -87,9 +87,11 @@ void Sequencer::TakeAfter(Reading stop, double dwell_s, bool with_autocollimator
     return;
   }
   if (options_.log) options_.log->RequireRoom();
+  const bool rests = stop.phase == Phase::kStability;  // its tables stay where they are between the first reading and the last
+  if (options_.prove && rests && stop.position == 0) options_.prove(stop);
   const Acquisition block = Measure(stop, dwell_s, with_autocollimator);
   RequirePlausible(stop, last_, options_);
-  if (options_.prove && stop.phase == Phase::kFullCircle) options_.prove(stop);
+  if (options_.prove && (!rests || stop.position + 1 == StabilityReadings(settings()))) options_.prove(stop);
   sink_.Append(stop, block);
   journal_.Commit();
   last_ = stop;
