@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "twin/benches/proof_by_steps.h"
 #include "twin/benches/registry.h"
 #include "twin/procedure/machine_options.h"
 
@@ -90,7 +91,7 @@ void JudgeTravel(const std::vector<MachineAxis>& axes, const std::vector<AxisLim
 
 }  // namespace
 
-MachineRehearsal RehearseMachine(const Scenario& scenario, const std::vector<AxisLimits>& limits) {
+MachineRehearsal RehearseMachine(const Scenario& scenario, const std::vector<AxisLimits>& limits, bool is_real) {
   const Bench& bench = BenchOf(scenario);
   MachineRehearsal rehearsal;
   const auto twin = bench.make_devices(scenario);
@@ -98,7 +99,9 @@ MachineRehearsal RehearseMachine(const Scenario& scenario, const std::vector<Axi
   TravelWatch machine(inner.machine, rehearsal.travel);
   MachineBench watched{inner.clock, machine, inner.instruments, inner.fixture, inner.simulation, inner.indexer};
   ReadingCount count(rehearsal);
-  bench.drive(watched, scenario, count, {}, {});
+  procedure::MachineOptions options;
+  if (is_real) options.prove = ProofBySteps(inner, scenario, options);  // which keep within limits by themselves
+  bench.drive(watched, scenario, count, {}, options);
   rehearsal.duration_s = ToSeconds(inner.clock.Now());
   JudgeTravel(inner.machine.Axes(), limits, rehearsal);
   if (rehearsal.without_numbers > 0)

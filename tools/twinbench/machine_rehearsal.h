@@ -17,9 +17,10 @@ struct MachineRehearsal {
   std::vector<std::string> problems;
 };
 
-/// @param limits  Soft limits of the real machine, one entry an axis; a path beyond them is a problem, not an
-///                exception.
-MachineRehearsal RehearseMachine(const Scenario& scenario, const std::vector<AxisLimits>& limits);
+/// @param limits   Soft limits of the real machine, one entry an axis; a path beyond them is a problem, not an
+///                 exception.
+/// @param is_real  Steps that prove the readings of a real bench take their time.
+MachineRehearsal RehearseMachine(const Scenario& scenario, const std::vector<AxisLimits>& limits, bool is_real);
 
 /// A table for people, one problem a line at its end.
 std::string Summary(const MachineRehearsal& rehearsal, const std::vector<MachineAxis>& axes,

@@ -78,7 +78,7 @@ procedure::Options WithAgreedLimits(procedure::Options options, const hw::BenchF
 /// @throws BenchError if the twin finds that the bench could not do it.
 Rehearsal RehearseFirst(const Scenario& scenario, const procedure::Options& options, const hw::BenchFile& file) {
   const procedure::Options limits = WithAgreedLimits(options, file, scenario);
-  const Rehearsal rehearsal = Rehearse(scenario, limits, file.adc.mains_Hz);
+  const Rehearsal rehearsal = Rehearse(scenario, limits, file.adc.mains_Hz, file.kind == "hardware");
   fmt::print(stderr, "{}", Summary(rehearsal, limits));
   if (!rehearsal.problems.empty()) throw BenchError("the rehearsal found problems; nothing was moved");
   return rehearsal;

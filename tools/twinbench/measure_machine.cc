@@ -89,8 +89,8 @@ std::unique_ptr<hw::OpenMachine> OpenAnyMachine(const hw::MachineFile& file, con
 
 /// Nothing moves here. @throws BenchError if the twin finds that the bench could not do it.
 MachineRehearsal RehearseMachineFirst(const Scenario& scenario, const std::vector<MachineAxis>& axes,
-                          const std::vector<AxisLimits>& limits) {
-  const MachineRehearsal rehearsal = RehearseMachine(scenario, limits);
+                          const std::vector<AxisLimits>& limits, bool is_real) {
+  const MachineRehearsal rehearsal = RehearseMachine(scenario, limits, is_real);
   fmt::print(stderr, "{}", Summary(rehearsal, axes, limits));
   if (!rehearsal.problems.empty()) throw BenchError("the rehearsal found problems; nothing was moved");
   return rehearsal;
@@ -195,7 +195,7 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage&
     for (const Claim& claim : ClaimsOf(scenario)) hw::TieToClaim(file, parts.axes, claim.axis, claim.u, claim.less);
   }
   if (o.rehearse_only)
-    return answer.Write(RehearsalJson(RehearseMachineFirst(scenario, parts.axes, OpenAnyMachine(file, scenario, parts, {})->Limits()), parts.axes));
+    return answer.Write(RehearsalJson(RehearseMachineFirst(scenario, parts.axes, OpenAnyMachine(file, scenario, parts, {})->Limits(), file.kind == "hardware"), parts.axes));
   const RunFolder folder = FolderOf(o);
   BegunRun begun = TakeUpIfAsked(o, scenario, folder);
   ListenForStop(kStopIsHeard);
@@ -204,7 +204,7 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage&
     const Duration since_begin = SinceBegin(begun);
     const auto bench = OpenedAgain(begun.record ? file.attempts : 1,
                                    [&] { return OpenAnyMachine(file, scenario, parts, since_begin); });
-    if (o.rehearse) RehearseMachineFirst(scenario, parts.axes, bench->Limits());
+    if (o.rehearse) RehearseMachineFirst(scenario, parts.axes, bench->Limits(), file.kind == "hardware");
     MeasureMachineInto(folder, scenario, file, *bench, std::move(begun), o.allow_homing, page);
   }
   EvaluateRun(scenario, folder.path, answer);

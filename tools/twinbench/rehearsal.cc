@@ -9,6 +9,7 @@
 #include "hw_bridge/ad/block_checks.h"
 #include "hw_bridge/ad/lost_word.h"
 #include "hw_bridge/ad/negotiation.h"
+#include "twin/benches/proof_by_steps.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/call_text.h"
@@ -129,13 +130,14 @@ std::string HoursMinutes(double duration_s) {
 
 }  // namespace
 
-Rehearsal Rehearse(const Scenario& scenario, const procedure::Options& limits, double mains_Hz) {
+Rehearsal Rehearse(const Scenario& scenario, const procedure::Options& limits, double mains_Hz, bool is_real) {
   Rehearsal rehearsal;
   Watcher watcher(scenario, rehearsal);
   sim::Twin twin(scenario);
   RotaryBench bench = twin.Bench();
   procedure::Options options;
   options.log = &watcher;
+  if (is_real) options.prove = ProofBySteps(bench, scenario, options);
   procedure::CarryOut(bench, scenario, watcher, {}, options);
   JudgeTravel("target", rehearsal.target, limits.target, rehearsal.problems);
   JudgeTravel("reference", rehearsal.reference, limits.reference, rehearsal.problems);

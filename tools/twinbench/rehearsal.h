@@ -24,8 +24,9 @@ struct Rehearsal {
   std::vector<std::string> hints, problems;
 };
 
-/// @param limits  Soft limits of the real tables; a command beyond them is a problem, not an exception.
-Rehearsal Rehearse(const Scenario& scenario, const procedure::Options& limits, double mains_Hz);
+/// @param limits   Soft limits of the real tables; a command beyond them is a problem, not an exception.
+/// @param is_real  Steps that prove the readings of a real bench take their time.
+Rehearsal Rehearse(const Scenario& scenario, const procedure::Options& limits, double mains_Hz, bool is_real);
 
 /// A table for people, one problem a line at its end.
 std::string Summary(const Rehearsal& rehearsal, const procedure::Options& limits);
