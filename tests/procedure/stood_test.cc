@@ -81,11 +81,11 @@ TEST(Stood, ACreepThatIsAllowedIsInTheReading) {
 }
 
 TEST(RequireOnWay, AnAxisThatHasBeenSentIsBetweenBothEndsOfItsWayAndNotWhereItsZeroWas) {
-  const auto is_on_way = [](double from, double to, double at) {
+  const auto is_on_way = [](double from, double to, double at, double took_s = 1.0) {
     try {
-      RequireOnWay("x", from, to, at);
+      RequireOnWay({"x", true}, from, to, at, took_s);
     } catch (const DeviceFault& fault) {
-      EXPECT_EQ(fault.kind(), FaultKind::kMoved);
+      EXPECT_EQ(fault.kind(), took_s < 1.0 ? FaultKind::kImplausible : FaultKind::kMoved);
       return false;
     }
     return true;
@@ -96,6 +96,9 @@ TEST(RequireOnWay, AnAxisThatHasBeenSentIsBetweenBothEndsOfItsWayAndNotWhereItsZ
   EXPECT_FALSE(is_on_way(2.0, 1.0, 3.0));
   EXPECT_TRUE(is_on_way(1.0, 1.0, 1.0));
   EXPECT_TRUE(is_on_way(1.0, 2.0, kNaN));
+  constexpr double kShort_s = 0.01;  // in which the fastest turns by 0.63 rad
+  EXPECT_TRUE(is_on_way(1.0, 0.0, 0.5, kShort_s));
+  EXPECT_FALSE(is_on_way(1.0, 0.0, 0.0, kShort_s));  // it says that it has arrived
 }
 
 }  // namespace

@@ -32,6 +32,7 @@
 #include "twin/core/run_record.h"
 #include "twin/core/toml_reader.h"
 #include "twin/procedure/watch.h"
+#include "twin/procedure/watched_moves.h"
 
 namespace twinbench::tools {
 namespace {
@@ -85,14 +86,16 @@ Rehearsal RehearseFirst(const Scenario& scenario, const procedure::Options& opti
 }
 
 /// @param kind  Of the bench file: in a replay nothing moves that could be asked.
-void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, procedure::Options& options,
+void CarryOutOn(RotaryBench devices, const Scenario& scenario, RunRecord& record, procedure::Options& options,
                 const std::string& kind, LivePage& page) {
+  const bool is_real = kind == "hardware" && !devices.simulation;
+  procedure::WatchedTables watched(devices, options.target, options.reference);
+  RotaryBench bench = {devices.clock,     is_real ? watched.target() : devices.target, is_real ? watched.reference() : devices.reference,
+                       devices.adc,       devices.autocollimator, devices.thermometer,
+                       devices.goniometer, devices.fixture, devices.simulation};
   ProgressLine line;
   options.log = &record;
-  if (kind == "hardware" && !bench.simulation) {
-    options.encoders_now = [&] { return std::vector<double>{bench.target.EncoderAngle_rad(), bench.reference.EncoderAngle_rad()}; };
-    options.prove = ProofBySteps(bench, scenario, options);
-  }
+  if (is_real) options.prove = ProofBySteps(bench, scenario, options);
   if (kind != "replay") options.hear_fault = TellFault;
   const LinkWatch watch;
   if (bench.simulation) bench.simulation->Restart();

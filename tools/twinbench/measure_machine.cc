@@ -23,6 +23,7 @@
 #include "twin/procedure/doubted_instruments.h"
 #include "twin/procedure/machine_options.h"
 #include "twin/procedure/machine_watch.h"
+#include "twin/procedure/watched_moves.h"
 
 namespace twinbench::tools {
 namespace {
@@ -135,18 +136,13 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
   procedure::DoubtedInstruments doubted(devices.instruments, ClaimedColumns(scenario));
   // A simulated bench is read as often as its run asks, so that it is that run.
   const bool is_real = kind == "hardware" && !devices.simulation;
+  procedure::WatchedMachine watched(devices.machine, devices.clock, options.axes);
   InstrumentSet& instruments = is_real ? doubted : devices.instruments;
-  MachineBench bench = {devices.clock, devices.machine, instruments, devices.fixture, devices.simulation, devices.indexer};
+  MachineController& machine = is_real ? watched : devices.machine;
+  MachineBench bench = {devices.clock, machine, instruments, devices.fixture, devices.simulation, devices.indexer};
   ProgressLine line;
   options.log = &record;
-  if (is_real) {
-    options.encoders_now = [&] {
-      std::vector<double> now;
-      for (const AxisState& axis : bench.machine.State()) now.push_back(axis.encoder);
-      return now;
-    };
-    options.prove = ProofBySteps(bench, scenario, options);
-  }
+  if (is_real) options.prove = ProofBySteps(bench, scenario, options);
   if (kind != "replay") options.hear_fault = TellFault;
   const LinkWatch watch;
   StandingCheck stands;

@@ -28,8 +28,6 @@ struct MachineOptions {
   /// On a real bench: throws where a reading does not show what it showed before. Behind a fault the last one that was kept at
   /// rest is taken again, and nothing else until it does: a zero or a unit may be another. None: it is not.
   std::function<void(const Reading& again, const Reading& before)> require_as_before = {};
-  /// On a real bench: what the encoders show, outside the record; asked as axes have been sent somewhere. None: they are not.
-  std::function<std::vector<double>()> encoders_now = {};
   /// On a real bench, asked about every reading at rest: throws where what is shown does not follow a short step of the axes, which
   /// it makes outside the record and takes back. None: it is not.
   std::function<void(const Reading& reading)> prove = {};

@@ -118,8 +118,6 @@ void MachineSequencer::Move(const std::vector<double>& to, const std::function<v
     takes_s += std::abs(to[k] - from[k].encoder) / (axes()[k].is_rotary ? kTurnAtLeast_rad_s : kTraverseAtLeast_m_s);
   bench_.machine.StartMove(to, 0.0);
   where_.SentTo(to);
-  const std::vector<double> now = options_.encoders_now ? options_.encoders_now() : std::vector<double>();
-  for (std::size_t k = 0; k < now.size(); ++k) RequireOnWay(axes()[k].name, from[k].encoder, to[k], now[k]);
   meanwhile();
   Watch(bench_, takes_s, where_, options_);
 }

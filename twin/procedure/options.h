@@ -37,8 +37,7 @@ struct Options {
   RunLog* log = nullptr;                 // none: only readings are kept, and the first fault ends the run
   std::function<bool()> stop_requested;  // asked between moves, waits and readings
   std::function<void(const DeviceFault&)> hear_fault = {};  // before anything is done about it
-  std::function<std::vector<double>()> encoders_now = {};  // as MachineOptions::encoders_now, of target and reference
-  std::function<void(const Reading&)> prove = {};  // as MachineOptions::prove, about every reading of a full circle
+  std::function<void(const Reading&)> prove = {};  // as MachineOptions::prove; in a stability test before its first and about its last
 
   int readings_done = 0;                    // a resumed run begins behind these ...
   std::vector<DeviceCall> calls_done = {};  // ... on a simulated bench by doing these again

@@ -33,9 +33,11 @@ bool WasAtRest(const Reading& reading);
 double StoodAt(const std::string& table, const TableState& state);
 double StoodAt(const MachineAxis& axis, const AxisState& state);
 
-/// @throws DeviceFault kMoved where an axis that has just been sent from one place to another stands beyond that way by half of it: as it
-///         was sent its zero was set anew, which nothing else tells, for where it comes to is what it was sent to.
-void RequireOnWay(const std::string& axis, double from, double to, double at);
+/// @param took_s  At most, since it stood at `from`.
+/// @throws DeviceFault kImplausible where an axis that has just been sent from one place to another stands further from its begin than
+///         any axis goes in that time, kMoved where it stands beyond that way by half of it: as it was sent its zero was set anew, which
+///         nothing else tells, for where it comes to is what it was sent to.
+void RequireOnWay(const MachineAxis& axis, double from, double to, double at, double took_s);
 
 /// @throws DeviceFault kMoved if it stood further from its stop than its tolerance, before what was read or behind it.
 void RequireStood(const Stood& stood);

@@ -8,7 +8,6 @@
 #include "twin/core/device_fault.h"
 #include "twin/core/units.h"
 #include "twin/procedure/rest.h"
-#include "twin/procedure/stood.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -43,7 +42,6 @@ class Watched {
   }
 
   void Start() { table_.StartMove(to_rad_); }
-  void RequireOn(double encoder_rad) const { RequireOnWay(name_, last_rad_, to_rad_, encoder_rad); }
 
   bool Arrives() { return table_.Settles(kLook); }
 
@@ -122,11 +120,6 @@ void MoveBoth(RotaryBench& bench, double target_rad, double reference_rad, const
   Watched reference(bench.reference, "reference", options.reference, reference_rad, sent_rad[1]);
   for (Watched* table : {&target, &reference}) table->Check();
   for (Watched* table : {&target, &reference}) table->Start();
-  if (options.encoders_now) {
-    const std::vector<double> now_rad = options.encoders_now();
-    target.RequireOn(now_rad[0]);
-    reference.RequireOn(now_rad[1]);
-  }
   for (Watched* table : {&target, &reference}) {
     while (!table->Arrives()) {
       HearOperator(options);

@@ -1,0 +1,122 @@
+#include "twin/procedure/watched_moves.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "twin/core/device_fault.h"
+
+namespace twinbench::procedure {
+namespace {
+
+constexpr double kSpeed = 10.0 * units::deg, kWay = 50.0 * units::deg, kStall_s = 5.0, kLook_s = 0.1;
+
+/// An axis that begins after a while, goes on at its speed, and from some instant on at a share of that.
+struct Axis {
+  double begins_s = 0.0, fails_s = 1e9, share = 0.0;
+  double At(double t_s) const {
+    const double whole = std::min(t_s, fails_s) - begins_s, rest = std::max(t_s - fails_s, 0.0);
+    return std::clamp(kSpeed * (std::max(whole, 0.0) + share * rest), 0.0, kWay);
+  }
+};
+
+class WayOfAxis : public testing::Test {
+ protected:
+  /// When it was said that it stalls; nothing: the way came to its end.
+  std::optional<double> StallOf(const Axis& axis) {
+    way_.Begins({0.0}, {kWay}, {axis.At(0.0)}, begin_, Duration(0));
+    double t_s = 0.0;
+    for (; axis.At(t_s) < kWay; t_s += kLook_s) {
+      try {
+        way_.Shows({axis.At(t_s)}, begin_ + FromSeconds(t_s), kStall_s);
+      } catch (const DeviceFault& fault) {
+        EXPECT_EQ(fault.kind(), FaultKind::kStalled);
+        return t_s;
+      }
+    }
+    way_.HasEnded();
+    begin_ += FromSeconds(t_s);
+    return std::nullopt;
+  }
+
+  WatchedWay way_{{{"x", true}}};
+  Time begin_{};
+};
+
+TEST_F(WayOfAxis, WithoutAnyWayBeforeItIsSlowForAsLongAsTheLimitsSay) {
+  EXPECT_EQ(StallOf({.begins_s = 4.0}), std::nullopt);
+  EXPECT_NEAR(StallOf({.fails_s = 2.0}).value_or(0.0), 2.0 + kStall_s, 2.0 * kLook_s);
+}
+
+TEST_F(WayOfAxis, BehindOneAStallIsNoticedWithinHalfASecondWhereverItIsAndHoweverItCreeps) {
+  EXPECT_EQ(StallOf({}), std::nullopt);
+  constexpr double kSoon_s = 0.4 + 1e-9;
+  for (const double fails_s : {0.0, 2.0, 4.8}) {
+    for (const double share : {0.0, 0.01}) {
+      const double noticed_s = StallOf({.fails_s = fails_s, .share = share}).value_or(1e3);
+      EXPECT_LE(noticed_s, fails_s + kSoon_s + kLook_s) << fails_s << " " << share;  // and the look in which it failed
+      EXPECT_GE(noticed_s, fails_s);
+    }
+  }
+  EXPECT_EQ(StallOf({.fails_s = 1.0, .share = 0.2}), std::nullopt);  // somebody set an override
+}
+
+TEST_F(WayOfAxis, OneThatNeedsAWhileToBeginMayDoSoAgainAndForTwiceAsLong) {
+  EXPECT_EQ(StallOf({.begins_s = 1.0}), std::nullopt);
+  EXPECT_EQ(StallOf({.begins_s = 2.0}), std::nullopt);
+  EXPECT_NE(StallOf({.begins_s = 5.0}), std::nullopt);
+}
+
+TEST_F(WayOfAxis, WhereItSettlesNothingIsAsked) {
+  EXPECT_EQ(StallOf({}), std::nullopt);
+  way_.Begins({0.0}, {kWay}, {0.0}, begin_, Duration(0));
+  for (int look = 1; look < 20; ++look) EXPECT_NO_THROW(way_.Shows({kWay - 1e-4}, begin_ + FromSeconds(look * kLook_s), kStall_s));
+}
+
+/// Stands, and is on a switch from the n-th look on.
+class AtSwitch : public MachineController {
+ public:
+  explicit AtSwitch(int limit) : limit_(limit) {}
+  const std::vector<MachineAxis>& Axes() const override { return axes_; }
+  std::vector<AxisLimits> Travel() override { return {{}}; }
+  void StartMove(const std::vector<double>&, double) override {}
+  void StartArc(const Arc&) override {}
+  bool Settles(Duration within) override { return asked += within, false; }
+  std::vector<AxisState> State() override {
+    AxisState state;
+    state.commanded = 1.0, state.encoder = 0.5, state.limit = limit_;
+    return {state};
+  }
+  void Stop() override {}
+  void Home() override {}
+  Duration asked{0};
+
+ private:
+  int limit_;
+  std::vector<MachineAxis> axes_ = {{"x", false}};
+};
+
+class StandingClock : public Clock {
+ public:
+  Time Now() const override { return {}; }
+  void Wait(Duration) override {}
+};
+
+TEST(WatchedMachine, ComesBackAtOnceWhereItRunsOntoASwitchAndNotWhereItLeavesOne) {
+  const StandingClock clock;
+  const std::vector<AxisLimits> limits;
+  const auto waited_s = [&](int limit) {
+    AtSwitch machine(limit);
+    WatchedMachine watched(machine, clock, limits);
+    watched.StartMove({1.0}, 0.0);
+    EXPECT_FALSE(watched.Settles(FromSeconds(1.0)));
+    return ToSeconds(machine.asked);
+  };
+  EXPECT_NEAR(waited_s(+1), 0.1, 1e-9);
+  EXPECT_NEAR(waited_s(-1), 1.0, 1e-9);
+  EXPECT_NEAR(waited_s(0), 1.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace twinbench::procedure

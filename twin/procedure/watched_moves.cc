@@ -1,0 +1,155 @@
+#include "twin/procedure/watched_moves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/core/device_fault.h"
+#include "twin/procedure/stood.h"
+#include "twin/procedure/whereabouts.h"
+
+namespace twinbench::procedure {
+namespace {
+
+constexpr Duration kWatchedEvery = std::chrono::milliseconds(100);
+constexpr double kShareOfSpeed = 0.1;
+constexpr double kLittleMore_s = 0.25, kTimesKnown = 2.0;
+constexpr double kNear = 1e-3;  // m or rad: where axes settle, as slowly as they like
+
+std::vector<double> EncodersOf(const std::vector<AxisState>& states) {
+  std::vector<double> at;
+  for (const AxisState& state : states) at.push_back(state.encoder);
+  return at;
+}
+
+/// What is for whoever watches the move, whose looks are in the record; a switch that the axis leaves is not.
+template <class State>
+bool IsForOthers(const State& state, double left) {
+  if (state.limit != 0) return !(state.limit * left < 0.0);
+  return !state.referenced || !state.fault.empty();
+}
+
+/// Lets `within` pass and looks in between.
+/// @param look  false: no more.
+bool SettlesWatched(auto& moves, Duration within, const std::function<bool()>& look) {
+  for (Duration left = within;; left -= kWatchedEvery) {
+    if (moves.Settles(std::min(left, kWatchedEvery))) return true;
+    if (!look() || left <= kWatchedEvery) return false;
+  }
+}
+
+}  // namespace
+
+void WatchedWay::Begins(const std::vector<double>& from, const std::vector<double>& to, const std::vector<double>& at, Time now,
+                    Duration took) {
+  for (std::size_t k = 0; k < to.size(); ++k) RequireOnWay(axes_[k], from[k], to[k], at[k], ToSeconds(took));
+  to_ = to, at_ = at, shown_ = now;
+  slow_s_ = slowest_s_ = 0.0;
+}
+
+bool WatchedWay::IsSlow(const std::vector<double>& at, double in_s) {
+  bool is_slow = true;
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const double speed = std::abs(at[k] - at_[k]) / in_s;
+    fastest_[k] = std::fmax(fastest_[k], speed);
+    is_slow = is_slow && !(speed > kShareOfSpeed * fastest_[k]);
+  }
+  return is_slow;
+}
+
+bool WatchedWay::HasFarToGo(const std::vector<double>& at) const {
+  for (std::size_t k = 0; k < at.size(); ++k)
+    if (std::abs(to_[k] - at[k]) > kNear) return true;
+  return false;
+}
+
+void WatchedWay::Shows(const std::vector<double>& at, Time now, double stall_s) {
+  const double in_s = ToSeconds(now - shown_);
+  if (to_.empty() || !(in_s > 0.0)) return;
+  slow_s_ = IsSlow(at, in_s) && HasFarToGo(at) ? slow_s_ + in_s : 0.0;
+  slowest_s_ = std::max(slowest_s_, slow_s_);
+  at_ = at, shown_ = now;
+  if (!(slow_s_ > std::fmin(stall_s, kLittleMore_s + kTimesKnown * known_slow_s_))) return;
+  std::string where;
+  for (std::size_t k = 0; k < at.size(); ++k)
+    where += fmt::format("{}{} at {:.6f} {}", k > 0 ? ", " : "", axes_[k].name, at[k] / axes_[k].to_SI(), axes_[k].unit());
+  throw DeviceFault(FaultKind::kStalled, axes_.size() == 1 ? axes_[0].name : "machine",
+                    fmt::format("stands or creeps on its way, {}, for {:.1f} s", where, slow_s_));
+}
+
+void WatchedWay::HasEnded() {
+  if (!to_.empty()) known_slow_s_ = std::fmax(known_slow_s_, slowest_s_);
+  to_.clear();
+}
+
+void WatchedMachine::StartMove(const std::vector<double>& to, double feed_m_s) {
+  const std::vector<double> from = EncodersOf(inner_.State());
+  const Time sent = clock_.Now();
+  inner_.StartMove(to, feed_m_s);
+  const std::vector<double> at = EncodersOf(inner_.State());
+  const Time now = clock_.Now();
+  way_.Begins(from, to, at, now, now - sent);
+  if (feed_m_s > 0.0) way_.IsAnother();
+}
+
+void WatchedMachine::StartArc(const Arc& arc) {
+  way_.IsAnother();
+  inner_.StartArc(arc);
+}
+
+void WatchedMachine::StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) {
+  way_.IsAnother();
+  inner_.StartTurning(axis, speed_rad_s, ramp);
+}
+
+bool WatchedMachine::Settles(Duration within) {
+  const bool settles = SettlesWatched(inner_, within, [this] {
+    const std::vector<AxisState> states = inner_.State();
+    for (std::size_t k = 0; k < states.size(); ++k)
+      if (IsForOthers(states[k], way_.To(k) - states[k].encoder)) return false;
+    way_.Shows(EncodersOf(states), clock_.Now(), LimitsOf(limits_, 0).stall_s);
+    return true;
+  });
+  if (settles) way_.HasEnded();
+  return settles;
+}
+
+WatchedTables::WatchedTables(RotaryBench& bench, const TableLimits& target, const TableLimits& reference)
+    : target_(bench.target, bench.clock, target, "target", reference_),
+      reference_(bench.reference, bench.clock, reference, "reference", target_) {}
+
+void WatchedTables::Table::StartMove(double angle_rad) {
+  from_rad_ = inner_.EncoderAngle_rad();
+  to_rad_ = angle_rad;
+  sent_ = clock_.Now();
+  inner_.StartMove(angle_rad);
+  is_sent_ = true;
+}
+
+void WatchedTables::Table::LookAtStart() {
+  if (!is_sent_) return;
+  is_sent_ = false;
+  const double at_rad = inner_.EncoderAngle_rad();
+  const Time now = clock_.Now();
+  way_.Begins({from_rad_}, {to_rad_}, {at_rad}, now, now - sent_);
+}
+
+bool WatchedTables::Table::LookOnWay() {
+  const TableState state = inner_.State();
+  if (IsForOthers(state, to_rad_ - state.encoder_rad)) return false;
+  way_.Shows({state.encoder_rad}, clock_.Now(), limits_.stall_s);
+  return true;
+}
+
+bool WatchedTables::Table::Settles(Duration within) {
+  for (Table* table : {this, &other_}) table->LookAtStart();
+  const bool settles = SettlesWatched(inner_, within, [this] {
+    other_.LookOnWay();  // whatever else it shows is told when it is waited for
+    return LookOnWay();
+  });
+  if (settles) way_.HasEnded();
+  return settles;
+}
+
+}  // namespace twinbench::procedure

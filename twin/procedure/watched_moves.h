@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "twin/core/devices.h"
+#include "twin/core/machine.h"
+#include "twin/core/table_limits.h"
+
+namespace twinbench::procedure {
+
+/// What encoders show on a way that axes were sent, all at once [m or rad]. Which axes are slow, and for how long they may be, is
+/// learned from the ways that came to their end.
+class WatchedWay {
+ public:
+  explicit WatchedWay(std::vector<MachineAxis> axes) : axes_(std::move(axes)), fastest_(axes_.size(), 0.0) {}
+  /// They stood at `from` and were sent to `to`; `at` is where they are since then, at most `took` later.
+  /// @throws what RequireOnWay throws.
+  void Begins(const std::vector<double>& from, const std::vector<double>& to, const std::vector<double>& at, Time now, Duration took);
+  /// @param stall_s  Of the limits; as long as no way has come to its end nothing else is known.
+  /// @throws DeviceFault kStalled where none has gone at a tenth of its speed for longer than on any way before, twice that and a
+  ///         little more, and some have far to go.
+  void Shows(const std::vector<double>& at, Time now, double stall_s);
+  void HasEnded();
+  /// What moves does not go straight, or not at its own speed.
+  void IsAnother() { to_.clear(); }
+  /// NaN: unknown.
+  double To(std::size_t axis) const { return axis < to_.size() ? to_[axis] : kNaN; }
+
+ private:
+  bool IsSlow(const std::vector<double>& at, double in_s);
+  bool HasFarToGo(const std::vector<double>& at) const;
+
+  std::vector<MachineAxis> axes_;
+  std::vector<double> fastest_;  // m/s or rad/s, ever
+  std::vector<double> to_, at_;  // of this way; none: nothing is known of it
+  Time shown_{};
+  double slow_s_ = 0.0, slowest_s_ = 0.0;  // since when, and for how long at most on this way
+  double known_slow_s_ = kNaN;             // on all before
+};
+
+/// A machine of a real bench whose moves are looked at ten times a second, outside the record.
+class WatchedMachine : public MachineController {
+ public:
+  WatchedMachine(MachineController& inner, const Clock& clock, const std::vector<AxisLimits>& limits)
+      : inner_(inner), clock_(clock), limits_(limits), way_(inner.Axes()) {}
+  const std::vector<MachineAxis>& Axes() const override { return inner_.Axes(); }
+  std::vector<AxisLimits> Travel() override { return inner_.Travel(); }
+  /// @throws what WatchedWay::Begins throws, and the machine.
+  void StartMove(const std::vector<double>& to, double feed_m_s) override;
+  void StartArc(const Arc& arc) override;
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override;
+  /// @return false at once where a look shows what whoever watches must see.
+  /// @throws what WatchedWay::Shows throws, and the machine.
+  bool Settles(Duration within) override;
+  std::vector<AxisState> State() override { return inner_.State(); }
+  void Stop() override { inner_.Stop(); }
+  void Home() override { inner_.Home(); }
+
+ private:
+  MachineController& inner_;
+  const Clock& clock_;
+  const std::vector<AxisLimits>& limits_;
+  WatchedWay way_;
+};
+
+/// The same of two tables that are sent one after the other: where they are is looked at behind the second.
+class WatchedTables {
+ public:
+  WatchedTables(RotaryBench& bench, const TableLimits& target, const TableLimits& reference);
+  RotaryTable& target() { return target_; }
+  RotaryTable& reference() { return reference_; }
+
+ private:
+  class Table : public RotaryTable {
+   public:
+    Table(RotaryTable& inner, const Clock& clock, const TableLimits& limits, const char* name, Table& other)
+        : inner_(inner), clock_(clock), limits_(limits), way_({{name, true}}), other_(other) {}
+    void StartMove(double angle_rad) override;
+    bool Settles(Duration within) override;
+    TableState State() override { return inner_.State(); }
+    void Stop() override { inner_.Stop(); }
+    void Home() override { inner_.Home(); }
+
+   private:
+    void LookAtStart();
+    /// @return false where it shows what whoever watches must see.
+    bool LookOnWay();
+
+    RotaryTable& inner_;
+    const Clock& clock_;
+    const TableLimits& limits_;
+    WatchedWay way_;
+    Table& other_;
+    bool is_sent_ = false;  // and was not looked at since
+    double from_rad_ = kNaN, to_rad_ = kNaN;
+    Time sent_{};
+  };
+  Table target_, reference_;
+};
+
+}  // namespace twinbench::procedure
