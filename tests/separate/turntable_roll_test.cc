@@ -94,6 +94,19 @@ TEST(SolveEquation5, IsExactAwayFromItsPolesWithoutNoise) {
   }
 }
 
+TEST(SolveEquation5, StatesWhatItLeavesOutOfALargeRoll) {
+  TrueBench bench = ReadPublished(5, 0.0).bench;
+  Stream noise(1, "none");
+  for (const double gamma_rad : {0.3, -1.0}) {
+    bench.gamma_rad = gamma_rad;
+    const auto points = SolvedOfTwoTilts(ReadCircles(bench, {{0, 60 * arcsec, 0.4}, {0, 100 * arcsec, 2.1}}, 72, noise), 0.0);
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const double truth = bench.Index(5.0 * static_cast<double>(i), 0.0) - bench.Index(0.0, 0.0);
+      EXPECT_NEAR(points[i].u_rad, std::abs(points[i].value_rad - truth), 1e-6 * arcsec) << gamma_rad << " " << i;
+    }
+  }
+}
+
 /// y of two tilts b cos(phi - a), each from its start: their difference is A (cos(phi - f) - cos f), zero at 0 and
 /// 2 f.
 TEST(SolveEquation5, SaysWhereItsPolesAre) {

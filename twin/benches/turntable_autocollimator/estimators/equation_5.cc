@@ -73,6 +73,19 @@ PointwiseError Solve(const Cell& a, const Cell& b, const Cell& start_a, const Ce
   return point;
 }
 
+/// What the equation leaves out: its value is that about the axis, over cos g.
+void AddLeftOut(const std::vector<Cell>& a, const std::vector<Cell>& b, std::size_t start, std::vector<PointwiseError>& points) {
+  double across = 0.0, along = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].status == PointStatus::kMissing) continue;
+    const double dx = b[i].x_rad - b[start].x_rad - a[i].x_rad + a[start].x_rad, dy = b[i].y_rad - b[start].y_rad - a[i].y_rad + a[start].y_rad;
+    across += dx * dy;
+    along += dy * dy;
+  }
+  const double share = 1.0 - 1.0 / std::hypot(1.0, across / along);  // 1 - cos g
+  for (PointwiseError& point : points) point.u_rad = std::hypot(point.u_rad, share * point.value_rad);
+}
+
 }  // namespace
 
 std::vector<PointwiseError> SolveEquation5(const std::vector<TurntableStop>& stops, int first, int second,
@@ -92,6 +105,7 @@ std::vector<PointwiseError> SolveEquation5(const std::vector<TurntableStop>& sto
     points[i] = Solve(circle_a[i], circle_b[i], circle_a[start], circle_b[start], noise);
     points[i].turntable_rad = grid.Position_rad(static_cast<int>(i));
   }
+  AddLeftOut(circle_a, circle_b, start, points);
   points[start].value_rad = points[start].u_rad = 0.0;  // by definition; 0 / 0 by the equation
   return points;
 }

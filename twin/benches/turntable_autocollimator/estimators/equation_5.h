@@ -21,7 +21,7 @@ inline constexpr double kPoleMagnification = 5.0;
 struct PointwiseError {
   double turntable_rad = kNaN;
   double value_rad = kNaN;      // zero at the first position that both set-ups read
-  double u_rad = kNaN;          // first order: grows to a pole, where the true scatter has no variance
+  double u_rad = kNaN;          // first order: grows to a pole, where the true scatter has no variance; and cos g = 1
   double magnification = kNaN;  // sqrt(y_0^2 + y_1^2) / |y_1 - y_0|
   PointStatus status = PointStatus::kMissing;
 };
