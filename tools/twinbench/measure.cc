@@ -65,10 +65,13 @@ procedure::Options Carefulness(const hw::BenchFile& file, bool allow_homing) {
 }
 
 /// With what the controllers of a real bench say about their limits; they are asked, nothing moves.
-procedure::Options WithAgreedLimits(procedure::Options options, const hw::BenchFile& file, const Scenario& scenario) {
+/// @param is_real  Becomes whether it is one, and no twin that is served.
+procedure::Options WithAgreedLimits(procedure::Options options, const hw::BenchFile& file, const Scenario& scenario, bool& is_real) {
   if (file.kind != "hardware") return options;
   const hw::BenchLock lock(hw::AddressesOf(file), "rehearse");
-  const auto limits = OpenAnyBench(file, scenario, {})->Limits();
+  const auto bench = OpenAnyBench(file, scenario, {});
+  is_real = !bench->Bench().simulation;
+  const auto limits = bench->Limits();
   if (!limits) return options;
   options.target = limits->target;
   options.reference = limits->reference;
@@ -78,8 +81,9 @@ procedure::Options WithAgreedLimits(procedure::Options options, const hw::BenchF
 /// Nothing moves here.
 /// @throws BenchError if the twin finds that the bench could not do it.
 Rehearsal RehearseFirst(const Scenario& scenario, const procedure::Options& options, const hw::BenchFile& file) {
-  const procedure::Options limits = WithAgreedLimits(options, file, scenario);
-  const Rehearsal rehearsal = Rehearse(scenario, limits, file.adc.mains_Hz, file.kind == "hardware");
+  bool is_real = false;
+  const procedure::Options limits = WithAgreedLimits(options, file, scenario, is_real);
+  const Rehearsal rehearsal = Rehearse(scenario, limits, file.adc.mains_Hz, is_real);
   fmt::print(stderr, "{}", Summary(rehearsal, limits));
   if (!rehearsal.problems.empty()) throw BenchError("the rehearsal found problems; nothing was moved");
   return rehearsal;

@@ -90,8 +90,9 @@ std::unique_ptr<hw::OpenMachine> OpenAnyMachine(const hw::MachineFile& file, con
 
 /// Nothing moves here. @throws BenchError if the twin finds that the bench could not do it.
 MachineRehearsal RehearseMachineFirst(const Scenario& scenario, const std::vector<MachineAxis>& axes,
-                          const std::vector<AxisLimits>& limits, bool is_real) {
-  const MachineRehearsal rehearsal = RehearseMachine(scenario, limits, is_real);
+                                      hw::OpenMachine& opened, const std::string& kind) {
+  const std::vector<AxisLimits> limits = opened.Limits();
+  const MachineRehearsal rehearsal = RehearseMachine(scenario, limits, kind == "hardware" && !opened.Devices().simulation);
   fmt::print(stderr, "{}", Summary(rehearsal, axes, limits));
   if (!rehearsal.problems.empty()) throw BenchError("the rehearsal found problems; nothing was moved");
   return rehearsal;
@@ -191,7 +192,7 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage&
     for (const Claim& claim : ClaimsOf(scenario)) hw::TieToClaim(file, parts.axes, claim.axis, claim.u, claim.less);
   }
   if (o.rehearse_only)
-    return answer.Write(RehearsalJson(RehearseMachineFirst(scenario, parts.axes, OpenAnyMachine(file, scenario, parts, {})->Limits(), file.kind == "hardware"), parts.axes));
+    return answer.Write(RehearsalJson(RehearseMachineFirst(scenario, parts.axes, *OpenAnyMachine(file, scenario, parts, {}), file.kind), parts.axes));
   const RunFolder folder = FolderOf(o);
   BegunRun begun = TakeUpIfAsked(o, scenario, folder);
   ListenForStop(kStopIsHeard);
@@ -200,7 +201,7 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage&
     const Duration since_begin = SinceBegin(begun);
     const auto bench = OpenedAgain(begun.record ? file.attempts : 1,
                                    [&] { return OpenAnyMachine(file, scenario, parts, since_begin); });
-    if (o.rehearse) RehearseMachineFirst(scenario, parts.axes, bench->Limits(), file.kind == "hardware");
+    if (o.rehearse) RehearseMachineFirst(scenario, parts.axes, *bench, file.kind);
     MeasureMachineInto(folder, scenario, file, *bench, std::move(begun), o.allow_homing, page);
   }
   EvaluateRun(scenario, folder.path, answer);
