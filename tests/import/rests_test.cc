@@ -113,6 +113,12 @@ TEST_F(Importing, TakesOnePlaceInTwoColumns) {
   ExpectBothSides(Take(text), 6);
 }
 
+TEST_F(Importing, TakesOnePlaceByTheClock) {
+  const Imported held = Take("time [s];target [mm];position [mm]\n0.0;5;5.01\n0.1;5;5.02\n0.2;5;5.01\n0.3;5;5.03\n");
+  ASSERT_EQ(held.readings.size(), 4U);
+  EXPECT_NEAR(ToSeconds(held.readings[3].time), 0.3, 1e-9);
+}
+
 TEST_F(Importing, SaysWhatAReferenceThatNeverMovesWouldNeed) {
   EXPECT_KEPT(MessageOf([&] { Take("commanded [mm];dial [mm]\n0;-0.052\n0;-0.040\n0;-0.063\n0;-0.045\n"); }));
   EXPECT_KEPT(MessageOf([&] { Take("commanded [mm];dial [mm];direction\n0;-0.052;1\n0;-0.040;1\n0;-0.063;1\n0;-0.045;1\n"); }));

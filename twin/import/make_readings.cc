@@ -56,7 +56,7 @@ void Maker::Take(const Session& session, std::size_t most, Imported& imported) {
   const std::vector<double> no_clock;
   const bool one_place = bench_.compared && IsOnePlace(session);
   Course course = CourseOf(reference, session.has_clock && !one_place ? session.time_s : no_clock, map_.course, wrap);
-  if (one_place) NumberApproaches(session.value.at("direction"), course);
+  if (one_place && session.value.contains("direction")) NumberApproaches(session.value.at("direction"), course);
   if (bench_.compared) {
     const std::string remark = RequireOneToOne(session, course.reference, one_place, bench_, map_);
     if (!remark.empty()) tally.remarks.push_back(remark);
@@ -101,11 +101,12 @@ std::string Maker::CourseColumn(const Session& session) const {
   return session.value.begin()->first;
 }
 
-/// The reference stands still, and every row says from which side the axis came to it.
+/// The reference stands still, and every row says when it was read or from which side the axis came to it.
 bool Maker::IsOnePlace(const Session& session) const {
   const auto [low, high] = std::ranges::minmax(session.value.at(bench_.compared->reference));
   const auto direction = session.value.find("direction");
-  if (low != high || direction == session.value.end()) return false;
+  if (low != high || session.has_clock) return low == high;
+  if (direction == session.value.end()) return false;
   const auto comes = [&direction](double from) { return std::ranges::find(direction->second, from) != direction->second.end(); };
   return comes(1.0) && comes(-1.0);
 }

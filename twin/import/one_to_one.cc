@@ -32,7 +32,7 @@ void RequireMotion(const std::string& name, const std::string& source, const std
   if (low == high)
     throw InputError(source, fmt::format("the reference never moves: {} is {:g} in all {} rows", name, low / UnitAtEnd(name)->to_SI, reference.size()),
                      "a recording in which it goes to three places at least, or another column; for one place from both sides a column "
-                     "\"direction\" of 1 and -1");
+                     "\"direction\" of 1 and -1, for a drift at one place a clock");
 }
 
 void RequireLife(const std::string& name, const std::string& source, const std::vector<double>& shown) {
