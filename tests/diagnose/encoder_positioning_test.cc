@@ -116,5 +116,21 @@ TEST(Memory, OfWhiteNoiseIsOneAndOfAWalkIsLongAlongWhatIsSlow) {
   EXPECT_GT(of_walk, 50.0);          // a stretch of 100 readings that hardly changes counts for one
 }
 
+/// Neighbours in time are far apart on the axis, whose scale is then no noise.
+TEST(EncoderPositioning, TargetsInAnyOrderShowAScale) {
+  constexpr double kRatio = 0.012;
+  std::mt19937 random(140);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  Record record;
+  record.kind = "stops";
+  double before_deg = 0.0;
+  for (const double at_deg : {-30.0, 60.0, 0.0, -90.0, 45.0, 30.0, -60.0, 90.0, -45.0, 60.0, -90.0, 0.0, 90.0, -30.0}) {
+    const auto n = static_cast<int>(std::ssize(record.readings));
+    record.Add(4.0 * n, at_deg, (1.0 + kRatio) * at_deg + noise(random), at_deg > before_deg ? 1 : -1, n);
+    before_deg = at_deg;
+  }
+  ExpectFound(Ask(record), {{"scale", "ratio", kRatio, 1e-3}});
+}
+
 }  // namespace
 }  // namespace twinbench::diagnose::encoder

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "twin/core/distributions.h"
@@ -114,6 +116,31 @@ Scatter AtOneStop(const Schedule& s, const Eigen::VectorXd& y, const Eigen::Vect
   return {std::sqrt(squares / count), count};
 }
 
+/// Targets in any order: what each reading has beside the straight line between its neighbours on the axis, of those
+/// that were reached in its direction or of all.
+Scatter OnAxis(const Schedule& s, const Eigen::VectorXd& y, const Eigen::VectorXd& variance, bool by_direction) {
+  const auto line = [&](int i) { return std::pair(s.setup[i], by_direction ? s.direction[i] : 0); };
+  std::vector<int> order(s.Readings());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](int i) { return std::pair(line(i), s.reference_rad[i]); });
+  std::vector<double> beside;
+  for (std::size_t k = 2; k < order.size(); ++k) {
+    const int before = order[k - 2], i = order[k - 1], behind = order[k];
+    if (line(before) != line(behind)) continue;
+    const double way_rad = s.reference_rad[behind] - s.reference_rad[before];
+    const double share = way_rad > 0.0 ? (s.reference_rad[i] - s.reference_rad[before]) / way_rad : 0.5;
+    const double sum = variance[i] + std::pow(1.0 - share, 2) * variance[before] + std::pow(share, 2) * variance[behind];
+    beside.push_back((y[i] - std::lerp(y[before], y[behind], share)) / std::sqrt(sum));
+  }
+  return SpreadOf(beside);
+}
+
+/// The axis goes to and fro so often that neighbours in time are not neighbours on it.
+bool IsInAnyOrder(const Schedule& s) {
+  constexpr int kShort = 5;  // readings of a pass
+  return s.Readings() < kShort * (1 + std::ranges::max(s.pass) - std::ranges::min(s.pass));
+}
+
 }  // namespace
 
 double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residual_rad,
@@ -123,6 +150,10 @@ double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residu
   double estimate_rad = SmallerOrMean(FromNeighbours(schedule, residual_rad, variance),
                                       FromRepeats(schedule, residual_rad, variance));
   if (!std::isfinite(estimate_rad)) estimate_rad = AtOneStop(schedule, residual_rad, variance).sd;
+  if (IsInAnyOrder(schedule)) {
+    for (const bool by_direction : {true, false})
+      estimate_rad = std::min(estimate_rad, OnAxis(schedule, residual_rad, variance, by_direction).sd);
+  }
   const double range_rad = residual_rad.maxCoeff() - residual_rad.minCoeff();
   const double least_rad = std::max(1e-9 * range_rad, 1e-15);
   return std::isfinite(estimate_rad) ? std::max(estimate_rad, least_rad) : std::max(range_rad, least_rad);
