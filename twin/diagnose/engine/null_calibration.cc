@@ -76,6 +76,12 @@ int RunsOf(Eigen::Index rows, int runs) {
   return std::min(runs, std::max(kFewest, static_cast<int>(runs * kLong / rows)));
 }
 
+/// A statistic knows what sizes were thought of, in units of the noise; half a class is less than its scatter.
+std::string SizeClass(double size) {
+  constexpr double kPerE = 2.0;
+  return fmt::format("{}", std::lround(kPerE * std::log(size)));
+}
+
 }  // namespace
 
 double NullCalibration::Threshold(double probability) const {
@@ -136,7 +142,8 @@ std::string DesignKey(const LinearRun& run, const std::vector<Family>& families,
                          static_cast<int>(s.phase[i])));
   }
   for (const Family& f : families) {
-    hash.Add(fmt::format("{} {} {}", f.effect, f.where, f.amplitudes.size()));
+    hash.Add(fmt::format("{} {} {} {}", f.effect, f.where, f.amplitudes.size(), f.grid));
+    for (const Amplitude& a : f.amplitudes) hash.Add(SizeClass(a.prior_sd / run.sigma.mean()));
   }
   return fmt::format("{:016x}", hash.value);
 }
