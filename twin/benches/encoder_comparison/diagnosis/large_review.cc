@@ -1,0 +1,170 @@
+#include "twin/benches/encoder_comparison/diagnosis/large_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/encoder_comparison/diagnosis/memory.h"
+#include "twin/benches/encoder_comparison/diagnosis/ties.h"
+#include "twin/diagnose/engine/answer.h"
+#include "twin/diagnose/tuning.h"
+
+namespace twinbench::diagnose::encoder {
+
+void LargeSearch::EndTies() {
+  if (large_.causes.empty()) return;
+  FittedCauses now = fit_->Fit(large_.causes);
+  if (SettleTies(*fit_, now)) {
+    Accept(now.asked, std::move(now.causes), kMostCauses);
+  } else {
+    large_.causes = std::move(now.causes);
+  }
+}
+
+/// A wave of an order that a large cause has is what that lacks beside the others that the last search found; what is
+/// less than a device is as exact as its formula is no cause, nor is what the memory of the rest makes by chance.
+void LargeSearch::LeaveToLarge() {
+  if (!large_.last || large_.last->analysis.found.terms.empty()) return;
+  const double least = LeastExplained();
+  const Eigen::VectorXd left = Left();
+  const auto is_of_large = [this](const Term& term) {
+    const Family& family = large_.last->families[static_cast<std::size_t>(term.family)];
+    return std::ranges::any_of(large_.causes, [&](const LargeCause& cause) {
+      return cause.effect.name == family.effect && term.shape.size() == 1 && WaveOrderOf(cause.effect) == term.shape[0];
+    });
+  };
+  std::erase_if(large_.last->analysis.found.terms, [&](const Term& term) {
+    return term.explained < least || is_of_large(term) || IsChance(term, left);
+  });
+}
+
+/// What all large causes explain together is exact to this.
+double LargeSearch::LeastExplained() const {
+  double explained = 0.0;
+  for (const LargeCause& cause : large_.causes) explained += cause.explained;
+  return kAsExact * explained;
+}
+
+/// What neither the large causes nor the others explain, whitened.
+Eigen::VectorXd LargeSearch::Left() const {
+  return large_.causes.empty() ? fit_->WhiteOf(Beside()) : fit_->WhiteOf(fit_->Ask(large_.causes, Beside()).left);
+}
+
+bool LargeSearch::IsChance(const Term& term, const Eigen::VectorXd& left) const {
+  const Eigen::VectorXd own = fit_->WhiteOf(term.columns * term.amplitudes);
+  const double noise = left.squaredNorm() / static_cast<double>(left.size());
+  return own.squaredNorm() < std::pow(tuning::kHeadline, 2) * noise * MemoryAlong(own, left);
+}
+
+/// What stood for something that was found later is not kept, nor what the memory of the rest makes by chance: the
+/// weakest first, for what it kept from being found may be what made others look weak.
+void LargeSearch::DropNeedless() {
+  while (!large_.causes.empty()) {
+    const std::vector<double> strength = Strengths();
+    const auto weakest = std::ranges::min_element(strength);
+    if (*weakest > tuning::kHeadline) return;
+    std::vector<LargeCause> kept = large_.causes;
+    kept.erase(kept.begin() + (weakest - strength.begin()));
+    if (kept.empty()) return SearchPlain();
+    const AskedAgain asked = fit_->Ask(kept);
+    Accept(asked, std::move(kept), kMostCauses);
+    LeaveToLarge();
+  }
+}
+
+/// Of each large cause, how many of its uncertainties it is away from nothing, with the memory of the rest; 0 of what
+/// is less than the others are as exact as their formula.
+std::vector<double> LargeSearch::Strengths() const {
+  const AskedAgain beside = fit_->Ask(large_.causes, Beside());
+  const Eigen::VectorXd left = fit_->WhiteOf(beside.left);
+  const double memory = fit_->Memory(beside.left), least = LeastExplained();
+  std::vector<double> strengths;
+  for (std::size_t k = 0; k < large_.causes.size(); ++k) {
+    const Eigen::VectorXd own =
+        fit_->WhiteOf(fit_->Shown(beside.effects) - fit_->Shown(EffectsWithout(k, beside.effects)));
+    const double most = std::max(memory, MemoryAlong(own, left));
+    strengths.push_back(own.squaredNorm() > least ? Deviations(large_.causes[k].effect) / std::sqrt(most) : 0.0);
+  }
+  return strengths;
+}
+
+/// Nothing of it was there: for all at once, as if nothing had been large.
+void LargeSearch::SearchPlain() {
+  large_.causes.clear();
+  large_.last.reset();
+  most_searched_ = kFewCauses;
+  SearchOn();
+}
+
+/// What was taken while others were missing may have looked like a shape without a name: it is judged anew beside all
+/// of them.
+void LargeSearch::JudgeUnsure() {
+  constexpr double kSure = 0.8;
+  for (std::size_t k = 0; k < large_.causes.size(); ++k) {
+    std::vector<Cause>& members = large_.causes[k].causes;
+    double together = 0.0;
+    for (const Cause& cause : members) together += cause.probability;
+    if (together > kSure) continue;
+    for (const Cause& now : InPlaceOf(k)) {
+      const auto member = std::ranges::find_if(
+          members, [&](const Cause& m) { return m.effect == now.effect && m.where == now.where; });
+      if (member != members.end()) member->probability = std::max(member->probability, now.probability);
+    }
+  }
+}
+
+/// What a search names in the place of the k-th cause, with all others there.
+std::vector<Cause> LargeSearch::InPlaceOf(std::size_t k) const {
+  const std::vector<EffectSettings> others = EffectsWithout(k, EffectsOf(large_.causes));
+  EncoderRun encoder = RunWith(others);
+  encoder.run.sigma = large_.Last().encoder.run.sigma;
+  for (const Term& term : large_.Last().analysis.found.terms) encoder.run.residual -= term.columns * term.amplitudes;
+  AnalysisOptions how = For(1);
+  how.largest_only = false;  // which would leave the place to a name
+  const auto searched = SearchIn(std::move(encoder), options_.excluded, how);
+  if (searched->analysis.found.terms.empty()) return {};
+  return AnswerOf(searched->analysis.found, 0, searched->families).causes;
+}
+
+/// What is small was found with the parameters of the large causes free: these go to where they are best beside
+/// it.
+void LargeSearch::MoveBesideTheRest() {
+  if (large_.causes.empty()) return;
+  AskedAgain asked = fit_->Ask(large_.causes, Beside());
+  const double more = std::sqrt(fit_->Memory(asked.left));
+  for (EffectSettings& effect : asked.effects) {
+    for (auto& [parameter, u] : effect.finding.u) u *= more;
+  }
+  TakeOver(asked, large_.causes);
+}
+
+/// What is left for the large causes once the last search has explained the rest.
+Eigen::VectorXd LargeSearch::Beside() const {
+  Eigen::VectorXd rows = large_.first->encoder.run.residual;
+  for (const Term& term : large_.Last().analysis.found.terms) rows -= term.columns * term.amplitudes;
+  return rows;
+}
+
+void LargeSearch::TellWhatEachShows() {
+  std::vector<EffectSettings> effects;
+  Eigen::VectorXd before = Eigen::VectorXd::Zero(fit_->Run().run.Rows());
+  for (LargeCause& cause : large_.causes) {
+    effects.push_back(cause.effect);
+    const Eigen::VectorXd shown = fit_->Shown(effects);
+    cause.shown = shown - before;
+    before = shown;
+  }
+}
+
+void LargeSearch::TellWhatNamesLeave() {
+  const Searched& last = large_.Last();
+  Eigen::VectorXd rows = large_.first->encoder.run.residual;
+  for (const LargeCause& cause : large_.causes) rows -= cause.shown;
+  for (const Term& term : last.analysis.found.terms) {
+    if (last.families[static_cast<std::size_t>(term.family)].kind == Kind::kNamed) rows -= term.columns * term.amplitudes;
+  }
+  large_.left = power_;
+  large_.named_left = fit_->PowerOf(rows);
+  large_.memory = fit_->Memory(rows);
+}
+
+}  // namespace twinbench::diagnose::encoder

@@ -1,0 +1,239 @@
+#include "twin/benches/encoder_comparison/diagnosis/large_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <map>
+
+#include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
+#include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
+#include "twin/diagnose/conclusion.h"
+#include "twin/diagnose/engine/answer.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+constexpr std::size_t kMostLarge = 16;
+
+/// A device whose signals err says where they begin.
+void TellSignalZero(const std::vector<EffectSettings>& effects, DeviceSettings& device) {
+  for (const EffectSettings& effect : effects) {
+    const auto zero = effect.parameters.find("zero");
+    if (zero == effect.parameters.end() || device.signal_zero_known) continue;
+    device.signal_zero_rad += zero->second;
+    device.signal_zero_known = true;
+  }
+}
+
+/// The parameters of what is in the twin stay free: rows x (what was free, slopes).
+void LeaveFree(const AskedAgain& asked, Nuisance& nuisance) {
+  const Eigen::Index had = nuisance.jacobian.cols(), count = asked.slopes.cols();
+  Eigen::MatrixXd all(nuisance.jacobian.rows(), had + count);
+  all << nuisance.jacobian.toDense(), asked.slopes;
+  nuisance.jacobian = all.sparseView();
+  nuisance.prior_precision.conservativeResize(had + count);
+  nuisance.prior_precision.tail(count) = asked.sd.cwiseAbs2().cwiseInverse();
+}
+
+/// Errors of targets may be anything.
+void LeaveFree(const Eigen::MatrixXd& targets, EncoderRun& encoder) {
+  encoder.targets = targets;
+  Nuisance& nuisance = encoder.run.nuisance;
+  const double precision = nuisance.prior_precision[0];
+  AskedAgain any;
+  any.slopes = targets;
+  any.sd = Eigen::VectorXd::Constant(targets.cols(), 1.0 / std::sqrt(precision));
+  if (targets.cols() > 0) LeaveFree(any, nuisance);
+}
+
+/// They are pieces of one wave.
+bool IsOneWave(const LargeCause& a, const LargeCause& b) {
+  return a.effect.name == b.effect.name && a.effect.where == b.effect.where && WaveOrderOf(a.effect) &&
+         WaveOrderOf(a.effect) == WaveOrderOf(b.effect) && a.effect.parameters.contains("phase");
+}
+
+LargeCause SumOfWaves(LargeCause wave, const LargeCause& more) {
+  std::map<std::string, double>& of = wave.effect.parameters;
+  const std::complex<double> sum =
+      std::polar(of.at("amplitude"), of.at("phase")) +
+      std::polar(more.effect.parameters.at("amplitude"), more.effect.parameters.at("phase"));
+  of["amplitude"] = std::abs(sum);
+  of["phase"] = std::arg(sum);
+  return wave;
+}
+
+}  // namespace
+
+LargeSearch::LargeSearch(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options,
+                         const model::FollowMaker& follow, const Eigen::MatrixXd& targets)
+    : readings_(readings), scenario_(scenario), options_(options), follow_(follow), how_(AnalysisOptionsOf(options)) {
+  large_.targets = targets;
+}
+
+std::optional<LargeCauses> LargeSearch::Go(std::vector<LargeCause> known, double most_left) {
+  Begin(known.empty() ? kFewCauses : 0);
+  if (!TakeKnown(std::move(known))) TakeSignals();
+  TakeLarge();
+  if (power_ - kFewCauses * kLarge * kLarge > most_left) return std::nullopt;  // what is not large has yet to be taken
+  while (SearchOn()) TakeLarge();
+  LeaveToLarge();
+  DropNeedless();
+  EndTies();
+  MoveBesideTheRest();
+  JudgeUnsure();
+  TellWhatEachShows();
+  TellWhatNamesLeave();
+  return std::move(large_);
+}
+
+std::vector<LargeCause> LargeSearch::Look() {
+  null_ = NullCalibration{std::vector<double>(10, 0.0)};  // what is large is far above any threshold
+  how_.null = &null_;
+  Begin(kFewCauses);
+  TakeSignals();
+  TakeLarge();
+  return large_.causes;
+}
+
+AnalysisOptions LargeSearch::For(int most_causes) const {
+  AnalysisOptions how = how_;
+  how.most_causes = most_causes;
+  how.largest_only = most_causes < kMostCauses;
+  return how;
+}
+
+void LargeSearch::Begin(int most_causes) {
+  EncoderRun begin = BuildRun(readings_, scenario_, follow_);
+  LeaveFree(large_.targets, begin);
+  large_.first = SearchIn(std::move(begin), options_.excluded, For(most_causes));
+  most_searched_ = most_causes;
+  null_ = large_.first->analysis.null;
+  how_.null = &null_;
+  fit_.emplace(large_, scenario_, follow_);
+  power_ = fit_->PowerOf(fit_->Run().run.residual);
+}
+
+/// Where something began is not known of readings that were left out: onsets are looked for among all.
+/// @return false if there was none.
+bool LargeSearch::TakeKnown(std::vector<LargeCause> known) {
+  std::erase_if(known, [](const LargeCause& cause) { return cause.effect.name == "slip"; });
+  if (known.empty()) return false;
+  const AskedAgain asked = fit_->Ask(known);
+  if (!(fit_->PowerOf(asked.left) < power_)) return false;
+  double power = power_;
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    const std::vector<EffectSettings> first(asked.effects.begin(), asked.effects.begin() + std::ptrdiff_t(k) + 1);
+    const double left = fit_->PowerOf(large_.first->encoder.run.residual - fit_->Shown(first));
+    known[k].explained = std::max(0.0, power - left);
+    power = left;
+  }
+  Accept(asked, std::move(known), kFewCauses);
+  return true;
+}
+
+/// Signals that are cut off have all their faults at once: none of them is found alone.
+void LargeSearch::TakeSignals() {
+  const EncoderRun& encoder = large_.first->encoder;
+  if (power_ < kLarge * kLarge || std::ranges::count(options_.excluded, "signal_clipping") > 0) return;
+  const std::optional<SignalGuess> guess = GuessSignals(encoder.context, encoder.run.residual);
+  if (!guess) return;
+  FittedCauses all = fit_->Fit(SignalBlock(*guess, encoder, options_.excluded));
+  if (all.causes.empty() || all.causes.front().effect.name != "signal_clipping" || !(all.power < 0.5 * power_)) return;
+  for (std::size_t k = 0; k < all.causes.size(); ++k)
+    all.causes[k].explained = fit_->PowerWithout(k, all.asked) - all.power;
+  Accept(all.asked, std::move(all.causes), kFewCauses);
+}
+
+void LargeSearch::TakeLarge() {
+  while (large_.causes.size() < kMostLarge && TakeNext()) {
+  }
+}
+
+/// For all that is left, where the last search ended at the first.
+/// @return false if there was no need.
+bool LargeSearch::SearchOn() {
+  std::unique_ptr<Searched>& last = large_.last ? large_.last : large_.first;
+  if (most_searched_ == kMostCauses || last->analysis.found.terms.empty()) return false;
+  last->analysis.scanner.reset();
+  last = SearchIn(std::move(last->encoder), Excluded(large_.causes), For(kMostCauses));
+  most_searched_ = kMostCauses;
+  return true;
+}
+
+std::vector<std::string> LargeSearch::Excluded(const std::vector<LargeCause>& causes) const {
+  std::vector<std::string> excluded = ThatAreOnce(causes, EncoderOf(scenario_).device.signal_periods);
+  // A name that is given away leaves its orders to no shape without one.
+  if (!excluded.empty() && !IsExcluded(options_, "periodic")) excluded.push_back("harmonic");
+  excluded.insert(excluded.end(), options_.excluded.begin(), options_.excluded.end());
+  return excluded;
+}
+
+void LargeSearch::Accept(const AskedAgain& asked, std::vector<LargeCause> causes, int most_causes) {
+  // Its signatures were for the search alone, and the next one has its own.
+  (large_.last ? large_.last : large_.first)->analysis.scanner.reset();
+  auto searched = SearchWith(asked, causes, For(most_causes));
+  most_searched_ = most_causes;
+  TakeOver(asked, causes);
+  power_ = fit_->PowerOf(asked.left);
+  large_.causes = std::move(causes);
+  large_.last = std::move(searched);
+}
+
+/// @return false if nothing more is large, or the twin does not show it as the search has it.
+bool LargeSearch::TakeNext() {
+  const std::optional<LargeCause> next = LargestNamed(large_.Last());
+  if (next && Take(*next)) return true;
+  const Searched& last = large_.Last();
+  std::vector<Cause> like;
+  for (const int k : NamedLikeUnnamed(last)) {
+    like.push_back(CauseFrom(last.families[static_cast<std::size_t>(k)], last.analysis.found.alone.grid_point(k, 0),
+                             last.encoder.run.residual, fit_->Run().run.sigma, fit_->projector()));
+  }
+  for (Cause& cause : like) cause.probability /= static_cast<double>(like.size());
+  return !like.empty() && Take(LedBy(std::move(like), 0, last.encoder.run.bench));
+}
+
+bool LargeSearch::Take(const LargeCause& next) {
+  std::vector<LargeCause> causes = large_.causes;
+  const auto same = std::ranges::find_if(causes, [&](const LargeCause& cause) { return IsOneWave(cause, next); });
+  if (same != causes.end()) return TakeSum(static_cast<std::size_t>(same - causes.begin()), next);
+  causes.push_back(next);
+  // Of a cause whose size is not known there is nothing to be asked.
+  if (MovableOf({next}).empty()) return false;
+  const AskedAgain asked = fit_->Ask(causes);
+  const double power = fit_->PowerOf(asked.left);
+  if (!(power < power_) || !IsHeld(asked.effects.back())) return false;
+  causes.back().explained = power_ - power;
+  Accept(asked, std::move(causes), kFewCauses);
+  return true;
+}
+
+/// A second wave of the k-th one's order is what that lacks: it was fitted before all was there.
+/// @return false if that does not explain it.
+bool LargeSearch::TakeSum(std::size_t k, const LargeCause& more) {
+  std::vector<LargeCause> causes = large_.causes;
+  causes[k] = SumOfWaves(causes[k], more);
+  const AskedAgain asked = fit_->Ask(causes);
+  const double power = fit_->PowerOf(asked.left);
+  if (!(power < power_ - kBetter)) return false;
+  causes[k].explained += power_ - power;
+  Accept(asked, std::move(causes), kFewCauses);
+  return true;
+}
+
+/// Errors of targets are free.
+EncoderRun LargeSearch::RunWith(const std::vector<EffectSettings>& effects) const {
+  EncoderRun encoder = BuildRun(readings_, fit_->With(effects), follow_);
+  LeaveFree(large_.targets, encoder);
+  return encoder;
+}
+
+std::unique_ptr<Searched> LargeSearch::SearchWith(const AskedAgain& asked, const std::vector<LargeCause>& causes,
+                                     const AnalysisOptions& how) const {
+  EncoderRun encoder = RunWith(asked.effects);
+  LeaveFree(asked, encoder.run.nuisance);
+  TellSignalZero(asked.effects, encoder.context.device);
+  return SearchIn(std::move(encoder), Excluded(causes), how);
+}
+
+}  // namespace twinbench::diagnose::encoder

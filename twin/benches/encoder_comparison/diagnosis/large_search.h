@@ -1,0 +1,75 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "twin/benches/encoder_comparison/diagnosis/twin_fit.h"
+
+namespace twinbench::diagnose::encoder {
+
+/// A search that takes what is large into the twin, one cause after the other, until nothing large is left
+/// (large_search.cc), and weighs all of them anew beside the rest (large_review.cc).
+class LargeSearch {
+ public:
+  /// @param targets  Whose errors are free; may be none.
+  LargeSearch(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options,
+              const model::FollowMaker& follow, const Eigen::MatrixXd& targets);
+
+  /// @param known      Large causes that a part of the readings has shown.
+  /// @param most_left  Power that the large causes may leave, or the rest is not looked into.
+  std::optional<LargeCauses> Go(std::vector<LargeCause> known,
+                                double most_left = std::numeric_limits<double>::infinity());
+
+  /// The large causes alone, to begin with; what they leave is not looked into.
+  std::vector<LargeCause> Look();
+
+ private:
+  /// An angle device may well have an error of many orders. As long as something large is found, the first few are
+  /// enough: what a large cause leaves to first order is explained by shapes that are gone once the twin has it.
+  static constexpr int kMostCauses = 8, kFewCauses = 3;
+
+  AnalysisOptions For(int most_causes) const;
+  void Begin(int most_causes);
+  bool TakeKnown(std::vector<LargeCause> known);
+  void TakeSignals();
+  void TakeLarge();
+  bool TakeNext();
+  bool Take(const LargeCause& next);
+  bool TakeSum(std::size_t k, const LargeCause& more);
+  bool SearchOn();
+  std::vector<std::string> Excluded(const std::vector<LargeCause>& causes) const;
+  void Accept(const AskedAgain& asked, std::vector<LargeCause> causes, int most_causes);
+  EncoderRun RunWith(const std::vector<EffectSettings>& effects) const;
+  std::unique_ptr<Searched> SearchWith(const AskedAgain& asked, const std::vector<LargeCause>& causes,
+                                       const AnalysisOptions& how) const;
+
+  void LeaveToLarge();
+  double LeastExplained() const;
+  Eigen::VectorXd Left() const;
+  bool IsChance(const Term& term, const Eigen::VectorXd& left) const;
+  void DropNeedless();
+  std::vector<double> Strengths() const;
+  void SearchPlain();
+  void EndTies();
+  void JudgeUnsure();
+  std::vector<Cause> InPlaceOf(std::size_t k) const;
+  void MoveBesideTheRest();
+  Eigen::VectorXd Beside() const;
+  void TellWhatEachShows();
+  void TellWhatNamesLeave();
+
+  const std::vector<Reading>& readings_;
+  const Scenario& scenario_;
+  const DiagnoseOptions& options_;
+  const model::FollowMaker& follow_;
+  AnalysisOptions how_;
+  NullCalibration null_;
+  LargeCauses large_;
+  int most_searched_ = kFewCauses;  // causes that the last search might take
+  std::optional<TwinFit> fit_;
+  double power_ = 0.0;
+};
+
+}  // namespace twinbench::diagnose::encoder
