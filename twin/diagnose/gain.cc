@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "twin/core/errors.h"
+#include "twin/core/stream.h"
 #include "twin/diagnose/accepted_columns.h"
 #include "twin/diagnose/at.h"
 #include "twin/diagnose/engine/projector.h"
@@ -27,6 +28,7 @@ struct FoldErrors {
   Eigen::VectorXd before, after;
   Eigen::VectorXd variance;   // of the prediction, in units of the row's noise
   Eigen::VectorXd amplitude;  // relative variances of the amplitudes that it was predicted with
+  double steps = 1.0;         // half the mean square of what neighbours' errors differ by in noise alone
 };
 
 /// Rows that are held out keep `kTrace` of themselves; J and S unwhitened, so that their variance is that of the
@@ -63,6 +65,33 @@ Eigen::VectorXd ShownWith(const Model& model, const Eigen::VectorXd& amplitudes)
   return model.written + model.columns.S * (amplitudes - model.amplitudes);
 }
 
+/// True if the next reading follows in the same pass.
+bool HasNext(const Schedule& s, int i) {
+  const std::size_t a = At(i), b = a + 1;
+  return i + 1 < s.Readings() && s.setup[a] == s.setup[b] && s.pass[a] == s.pass[b] && s.phase[a] == s.phase[b];
+}
+
+/// Neighbours that are predicted from readings of their own differ by the noise of these, too: by simulation.
+/// @param scored  Rows that count: their error is finite.
+double StepsOfNoise(const LinearRun& run, const NoiseModel& noise, const Projector& fit, const Eigen::VectorXd& held,
+                    const Eigen::VectorXd& scored) {
+  constexpr int kDraws = 16;
+  Eigen::MatrixXd z(run.Rows(), kDraws);
+  Stream stream(1, "diagnose.gain.steps");
+  for (double& value : z.reshaped()) value = stream.Normal();
+  const Eigen::MatrixXd rows = noise.sigma.asDiagonal() * z;
+  const Eigen::MatrixXd train = (1.0 - held.array()).matrix().asDiagonal() * noise.Whiten(run, rows);
+  const Eigen::MatrixXd errors = noise.sigma.cwiseInverse().asDiagonal() * (rows - run.nuisance.jacobian * fit.Solve(train));
+  double sum = 0.0, pairs = 0.0;
+  for (int k = 0; k < run.Rows(); ++k) {
+    const int next = k + run.Channels();
+    if (std::isnan(scored[k]) || !HasNext(run.schedule, run.ReadingOf(k)) || std::isnan(scored[next])) continue;
+    sum += 0.5 * (errors.row(next) - errors.row(k)).squaredNorm();
+    pairs += kDraws;
+  }
+  return pairs > 0.0 ? sum / pairs : 1.0;
+}
+
 /// Fits the rows where `held` is 0 and predicts those where it is 1.
 FoldErrors PredictFold(const LinearRun& run, const NoiseModel& noise, const Model& model,
                        const Eigen::VectorXd& held) {
@@ -85,13 +114,8 @@ FoldErrors PredictFold(const LinearRun& run, const NoiseModel& noise, const Mode
   for (int k = 0; k < run.Rows(); ++k) {
     if (!(errors.variance[k] < kDeterminedVariance)) errors.before[k] = errors.after[k] = kNaN;
   }
+  if (!run.sigma_stated) errors.steps = StepsOfNoise(run, noise, fit, held, errors.after);
   return errors;
-}
-
-/// True if the next reading follows in the same pass.
-bool HasNext(const Schedule& s, int i) {
-  const std::size_t a = At(i), b = a + 1;
-  return i + 1 < s.Readings() && s.setup[a] == s.setup[b] && s.pass[a] == s.pass[b] && s.phase[a] == s.phase[b];
 }
 
 /// The blocks' sums; rows that are not scored have no error.
@@ -107,7 +131,7 @@ void AddFold(const LinearRun& run, const NoiseModel& noise, const FoldErrors& er
               1.0 / squared(sigma)};
     if (!HasNext(run.schedule, reading) || std::isnan(errors.after[next])) continue;
     block +=
-        {.steps = 0.5 * squared(errors.after[next] / noise.sigma[next] - errors.after[k] / sigma), .pairs = 1.0};
+        {.steps = 0.5 * squared(errors.after[next] / noise.sigma[next] - errors.after[k] / sigma) / errors.steps, .pairs = 1.0};
   }
 }
 
