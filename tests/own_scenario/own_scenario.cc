@@ -87,16 +87,20 @@ std::vector<OwnRun> EffectRuns(const OwnBench& bench, std::size_t together) {
   return runs;
 }
 
-std::string AlarmOf(const OwnRun& run, const std::string& cache_folder) {
+std::string AlarmIn(const std::vector<Reading>& readings, const Scenario& scenario, const std::string& cache_folder) {
   diagnose::DiagnoseOptions options;
   options.null_runs = kNullRuns;
   options.cache_folder = cache_folder;
   try {
-    const diagnose::Diagnosis d = diagnose::Diagnose(ReadingsOf(run.scenario), run.scenario, options).diagnosis;
+    const diagnose::Diagnosis d = diagnose::Diagnose(readings, scenario, options).diagnosis;
     return d.verdict == diagnose::Verdict::kNone ? "" : CauseOf(d);
   } catch (const std::exception& error) {
     return error.what();
   }
+}
+
+std::string AlarmOf(const OwnRun& run, const std::string& cache_folder) {
+  return AlarmIn(ReadingsOf(run.scenario), run.scenario, cache_folder);
 }
 
 }  // namespace twinbench::test

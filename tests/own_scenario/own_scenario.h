@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 
 /// Runs of the twin that are diagnosed against their own scenario: whatever it states, nothing is wrong.
@@ -41,5 +42,6 @@ std::vector<OwnRun> EffectRuns(const OwnBench& bench, std::size_t together);
 
 /// What the diagnosis has to say; empty if nothing.
 std::string AlarmOf(const OwnRun& run, const std::string& cache_folder);
+std::string AlarmIn(const std::vector<Reading>& readings, const Scenario& scenario, const std::string& cache_folder);
 
 }  // namespace twinbench::test

@@ -7,6 +7,7 @@
 
 #include <iostream>
 
+#include "tests/support/angle_benches.h"
 #include "tests/support/night.h"
 #include "tests/support/thresholds.h"
 
@@ -53,6 +54,14 @@ TEST_P(OwnScenario, RaisesNoAlarm) {
 TEST_P(OwnScenario, KnowsItsEffects) {
   const Alarms alarms = AlarmsOf(EffectRuns(GetParam(), IsNight() ? 1 : 4));
   EXPECT_LE(std::ssize(alarms.raised), alarms.runs / GetParam().effects_an_alarm) << alarms.InWords();
+}
+
+TEST_P(OwnScenario, IsDiagnosedWithoutAClock) {
+  const OwnBench& bench = GetParam();
+  const Scenario scenario = LoadScenario(ScenarioPath(bench.scenario), bench.base);
+  std::vector<Reading> readings = ReadingsOf(scenario);
+  for (Reading& r : readings) r.time = {};
+  EXPECT_TRUE(AlarmIn(readings, scenario, ThresholdsFolder()).empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryBench, OwnScenario, ::testing::ValuesIn(OwnBenches()),

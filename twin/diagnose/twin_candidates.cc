@@ -111,7 +111,7 @@ unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, co
 
 /// Without orders, the first of them on that the means of neighbours hardly keep.
 void LeaveOutAveraged(const Compared& c, const TwinComparison::Product& orders, std::vector<double>& values) {
-  if (!c.groups.Averages()) return;
+  if (!c.groups.Averages() || values.empty()) return;
   const auto averaged = std::ranges::find_if(values, [&](double order) {
     const Eigen::MatrixXd wave = orders.courses(c.used, order);
     const double kept2 = c.groups.Mean(wave).squaredNorm() / static_cast<double>(c.groups.Groups());
@@ -157,15 +157,16 @@ void AddProducts(const Compared& c, const TwinComparison& comparison, const Diag
     return slopes[point];
   };
   for (const TwinComparison::Product& product : comparison.products) {
-    if (IsExcluded(options, product.effect)) continue;
-    Family& family = AddProduct(c, comparison, Shaped(product, c), slope_at(product.point), named);
+    const TwinComparison::ShapedProduct shaped = Shaped(product, c);
+    if (IsExcluded(options, product.effect) || shaped.values.rows() == 0) continue;  // a record without a clock
+    Family& family = AddProduct(c, comparison, shaped, slope_at(product.point), named);
     if (product.is_order)
       named.MakeOrders(family);
     else if (product.is_wave)
       named.MakeWaves(family);
   }
   for (const TwinComparison::ShapedProduct& product : comparison.shaped_products) {
-    if (!IsExcluded(options, product.effect)) AddProduct(c, comparison, product, slope_at(product.point), named);
+    if (!IsExcluded(options, product.effect) && product.values.rows() > 0) AddProduct(c, comparison, product, slope_at(product.point), named);
   }
 }
 
