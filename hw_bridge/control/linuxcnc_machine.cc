@@ -255,7 +255,9 @@ bool LinuxCncMachine::AskDone() {
 
 std::vector<AxisState> LinuxCncMachine::State() {
   Prepare();
-  const bool is_on = IsOn(), moves = Get("program_status") == "RUNNING";
+  std::string why_off;  // empty: it is on
+  if (!IsOn()) why_off = Get("estop") == "OFF" ? "that it is switched off" : "that its emergency stop is on";
+  const bool moves = Get("program_status") == "RUNNING";
   const std::vector<double> commanded = Places("abs_cmd_pos");
   const std::vector<double> encoder = Places("abs_act_pos");
   const std::vector<std::string> homed = OfJoints("joint_homed"), limit = OfJoints("joint_limit"),
@@ -270,7 +272,7 @@ std::vector<AxisState> LinuxCncMachine::State() {
     state.in_position = !moves;
     state.limit = limit[k] == "MINHARD" ? -1 : limit[k] == "MAXHARD" ? 1 : 0;
     if (fault[k] != "OK") state.fault = "joint_fault " + fault[k];
-    if (!is_on) state.fault = "that it is switched off";
+    if (!why_off.empty()) state.fault = why_off;
   }
   return states;
 }

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <optional>
 
+#include "tests/fuzz/plain_bench.h"
 #include "twin/core/device_fault.h"
 
 namespace twinbench::procedure {
@@ -55,7 +57,8 @@ TEST_F(WayOfAxis, BehindOneAStallIsNoticedWithinHalfASecondWhereverItIsAndHoweve
   for (const double fails_s : {0.0, 2.0, 4.8}) {
     for (const double share : {0.0, 0.01}) {
       const double noticed_s = StallOf({.fails_s = fails_s, .share = share}).value_or(1e3);
-      EXPECT_LE(noticed_s, fails_s + kSoon_s + kLook_s) << fails_s << " " << share;  // and the look in which it failed
+      EXPECT_LE(noticed_s, fails_s + kSoon_s + kLook_s)
+          << fails_s << " " << share;  // and the look in which it failed
       EXPECT_GE(noticed_s, fails_s);
     }
   }
@@ -71,7 +74,8 @@ TEST_F(WayOfAxis, OneThatNeedsAWhileToBeginMayDoSoAgainAndForTwiceAsLong) {
 TEST_F(WayOfAxis, WhereItSettlesNothingIsAsked) {
   EXPECT_EQ(StallOf({}), std::nullopt);
   way_.Begins({0.0}, {kWay}, {0.0}, begin_, Duration(0));
-  for (int look = 1; look < 20; ++look) EXPECT_NO_THROW(way_.Shows({kWay - 1e-4}, begin_ + FromSeconds(look * kLook_s), kStall_s));
+  for (int look = 1; look < 20; ++look)
+    EXPECT_NO_THROW(way_.Shows({kWay - 1e-4}, begin_ + FromSeconds(look * kLook_s), kStall_s));
 }
 
 /// Stands, and is on a switch from the n-th look on.
@@ -116,6 +120,58 @@ TEST(WatchedMachine, ComesBackAtOnceWhereItRunsOntoASwitchAndNotWhereItLeavesOne
   EXPECT_NEAR(waited_s(+1), 0.1, 1e-9);
   EXPECT_NEAR(waited_s(-1), 1.0, 1e-9);
   EXPECT_NEAR(waited_s(0), 1.0, 1e-9);
+}
+
+/// Stands where its zero says; the first command of a run sets other zeros.
+class ZeroedTable : public RotaryTable {
+ public:
+  void StartMove(double) override {
+    if (as_sent) as_sent();
+  }
+  bool Settles(Duration) override { return true; }
+  TableState State() override { return {0.0, zero_rad, true, false, true, 0, ""}; }
+  void Stop() override {}
+  void Home() override {}
+  std::function<void()> as_sent;
+  double zero_rad = 0.0;
+};
+
+/// Two tables that are sent 30 deg one after the other.
+struct PairOfTables {
+  fuzz::PlainRotary others;
+  ZeroedTable target, reference;
+  RotaryBench bench = [this] {
+    const RotaryBench plain = others.Bench();
+    return RotaryBench{plain.clock,       target,           reference,    plain.adc, plain.autocollimator,
+                       plain.thermometer, plain.goniometer, plain.fixture};
+  }();
+  WatchedTables watched{bench, {}, {}};
+
+  void SendBoth() {
+    watched.target().StartMove(30.0 * units::deg);
+    watched.reference().StartMove(30.0 * units::deg);
+  }
+};
+
+TEST(WatchedTables, SeeAZeroOfEitherThatIsSetAsTheFirstIsSent) {
+  for (ZeroedTable PairOfTables::*which : {&PairOfTables::target, &PairOfTables::reference}) {
+    PairOfTables pair;
+    pair.target.as_sent = [&] { (pair.*which).zero_rad = -20.0 * units::deg; };
+    pair.SendBoth();
+    EXPECT_THROW(pair.watched.target().Settles(FromSeconds(1.0)), DeviceFault);
+  }
+}
+
+TEST(WatchedTables, LookAnewBehindAWayAndBehindAStop) {
+  PairOfTables pair;
+  pair.SendBoth();
+  EXPECT_TRUE(pair.watched.target().Settles(FromSeconds(1.0)));
+  pair.reference.zero_rad = 10.0 * units::deg;  // it has gone there
+  pair.SendBoth();
+  pair.watched.target().Stop();
+  pair.reference.zero_rad = 0.0;  // by hand, while nobody watches
+  pair.SendBoth();
+  EXPECT_TRUE(pair.watched.target().Settles(FromSeconds(1.0)));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "twin/core/device_fault.h"
 #include "twin/procedure/stood.h"
@@ -41,8 +42,8 @@ bool SettlesWatched(auto& moves, Duration within, const std::function<bool()>& l
 
 }  // namespace
 
-void WatchedWay::Begins(const std::vector<double>& from, const std::vector<double>& to, const std::vector<double>& at, Time now,
-                    Duration took) {
+void WatchedWay::Begins(const std::vector<double>& from, const std::vector<double>& to,
+                        const std::vector<double>& at, Time now, Duration took) {
   for (std::size_t k = 0; k < to.size(); ++k) RequireOnWay(axes_[k], from[k], to[k], at[k], ToSeconds(took));
   to_ = to, at_ = at, shown_ = now;
   slow_s_ = slowest_s_ = 0.0;
@@ -73,7 +74,8 @@ void WatchedWay::Shows(const std::vector<double>& at, Time now, double stall_s) 
   if (!(slow_s_ > std::fmin(stall_s, kLittleMore_s + kTimesKnown * known_slow_s_))) return;
   std::string where;
   for (std::size_t k = 0; k < at.size(); ++k)
-    where += fmt::format("{}{} at {:.6f} {}", k > 0 ? ", " : "", axes_[k].name, at[k] / axes_[k].to_SI(), axes_[k].unit());
+    where += fmt::format("{}{} at {:.6f} {}", k > 0 ? ", " : "", axes_[k].name, at[k] / axes_[k].to_SI(),
+                         axes_[k].unit());
   throw DeviceFault(FaultKind::kStalled, axes_.size() == 1 ? axes_[0].name : "machine",
                     fmt::format("stands or creeps on its way, {}, for {:.1f} s", where, slow_s_));
 }
@@ -120,19 +122,27 @@ WatchedTables::WatchedTables(RotaryBench& bench, const TableLimits& target, cons
       reference_(bench.reference, bench.clock, reference, "reference", target_) {}
 
 void WatchedTables::Table::StartMove(double angle_rad) {
-  from_rad_ = inner_.EncoderAngle_rad();
+  if (std::isnan(from_rad_)) {
+    LookBefore();
+    other_.LookBefore();
+  }
   to_rad_ = angle_rad;
   sent_ = clock_.Now();
   inner_.StartMove(angle_rad);
   is_sent_ = true;
 }
 
+void WatchedTables::Table::Stop() {
+  from_rad_ = other_.from_rad_ = kNaN;
+  inner_.Stop();
+}
+
 void WatchedTables::Table::LookAtStart() {
-  if (!is_sent_) return;
-  is_sent_ = false;
+  const double from_rad = std::exchange(from_rad_, kNaN);
+  if (!std::exchange(is_sent_, false)) return;
   const double at_rad = inner_.EncoderAngle_rad();
   const Time now = clock_.Now();
-  way_.Begins({from_rad_}, {to_rad_}, {at_rad}, now, now - sent_);
+  way_.Begins({from_rad}, {to_rad_}, {at_rad}, now, now - sent_);
 }
 
 bool WatchedTables::Table::LookOnWay() {

@@ -10,16 +10,18 @@
 
 namespace twinbench::procedure {
 
-/// What encoders show on a way that axes were sent, all at once [m or rad]. Which axes are slow, and for how long they may be, is
-/// learned from the ways that came to their end.
+/// What encoders show on a way that axes were sent, all at once [m or rad]. Which axes are slow, and for how long
+/// they may be, is learned from the ways that came to their end.
 class WatchedWay {
  public:
   explicit WatchedWay(std::vector<MachineAxis> axes) : axes_(std::move(axes)), fastest_(axes_.size(), 0.0) {}
   /// They stood at `from` and were sent to `to`; `at` is where they are since then, at most `took` later.
   /// @throws what RequireOnWay throws.
-  void Begins(const std::vector<double>& from, const std::vector<double>& to, const std::vector<double>& at, Time now, Duration took);
+  void Begins(const std::vector<double>& from, const std::vector<double>& to, const std::vector<double>& at,
+              Time now, Duration took);
   /// @param stall_s  Of the limits; as long as no way has come to its end nothing else is known.
-  /// @throws DeviceFault kStalled where none has gone at a tenth of its speed for longer than on any way before, twice that and a
+  /// @throws DeviceFault kStalled where none has gone at a tenth of its speed for longer than on any way before,
+  /// twice that and a
   ///         little more, and some have far to go.
   void Shows(const std::vector<double>& at, Time now, double stall_s);
   void HasEnded();
@@ -80,10 +82,12 @@ class WatchedTables {
     void StartMove(double angle_rad) override;
     bool Settles(Duration within) override;
     TableState State() override { return inner_.State(); }
-    void Stop() override { inner_.Stop(); }
+    void Stop() override;
     void Home() override { inner_.Home(); }
 
    private:
+    /// Where it stands before either of the two is sent: a zero may be set as the first is.
+    void LookBefore() { from_rad_ = inner_.EncoderAngle_rad(); }
     void LookAtStart();
     /// @return false where it shows what whoever watches must see.
     bool LookOnWay();
@@ -93,8 +97,8 @@ class WatchedTables {
     const TableLimits& limits_;
     WatchedWay way_;
     Table& other_;
-    bool is_sent_ = false;  // and was not looked at since
-    double from_rad_ = kNaN, to_rad_ = kNaN;
+    bool is_sent_ = false;                    // and was not looked at since
+    double from_rad_ = kNaN, to_rad_ = kNaN;  // NaN: nobody has looked
     Time sent_{};
   };
   Table target_, reference_;

@@ -20,7 +20,7 @@ IDENTITY = "ESP301 Version 3.0.1 foreign"
 class Axis:
     """A servo that goes from rest to rest along half a cosine, at most at SPEED, and settles for a moment."""
 
-    SPEED = 20000.0
+    SPEED = 3000.0  # a second; faster than 10 turns or 10 m is nobody
     SHORTEST_S = 0.01
     SETTLING_S = 0.005
 
