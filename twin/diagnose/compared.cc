@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "twin/core/errors.h"
-#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/as_predicted.h"
 #include "twin/diagnose/engine/noise_estimate.h"
+#include "twin/diagnose/left_free.h"
 #include "twin/diagnose/mean_of_runs.h"
 #include "twin/diagnose/redundancy.h"
 #include "twin/model/signals.h"
@@ -17,14 +17,6 @@ namespace {
 
 /// What a reading showed: one value a channel, SI.
 using ValuesOf = std::function<Eigen::VectorXd(const Reading&)>;
-
-/// Columns that a bench must show.
-std::vector<ReadingColumn> ShownColumns(const TwinComparison& comparison) {
-  std::vector<ReadingColumn> columns;
-  std::ranges::copy_if(comparison.format->columns, std::back_inserter(columns),
-                       [](const ReadingColumn& c) { return c.role == ColumnRole::kShown; });
-  return columns;
-}
 
 ValuesOf ShownBy(const TwinComparison& comparison) {
   if (comparison.shown) return comparison.shown;
@@ -102,25 +94,6 @@ void EstimateNoise(const TwinComparison& comparison, LinearRun& run) {
     if (run.sigma(of_channel).minCoeff() > 0.0) continue;
     run.sigma(of_channel).setConstant(EstimateNoise_rad(schedule, run.residual(of_channel)));
   }
-}
-
-std::vector<FreePoint> FreeOf(const Compared& c, const TwinComparison& comparison) {
-  std::vector<FreePoint> points;
-  const auto add = [&](const std::string& point, const Eigen::MatrixXd& courses, const std::string& of, double sd) {
-    points.push_back({c.twin.Point(point), courses, of, sd});
-    if (comparison.free_sd && !(sd > 0.0)) points.back().sd = comparison.free_sd(points.back().point);
-  };
-  if (comparison.free_places) {
-    for (const std::string& point : comparison.free_places->points) {
-      add(point, model::Indicators(comparison.free_places->place(c.used)), comparison.free_places->of, kNaN);
-      points.back().is_local = true;
-    }
-  }
-  for (const std::string& point : comparison.free_points)
-    add(point, model::Indicators(c.run.schedule.setup), "a mounting", kNaN);
-  for (const TwinComparison::FreeCourses& of_bench : comparison.free_courses)
-    add(of_bench.point, of_bench.courses(c.used), of_bench.of, of_bench.sd);
-  return points;
 }
 
 /// What is drawn anew at each reading, beside the noise of the channels.
@@ -211,54 +184,6 @@ void TakeTogether(const TwinComparison& comparison, Compared& c) {
   c.free.columns = c.groups.MeanOfRows(c.free.columns);
 }
 
-/// Free constants are counted from nothing. Those that are known stay where they are: the twin does not follow them here,
-/// and so nothing of theirs is put back.
-LeftByAnother LeftByAnotherOf(const Compared& c, const std::vector<Reading>& readings,
-                              const TwinComparison& comparison) {
-  struct Asked {
-    std::vector<Reading> readings, used;
-    FreeConstants free;
-    Eigen::VectorXd observed;
-    Eigen::SparseMatrix<double, Eigen::RowMajor> jacobian;
-    int channels;
-  };
-  const auto asked = std::make_shared<const Asked>(
-      Asked{readings, c.used, c.free, c.run.observed, c.run.nuisance.jacobian, c.run.Channels()});
-  return [asked, follow = comparison.follow](const Scenario& other) -> LeftWhere {
-    const auto twin =
-        std::make_shared<const Followed>(follow, other, asked->readings, asked->used, asked->channels);
-    return [asked, twin](const Eigen::VectorXd& by) -> Eigen::VectorXd {
-      const Eigen::Index free = asked->free.fitted.cols();
-      const Eigen::VectorXd constants = asked->free.fitted * by.head(free);
-      return asked->observed - ByRow(twin->Predict(asked->free.DisturbancesOf(constants))) +
-             asked->jacobian.leftCols(free) * by.head(free);
-    };
-  };
-}
-
-/// What each row shows of the constants that are known to some extent: columns behind those of the free ones.
-void AddKnown(const std::vector<Reading>& readings, const Scenario& scenario, const TwinComparison& comparison,
-              Compared& c) {
-  Nuisance& nuisance = c.run.nuisance;
-  const Eigen::Index free = nuisance.jacobian.cols(), known = std::ssize(comparison.known);
-  Eigen::MatrixXd columns(c.run.Rows(), free + known);
-  columns.leftCols(free) = nuisance.jacobian;
-  nuisance.prior_precision.conservativeResize(free + known);
-  for (Eigen::Index k = 0; k < known; ++k) {
-    const auto& [effect, where, parameter, sd] = comparison.known[static_cast<std::size_t>(k)];
-    const auto shown = [&](double value) {
-      Scenario with = scenario;
-      with.effects.push_back({effect, where, {{parameter, value}}, ""});
-      const Followed twin(comparison.follow, with, readings, c.used, c.run.Channels());
-      return c.Rows(twin.Predict(c.free.Disturbances()));
-    };
-    columns.col(free + k) = (shown(sd) - shown(-sd)) / (2.0 * sd);
-    nuisance.prior_precision[free + k] = std::pow(sd, -2);
-  }
-  nuisance.jacobian = columns.sparseView();
-  if (nuisance.at.size() > 0) nuisance.at.conservativeResizeLike(Eigen::VectorXd::Zero(free + known));
-}
-
 /// The ways in which a body's motions show, instead of the channels.
 void SetPatterns(const TwinComparison& comparison, Compared& c) {
   if (!comparison.motions.empty()) c.run.patterns.clear();
@@ -290,34 +215,6 @@ Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario,
 ToRows Compared::Means() const {
   if (!groups.Averages()) return {};
   return [groups = groups](const Eigen::MatrixXd& of_readings) { return groups.Mean(of_readings); };
-}
-
-std::vector<Reading> AsPredicted(const Compared& compared, const TwinComparison& comparison) {
-  std::vector<Reading> readings = compared.used;
-  if (comparison.show) {
-    const Eigen::Index channels = compared.run.Channels();
-    for (std::size_t i = 0; i < readings.size(); ++i)
-      comparison.show(readings[i], compared.predicted.segment(static_cast<Eigen::Index>(i) * channels, channels));
-    return readings;
-  }
-  if (comparison.shown) return readings;  // of values that are no columns
-  const std::vector<ReadingColumn> columns = ShownColumns(comparison);
-  Eigen::Index row = 0;
-  for (Reading& reading : readings) {
-    for (const ReadingColumn& column : columns) column.number(reading) = compared.predicted[row++];
-  }
-  return readings;
-}
-
-std::vector<Reading> RecordAsPredicted(const Compared& c, std::vector<Reading> readings,
-                                       const TwinComparison& comparison) {
-  if (!comparison.show) return readings;
-  const std::vector<Reading> predicted = AsPredicted(c, comparison);
-  std::size_t next = 0;
-  for (Reading& r : readings) {
-    if (next < predicted.size() && r.reading == predicted[next].reading) r = predicted[next++];
-  }
-  return readings;
 }
 
 Response ResponseTo(const Compared& compared, const std::string& point) {

@@ -34,13 +34,6 @@ struct Compared {
 /// @throws InputError as CompareWithTwin does.
 Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario, const TwinComparison& comparison);
 
-/// The used readings as the twin says them.
-std::vector<Reading> AsPredicted(const Compared& compared, const TwinComparison& comparison);
-
-/// The same in the record; it itself if the comparison does not tell how.
-std::vector<Reading> RecordAsPredicted(const Compared& compared, std::vector<Reading> readings,
-                                       const TwinComparison& comparison);
-
 /// How the channels answer to a point: by a pattern [SI per SI], of which every reading shows a share. It is one but
 /// where the twin knows better: of what another instrument sees and the bench follows, nothing is shown.
 struct Response {

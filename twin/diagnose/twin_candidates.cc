@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 
+#include "twin/diagnose/as_predicted.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/asked_effects.h"
 #include "twin/diagnose/unknown/at_points.h"

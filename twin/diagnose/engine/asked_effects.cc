@@ -4,132 +4,13 @@
 #include <cmath>
 #include <memory>
 
-#include "twin/core/signal_effect.h"
-#include "twin/core/units.h"
+#include "twin/diagnose/engine/asked_effect.h"
 #include "twin/diagnose/engine/followed.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose {
 namespace {
-
-using Values = std::map<std::string, double>;
-
-/// What all effects are compared with: asked once.
-struct Baseline {
-  BelievedRecord believed;
-  Eigen::VectorXd shown;  // by row
-};
-
-/// One effect at one place, and how the record answers to it.
-class AskedEffect {
- public:
-  AskedEffect(const std::shared_ptr<const Baseline>& baseline, const EffectEntry& entry, const std::string& place)
-      : baseline_(baseline), entry_(entry) {
-    effect_.name = entry.name;
-    effect_.where = place;
-    for (const EffectParameter& p : entry.parameters) {
-      if (p.BelongsTo(place)) parameters_.push_back(p);
-      effect_.parameters[p.name] = p.default_SI;
-    }
-    if (!parameters_.empty()) SortParameters();
-    is_odd_ = !shapes_.empty() && sizes_.size() == 1 && IsOdd(sizes_.front());
-  }
-
-  const std::vector<EffectParameter>& Sizes() const { return sizes_; }
-  const std::vector<EffectParameter>& Shapes() const { return shapes_; }
-  /// The size is that of a wave with a "phase"; it has a "curvature".
-  bool IsWave() const { return is_wave_; }
-  bool IsBent() const { return is_bent_; }
-
-  /// What the rows show more with these parameters; the others keep their plausible values.
-  Eigen::VectorXd More(const Values& values) const {
-    EffectSettings effect = effect_;
-    for (const auto& [name, value] : values) effect.parameters[name] = value;
-    return baseline_->believed.ShownWith(effect) - baseline_->shown;
-  }
-
-  /// d rows / d size about no effect: rows x sizes; of a wave its cosine and sine, of what has a curvature what is
-  /// straight and what the curvature adds.
-  Eigen::MatrixXd Columns(const Eigen::VectorXd& shape) const {
-    Values values;
-    for (const EffectParameter& p : sizes_) values[p.name] = 0.0;
-    for (std::size_t k = 0; k < shapes_.size(); ++k) values[shapes_[k].name] = shape[static_cast<Eigen::Index>(k)];
-    const auto with = [&](const char* name, double value) {
-      values[name] = value;
-      return Column(sizes_.front(), values);
-    };
-    Eigen::MatrixXd columns(baseline_->shown.size(), is_wave_ || is_bent_ ? 2 : std::ssize(sizes_));
-    if (is_wave_) {
-      columns << with("phase", 0.0), with("phase", 0.75 * units::turn);
-    } else if (is_bent_) {
-      columns.col(0) = with("curvature", 0.0);
-      columns.col(1) = with("curvature", 1.0) - columns.col(0);
-    } else {
-      for (std::size_t j = 0; j < sizes_.size(); ++j)
-        columns.col(static_cast<Eigen::Index>(j)) = Column(sizes_[j], values);
-    }
-    return columns;
-  }
-
-  double Typical(const EffectParameter& p) const { return entry_.Plausible(p); }
-
- private:
-  void SortParameters() {
-    sizes_ = {parameters_.front()};
-    const std::string only = parameters_.size() == 2 ? parameters_.back().name : "";
-    is_wave_ = only == "phase";
-    is_bent_ = only == "curvature";
-    if (is_wave_ || is_bent_) return;
-    for (std::size_t k = 1; k < parameters_.size(); ++k)
-      (IsSize(parameters_[k]) ? sizes_ : shapes_).push_back(parameters_[k]);
-  }
-
-  Eigen::VectorXd Column(const EffectParameter& size, Values values) const {
-    const double above = tuning::kAskedStep * Typical(size), below = size.lower_SI < 0.0 ? -above : 0.0;
-    values[size.name] = above;
-    Eigen::VectorXd column = More(values);
-    if (is_odd_) return column / above;
-    values[size.name] = below;
-    column -= More(values);
-    return column / (above - below);
-  }
-
-  /// Whether a size shows as much one way as the other: then one way tells the slope.
-  bool IsOdd(const EffectParameter& size) const {
-    constexpr double kRounding = 1e-6;
-    const double step = tuning::kAskedStep * Typical(size);
-    if (size.lower_SI > -step) return false;
-    const Eigen::VectorXd above = More({{size.name, step}});
-    return (above + More({{size.name, -step}})).norm() < kRounding * above.norm();
-  }
-
-  /// Whether the answer is linear in it alone and adds to that of the sizes so far. What an effect shows at sizes
-  /// of zero (the height that a tilt needs) is no part of either.
-  bool IsSize(const EffectParameter& p) const {
-    constexpr double kTolerance = 1e-3;
-    if (p.lower_SI > 0.0 || p.upper_SI < 0.0) return false;
-    Values none = {{p.name, 0.0}}, sizes = none;
-    for (const EffectParameter& size : sizes_) {
-      none[size.name] = 0.0;
-      sizes[size.name] = tuning::kAskedStep * Typical(size);
-    }
-    Values alone = none, half = none, together = sizes;
-    alone[p.name] = together[p.name] = tuning::kAskedStep * Typical(p);
-    half[p.name] = 0.5 * tuning::kAskedStep * Typical(p);
-    const Eigen::VectorXd without = More(none), own = More(alone) - without;
-    if (own.isZero()) return false;
-    const double scale = kTolerance * own.norm();
-    return (2.0 * (More(half) - without) - own).norm() < scale &&
-           (More(together) - More(sizes) - own).norm() < scale;
-  }
-
-  std::shared_ptr<const Baseline> baseline_;
-  EffectEntry entry_;
-  EffectSettings effect_;
-  std::vector<EffectParameter> parameters_, sizes_, shapes_;
-  bool is_wave_ = false, is_bent_ = false, is_odd_ = false;
-};
 
 /// Evenly chosen, at most `most`.
 std::vector<double> Thinned(const std::vector<double>& values, std::size_t most) {
