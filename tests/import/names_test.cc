@@ -101,6 +101,15 @@ TEST_F(Importing, AsksHowManyCountsMakeATurn) {
   EXPECT_THAT(MessageOf([&] { Take(text); }), HasSubstr("\"TargetCounts\" is in counts, and nothing says how many of them make a turn"));
 }
 
+TEST_F(Importing, TakesAStepTestInCountsAndSaysHowManyItThinksMakeATurn) {
+  std::string text = "Time [s],TargetCounts [count],EncoderPosition [count]\n";
+  for (int i = 0; i < 200; ++i) text += fmt::format("{:.2f},700,{}\n", 0.02 * i, i < 20 ? 35 * i : 700 + i % 4);
+  const Imported imported = Take(text);
+  EXPECT_NEAR(imported.readings.back().reference_rad / units::deg, 700.0 * 360.0 / 1024.0, 1e-9);
+  EXPECT_THAT(imported.story, HasSubstr("nothing says how many counts make a turn, taken as 1024 counts per turn"));
+  EXPECT_EQ(imported.readings.size(), 180u) << "20 are of the way there";
+}
+
 TEST_F(Importing, TakesWholeNumbersOfAServoForCountsAndSaysIt) {
   std::string text = "time [s],goal_position,present_position\n";
   for (int i = 0; i < 200; ++i) text += fmt::format("{:.2f},{},{}\n", 0.02 * i, 2048 + 10 * (i % 100), 2048 + 10 * (i % 100) + i % 3);

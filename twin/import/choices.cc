@@ -28,7 +28,6 @@ std::string UsualUnit(const Choice& from, const std::string& target, const Map& 
 }
 
 [[noreturn]] void RefuseUnit(const Choice& from, const std::string& target) {
-  if (IsCalledCounts(*from.column)) RefuseCounts(target, from.name, from.recording->file);
   std::string known;
   for (const Dimension dimension : {Dimension::kAngle, Dimension::kLength}) {
     for (const NamedUnit& unit : UnitsOf(dimension)) known += (known.empty() ? "" : ", ") + std::string(unit.name);
@@ -95,7 +94,8 @@ void Put(const std::string& target, const Choice& from, const std::string& why, 
   const std::string own = UnitFor(*from.column, target);
   const auto wanted = UnitAtEnd(target);
   if (own.empty() && wanted && TakeCounts(target, *from.column, *from.track, map, remarks)) return;
-  if (own.empty() && wanted && !IsNoUnit(from.column->unit)) RefuseUnit(from, target);
+  const bool is_counts = IsCalledCounts(*from.column);  // judged with what it is compared with
+  if (own.empty() && wanted && !is_counts && !IsNoUnit(from.column->unit)) RefuseUnit(from, target);
   const std::string unit = own.empty() ? UsualUnit(from, target, map) : own;
   if (SmallLetters(from.column->unit) == "grad")
     remarks.push_back(fmt::format("\"{}\" is in grad, read as degrees; where 400 are a turn: --column '{}_gon={}'", from.name, BaseOf(target), from.name));

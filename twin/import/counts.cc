@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
@@ -83,6 +84,15 @@ const Column* PlainColumn(const MappedColumn& mapped, const std::vector<Recordin
   return nullptr;
 }
 
+/// Of a step test only the size of its errors depends on how many counts make a turn, not where they repeat.
+bool IsStepTestInCounts(const std::string& reference, const std::vector<Recording>& recordings, const Map& map) {
+  constexpr std::size_t kFewPlaces = 3;
+  const auto mapped = std::ranges::find(map.columns, reference, &MappedColumn::column);
+  const Column* column = mapped == map.columns.end() ? nullptr : PlainColumn(*mapped, recordings);
+  return column && IsCalledCounts(*column) &&
+         std::set<double>(column->value.begin(), column->value.end()).size() <= kFewPlaces;
+}
+
 }  // namespace
 
 bool IsCalledCounts(const Column& column) {
@@ -90,39 +100,39 @@ bool IsCalledCounts(const Column& column) {
   return SpeaksOf(column.unit, words) || (column.unit.empty() && SpeaksOf(column.name, words));
 }
 
-void RefuseCounts(const std::string& target, const std::string& name, const std::string& file) {
-  throw InputError(file, fmt::format("\"{}\" is in counts, and nothing says how many of them make a turn", name),
-                   fmt::format("a line \"# counts per turn: N\" above the rows, or --column '{}=[{}] * 360 / N' of each column in counts", target, name));
-}
-
-void RequireCountsPerTurn(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, const Map& map) {
-  for (const MappedColumn& mapped : map.columns) {
-    if (std::ranges::find(compared, mapped.column) == compared.end()) continue;
-    const Column* column = PlainColumn(mapped, recordings);
-    if (column && IsCalledCounts(*column) && AreWhole(*column)) RefuseCounts(mapped.column, column->name, recordings[0].file);
+void RequireCountsPerTurn(const std::vector<Recording>& recordings, const Map& map) {
+  for (const auto& [target, name, unit, where] : map.columns) {
+    const Column* column = UnitAtEnd(target) ? PlainColumn({target, name, unit, where}, recordings) : nullptr;
+    if (!column || !IsCalledCounts(*column) || !AreWhole(*column)) continue;
+    throw InputError(recordings[0].file, fmt::format("\"{}\" is in counts, and nothing says how many of them make a turn", column->name),
+                     fmt::format("a line \"# counts per turn: N\" above the rows, or --column '{}=[{}] * 360 / N' of each column in counts", target, column->name));
   }
 }
 
 void TakeBothForCounts(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, Map& map,
                        std::vector<std::string>& remarks) {
   constexpr double kLeast = 1000.0, kMost = 65536.0;
+  const bool is_step_test = IsStepTestInCounts(compared[0], recordings, map);
   std::vector<MappedColumn*> both;
   double high = 0.0;
   for (MappedColumn& mapped : map.columns) {
     if (std::ranges::find(compared, mapped.column) == compared.end()) continue;
     const Column* column = PlainColumn(mapped, recordings);
-    if (!column || !column->unit.empty() || !AreWhole(*column)) return;
+    if (!column || !AreWhole(*column)) return;
     const auto [least, most] = std::ranges::minmax(column->value);
-    if (!(least >= 0.0) || !(most > kLeast && most < kMost)) return;
+    const bool may_be_guessed = is_step_test ? IsCalledCounts(*column) : column->unit.empty() && !IsCalledCounts(*column) && most > kLeast;
+    if (!may_be_guessed) return;
+    if (!(least >= 0.0) || !(most < kMost)) return;
     high = std::max(high, most);
     both.push_back(&mapped);
   }
   if (both.size() != 2) return;
   const double per_turn = std::pow(4.0, std::ceil(std::log(high + 1.0) / std::log(4.0)));
   std::erase_if(remarks, [](const std::string& remark) { return remark.find("its unit is not said") != std::string::npos; });
+  const char* what = is_step_test ? "nothing says how many counts make a turn" : "whole numbers without a unit";
   for (MappedColumn* mapped : both) {
-    remarks.push_back(fmt::format("{} is taken from \"{}\": whole numbers without a unit, taken as {:g} counts per turn (--column '{}=[{}] * 360 / N' says another)",
-                                  mapped->column, mapped->expression, per_turn, mapped->column, mapped->expression));
+    remarks.push_back(fmt::format("{} is taken from \"{}\": {}, taken as {:g} counts per turn (--column '{}=[{}] * 360 / N' says another)",
+                                  mapped->column, mapped->expression, what, per_turn, mapped->column, mapped->expression));
     mapped->expression = fmt::format("[{}] * 360 / {:g}", mapped->expression, per_turn);
     mapped->unit = "deg";
   }

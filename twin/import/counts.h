@@ -16,17 +16,15 @@ bool TakeCounts(const std::string& target, const Column& column, const Track& tr
                 std::vector<std::string>& remarks);
 
 /// Reference and device in whole numbers from 0 up to more than 1000, neither with a unit, as servos on a bus have them: taken
-/// as counts of the power of four above them (1024, 4096, 16384, 65536), of which nothing but the sizes of angles depends.
+/// as counts of the power of four above them (1024, 4096, 16384, 65536), of which nothing but the sizes of angles depends. So
+/// are counts by name where the reference is sent to a few places only.
 void TakeBothForCounts(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, Map& map,
                        std::vector<std::string>& remarks);
 
 /// By its unit or, where it has none, by its name.
 bool IsCalledCounts(const Column& column);
 
-/// @throws InputError that says what to write.
-[[noreturn]] void RefuseCounts(const std::string& target, const std::string& name, const std::string& file);
-
 /// Refuses what is called counts and was guessed as it stands, as if a count were a degree.
-void RequireCountsPerTurn(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, const Map& map);
+void RequireCountsPerTurn(const std::vector<Recording>& recordings, const Map& map);
 
 }  // namespace twinbench::imports

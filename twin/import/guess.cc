@@ -177,7 +177,7 @@ void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
   TakeByName(columns, compared, map, remarks);
   TakeWhatIsLeft(columns, recordings, compared, map, remarks);
   TakeBothForCounts(compared, recordings, map, remarks);
-  RequireCountsPerTurn(compared, recordings, map);
+  RequireCountsPerTurn(recordings, map);
 }
 
 void TakeReadyMapOfList(const std::vector<Recording>& recordings, Map& map, std::vector<std::string>& remarks) {

@@ -66,8 +66,12 @@ void Maker::Take(const Session& session, std::size_t most, Imported& imported) {
   if (course.stop_and_go) {
     TakeStops(session, course, cut, imported);
   } else {
-    for (const Block& block : cut.blocks)
-      Append(session, course, block, {block.begin, MeanOf(course.reference, block)}, imported);
+    const bool may_come = one_place && session.has_clock && !linear_;
+    const std::size_t on_way = may_come ? RowsOnTheWay(session.value.at(bench_.compared->shown), units::turn) : 0;
+    if (on_way > 0) tally.left_out.push_back({on_way, "rows at the beginning, on the way to the only place"});
+    for (const Block& block : cut.blocks) {
+      if (block.begin >= on_way) Append(session, course, block, {block.begin, MeanOf(course.reference, block)}, imported);
+    }
   }
   ++setup_;
   first_pass_ = last_pass_ + 1;

@@ -69,4 +69,18 @@ std::vector<Rest> RestsOf(const Course& course, const std::vector<double>& shown
   return rests;
 }
 
+std::size_t RowsOnTheWay(std::vector<double> shown, double turn_rad) {
+  constexpr double kShareOfTurn = 0.05, kTimesLater = 3.0;
+  const std::size_t half = shown.size() / 2;
+  Unwrap(turn_rad, shown);
+  const double place = MedianOf({shown.begin() + static_cast<std::ptrdiff_t>(half), shown.end()});
+  std::vector<double> off;
+  for (const double x : shown) off.push_back(std::abs(x - place));
+  const double later = *std::max_element(off.begin() + static_cast<std::ptrdiff_t>(half), off.end());
+  std::size_t rows = 0;
+  if (off.front() < std::max(kShareOfTurn * turn_rad, kTimesLater * later)) return rows;
+  while (rows < half && off[rows] > later) ++rows;
+  return rows;
+}
+
 }  // namespace twinbench::imports

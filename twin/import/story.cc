@@ -23,7 +23,7 @@ std::string CourseText(const Joined& joined, const Tally& tally) {
   const auto unit = [&](double rad) { return InUnit(rad, joined.linear, joined.turn_m); };
   std::string text =
       tally.low == tally.high
-          ? fmt::format("the reference stands at {}, reached from both sides", unit(tally.low))
+          ? fmt::format("the reference stands at {}{}", unit(tally.low), joined.sessions[0].has_clock ? "" : ", reached from both sides")
           : fmt::format("the reference goes from {} to {} ({:.4g} turns)", unit(tally.low), unit(tally.high), (tally.high - tally.low) / units::turn);
   text += fmt::format(", {} reversals, {} fly-backs, {} rests", tally.reversals, tally.fly_backs, tally.rests);
   if (tally.fastest > 0.0)
