@@ -133,6 +133,22 @@ TEST(Name, TellsTwoOrdersOfOneEffectAsTwoCauses) {
   }
 }
 
+TEST(NullCalibration, IsKeptForRunsOfNearlyTheSameNoiseAndOfNoOtherSizes) {
+  const SearchCase c(1);
+  const auto key = [](LinearRun run, double noise, std::vector<Family> families) {
+    run.sigma *= noise;
+    return DesignKey(run, families, 1000);
+  };
+  const std::string kept = key(c.run, 1.0, c.families);
+  EXPECT_EQ(key(c.run, 1.02, c.families), kept);
+  EXPECT_NE(key(c.run, 3.0, c.families), kept);
+  std::vector<Family> larger = c.families, finer = c.families;
+  larger.back().amplitudes.front().prior_sd *= 10.0;
+  finer.back().grid *= 2;
+  EXPECT_NE(key(c.run, 1.0, larger), kept);
+  EXPECT_NE(key(c.run, 1.0, finer), kept);
+}
+
 TEST(NullCalibration, ExtendsItsTailBeyondTheSimulatedRuns) {
   NullCalibration null;
   for (int k = 0; k < 1000; ++k) null.sorted.push_back(-2.0 * std::log(1.0 - (k + 0.5) / 1000.0));  // mean excess 2

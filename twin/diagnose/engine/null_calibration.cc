@@ -76,10 +76,25 @@ int RunsOf(Eigen::Index rows, int runs) {
   return std::min(runs, std::max(kFewest, static_cast<int>(runs * kLong / rows)));
 }
 
-/// A statistic knows what sizes were thought of, in units of the noise; half a class is less than its scatter.
-std::string SizeClass(double size) {
+/// log of the sizes that are thought of, in units of the noise.
+std::vector<double> LogSizes(const LinearRun& run, const std::vector<Family>& families) {
+  std::vector<double> logs;
+  for (const Family& f : families) {
+    for (const Amplitude& a : f.amplitudes) {
+      if (std::isfinite(a.prior_sd) && a.prior_sd > 0.0) logs.push_back(std::log(a.prior_sd / run.sigma.mean()));
+    }
+  }
+  return logs;
+}
+
+/// A statistic knows those sizes: half a class is less than its scatter. They are told by their mean and by how they differ
+/// from it, so that two runs of nearly the same noise have nearly always one key.
+void AddSizes(const LinearRun& run, const std::vector<Family>& families, Hash& hash) {
   constexpr double kPerE = 2.0;
-  return fmt::format("{}", std::lround(kPerE * std::log(size)));
+  const std::vector<double> logs = LogSizes(run, families);
+  const double mean = std::accumulate(logs.begin(), logs.end(), 0.0) / static_cast<double>(std::max<std::size_t>(1, logs.size()));
+  hash.Add(fmt::format("{}", std::lround(kPerE * mean)));
+  for (const double size : logs) hash.Add(fmt::format("{}", std::lround(kPerE * (size - mean))));
 }
 
 }  // namespace
@@ -143,8 +158,8 @@ std::string DesignKey(const LinearRun& run, const std::vector<Family>& families,
   }
   for (const Family& f : families) {
     hash.Add(fmt::format("{} {} {} {}", f.effect, f.where, f.amplitudes.size(), f.grid));
-    for (const Amplitude& a : f.amplitudes) hash.Add(SizeClass(a.prior_sd / run.sigma.mean()));
   }
+  AddSizes(run, families, hash);
   return fmt::format("{:016x}", hash.value);
 }
 
