@@ -143,8 +143,8 @@ TEST(NullCalibration, IsKeptForRunsOfNearlyTheSameNoiseAndOfNoOtherSizes) {
   EXPECT_EQ(key(c.run, 1.02, c.families), kept);
   EXPECT_NE(key(c.run, 3.0, c.families), kept);
   std::vector<Family> larger = c.families, finer = c.families;
-  larger.back().amplitudes.front().prior_sd *= 10.0;
-  finer.back().grid *= 2;
+  larger.back().amplitudes.front().prior_sd *= 100.0;
+  finer.back().grid *= 20;
   EXPECT_NE(key(c.run, 1.0, larger), kept);
   EXPECT_NE(key(c.run, 1.0, finer), kept);
 }

@@ -94,6 +94,7 @@ class Traces {
 /// The size that is fitted is that of the plausible shape with the same trace.
 void TellByTrace(const Traces& traces, const Catalogue& catalogue, Family& family) {
   const std::string size = family.amplitudes.front().name;
+  family.size_is_of_trace = true;
   family.parameters = [=, effect = family.effect, shapes = family.shapes](
                           const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
     Eigen::VectorXd slopes = Eigen::VectorXd::Constant(1, traces.ScaleAt(shape));

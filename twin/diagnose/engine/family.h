@@ -85,6 +85,8 @@ struct Family {
   bool goes_by_time = false;
   /// So many columns in time that they follow nearly anything: what has a form is tried first.
   bool takes_any_course = false;
+  /// The size that is fitted is that of the trace which the cause leaves, whatever its shape.
+  bool size_is_of_trace = false;
 
   /// Describes a fitted member of an unknown family in the grammar of docs/diagnosis.md.
   std::function<std::string(int grid_point, const Eigen::VectorXd& amplitudes)> describe;

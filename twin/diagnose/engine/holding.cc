@@ -48,6 +48,7 @@ bool IsThere(const Family& family, const Term& term, const Beside& beside) {
   if (family.kind != Kind::kNamed || !family.at || family.amplitudes.size() != 1) return true;
   const Explained alone = ExplainedBy(term.columns, beside);
   if (!IsOfItsStrength(family.amplitudes.front(), alone.amplitudes[0])) return false;
+  if (family.size_is_of_trace) return true;  // size and shape may stand for each other: what they leave together is seen
   const Eigen::MatrixXd all = WithShapeSlopes(family, term.shape, term.columns, alone.amplitudes);
   const double with = ExplainedBy(all, beside).power, without = ExplainedBy(all.rightCols(term.shape.size()), beside).power;
   return with - without > Chance(beside.data.power[0] - with, beside);

@@ -87,14 +87,17 @@ std::vector<double> LogSizes(const LinearRun& run, const std::vector<Family>& fa
   return logs;
 }
 
-/// A statistic knows those sizes: half a class is less than its scatter. They are told by their mean and by how they differ
-/// from it, so that two runs of nearly the same noise have nearly always one key.
+/// A statistic knows those sizes, and among how many it looks: half a class is less than its scatter. Mean and spread tell
+/// the sizes and their sum the grids, so that two runs of nearly the same noise and times have nearly always one key.
 void AddSizes(const LinearRun& run, const std::vector<Family>& families, Hash& hash) {
   constexpr double kPerE = 2.0;
   const std::vector<double> logs = LogSizes(run, families);
-  const double mean = std::accumulate(logs.begin(), logs.end(), 0.0) / static_cast<double>(std::max<std::size_t>(1, logs.size()));
-  hash.Add(fmt::format("{}", std::lround(kPerE * mean)));
-  for (const double size : logs) hash.Add(fmt::format("{}", std::lround(kPerE * (size - mean))));
+  if (logs.empty()) return;
+  double points = 0.0;
+  for (const Family& f : families) points += f.grid;
+  const Eigen::Map<const Eigen::ArrayXd> all(logs.data(), std::ssize(logs));
+  const double spread = std::sqrt((all - all.mean()).square().mean());
+  for (const double told : {all.mean(), spread, std::log(points)}) hash.Add(fmt::format("{}", std::lround(kPerE * told)));
 }
 
 }  // namespace
@@ -157,7 +160,7 @@ std::string DesignKey(const LinearRun& run, const std::vector<Family>& families,
                          static_cast<int>(s.phase[i])));
   }
   for (const Family& f : families) {
-    hash.Add(fmt::format("{} {} {} {}", f.effect, f.where, f.amplitudes.size(), f.grid));
+    hash.Add(fmt::format("{} {} {}", f.effect, f.where, f.amplitudes.size()));
   }
   AddSizes(run, families, hash);
   return fmt::format("{:016x}", hash.value);
