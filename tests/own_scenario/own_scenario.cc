@@ -8,6 +8,7 @@
 
 #include "tests/support/angle_benches.h"
 #include "twin/benches/registry.h"
+#include "twin/core/errors.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/diagnose/diagnose.h"
 
@@ -24,25 +25,11 @@ std::string CauseOf(const diagnose::Diagnosis& d) {
 /// A flag or a word may switch off what other keys say.
 bool IsTriedAlone(const OwnKey& key) {
   const std::string value = key.settings.back().substr(key.settings.back().find('=') + 1);
-  return value == "true" || value == "false" || value.find('"') != std::string::npos;
+  return value == "true" || value == "false" || value.starts_with('"');
 }
 
-std::vector<std::string> Needed(const OwnKey& key) {
-  return {key.settings.begin(), key.settings.end() - 1};
-}
-
-/// Those that need the same beside them are tried in one run.
-std::vector<std::vector<OwnKey>> Grouped(const std::vector<OwnKey>& keys, std::size_t together) {
-  std::vector<std::vector<OwnKey>> groups;
-  for (const OwnKey& key : keys) {
-    if (key.settings.empty()) continue;
-    const auto joined = std::ranges::find_if(groups, [&](const std::vector<OwnKey>& group) {
-      return group.size() < together && !IsTriedAlone(key) && !IsTriedAlone(group.front()) &&
-             Needed(group.front()) == Needed(key);
-    });
-    (joined != groups.end() ? *joined : groups.emplace_back()).push_back(key);
-  }
-  return groups;
+std::string KeyOf(const std::string& setting) {
+  return setting.substr(0, setting.find('='));
 }
 
 OwnRun RunTogether(const OwnBench& bench, const std::vector<OwnKey>& keys) {
@@ -51,6 +38,37 @@ OwnRun RunTogether(const OwnBench& bench, const std::vector<OwnKey>& keys) {
   settings.insert(settings.end(), stated.begin(), stated.end());
   return {fmt::format("{}", fmt::join(stated, " ")), LoadScenario(ScenarioPath(bench.scenario), settings),
           static_cast<int>(keys.size())};
+}
+
+/// Neither says another value of a key than the others say, and the bench takes all of them.
+bool Joins(const OwnKey& key, std::vector<OwnKey> group, const OwnBench& bench) {
+  if (IsTriedAlone(key) || IsTriedAlone(group.front())) return false;
+  for (const OwnKey& one : group) {
+    for (const std::string& setting : one.settings) {
+      const auto same = std::ranges::find(key.settings, KeyOf(setting), KeyOf);
+      if (same != key.settings.end() && *same != setting) return false;
+    }
+  }
+  group.push_back(key);
+  try {
+    RunTogether(bench, group);
+  } catch (const InputError&) {
+    return false;
+  }
+  return true;
+}
+
+/// Those that say nothing against each other are tried in one run.
+std::vector<std::vector<OwnKey>> Grouped(const OwnBench& bench, std::size_t together) {
+  std::vector<std::vector<OwnKey>> groups;
+  for (const OwnKey& key : bench.keys) {
+    if (key.settings.empty()) continue;
+    const auto joined = std::ranges::find_if(groups, [&](const std::vector<OwnKey>& group) {
+      return group.size() < together && Joins(key, group, bench);
+    });
+    (joined != groups.end() ? *joined : groups.emplace_back()).push_back(key);
+  }
+  return groups;
 }
 
 }  // namespace
@@ -68,7 +86,7 @@ std::vector<std::string> Forgotten(const std::string& bench, const std::vector<O
 
 std::vector<OwnRun> KeyRuns(const OwnBench& bench, std::size_t together) {
   std::vector<OwnRun> runs;
-  for (const std::vector<OwnKey>& group : Grouped(bench.keys, together)) runs.push_back(RunTogether(bench, group));
+  for (const std::vector<OwnKey>& group : Grouped(bench, together)) runs.push_back(RunTogether(bench, group));
   return runs;
 }
 

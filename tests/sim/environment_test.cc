@@ -7,6 +7,8 @@
 #include "tests/sim/quiet_scenario.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
+#include "twin/core/stream.h"
+#include "twin/model/local_level.h"
 #include "twin/sim/environment.h"
 
 namespace twinbench::sim {
@@ -111,6 +113,25 @@ TEST(ThermalLengths, TheDiodeHopsToItsNextModeAsItWarms) {
   EXPECT_NEAR(wavelengths_off(0.9), 0.0, 1e-6);
   EXPECT_NEAR(wavelengths_off(1.1), 1.0, 1e-2);
   EXPECT_NEAR(wavelengths_off(4.5), 2.0, 1e-2);
+}
+
+// A room every 40 s for three hours, by a thermometer with a noise of 0.3 K.
+TEST(RoomBehindAThermometer, IsSteadyOrGoesItsWay) {
+  constexpr double kNoise_K = 0.3;
+  const struct {
+    const char* claim;
+    double drift_K_h, swing_K;
+    double most;  // error rms, of the noise
+  } rooms[] = {{"steady", 0.0, 0.0, 0.2}, {"drifts", -5.0, 0.0, 0.6}, {"swings in forty readings", 0.0, 2.0, 0.8}};
+  for (const auto& room : rooms) {
+    Stream noise(7, "thermometer");
+    const Eigen::VectorXd time_s = 40.0 * Eigen::VectorXd::LinSpaced(270, 0.0, 269.0);
+    const Eigen::VectorXd true_K =
+        room.drift_K_h / 3600.0 * time_s.array() + room.swing_K * (time_s.array() * 2.0 * units::kPi / 1600.0).sin();
+    const Eigen::VectorXd shown_K = true_K.unaryExpr([&](double K) { return K + kNoise_K * noise.Normal(); });
+    const Eigen::VectorXd error_K = model::Smoothed(time_s, shown_K, kNoise_K) - true_K;
+    EXPECT_LT(std::sqrt(error_K.squaredNorm() / 270.0), room.most * kNoise_K) << room.claim;
+  }
 }
 
 }  // namespace

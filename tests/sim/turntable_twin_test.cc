@@ -86,6 +86,10 @@ TEST(TurntableTwin, ReadsTheMeanOfItsFramesInTheirMiddleWithLessNoise) {
   // The last of twelve has eleven whole readings of 2 s before it and half its own.
   EXPECT_NEAR(ToSeconds(TurntableReadings(s).back().time - once.time), 11.5 * 2.0, 0.2)
       << "the drives look for rest by their own ticks";
+  s.environment.drift_K_h = 100.0;
+  s.environment.sensor_noise_K = 0.0;
+  const Reading warmer = TurntableReadings(s).back();
+  EXPECT_NEAR(warmer.temperature_degC, 20.0 + 100.0 * ToSeconds(warmer.time) / 3600.0, 1e-9) << "a second is 28 mK";
   s.noise_free = false;
   TurntableOf(s).turntable_procedure.positions = 360;
   TurntableOf(s).collimator.frames = 16;

@@ -96,18 +96,28 @@ void EstimateNoise(const TwinComparison& comparison, LinearRun& run) {
   }
 }
 
+/// What one draw a reading adds to the variances of rows that count as independent: readings x channels. All channels
+/// show the same draw, s s' in covariance, which is below any diagonal s_c^2 / a_c with a_c that sum to 1 (Cauchy and
+/// Schwarz). The more of a channel's scatter the draw is, the larger its a_c, so that others lose little.
+Eigen::ArrayXXd VarianceOfDraw(const Eigen::ArrayXXd& sd, const Eigen::ArrayXXd& variance) {
+  const Eigen::ArrayXXd all = (sd.square() + variance).sqrt();
+  const Eigen::ArrayXXd share = (all > 0.0).select(sd / all, 0.0);
+  return (sd * all).colwise() * share.rowwise().sum();
+}
+
 /// What is drawn anew at each reading, beside the noise of the channels.
 void AddScatter(const Compared& c, const Scenario& scenario, const TwinComparison& comparison, LinearRun& run) {
   if (!comparison.scatter) return;
-  Eigen::VectorXd variance = run.sigma.cwiseAbs2();
+  const Eigen::Index channels = run.Channels();
+  Eigen::ArrayXXd variance = run.sigma.cwiseAbs2().reshaped(channels, run.sigma.size() / channels).transpose();
   for (const auto& [point, sd, is_at] : comparison.scatter(scenario)) {
     if (!(sd > 0.0)) continue;
-    Eigen::MatrixXd shown = sd * c.twin.Slope(point, {});
+    Eigen::ArrayXXd shown = (sd * c.twin.Slope(point, {})).cwiseAbs();
     for (Eigen::Index i = 0; is_at && i < shown.rows(); ++i)
       if (!is_at(c.used[static_cast<std::size_t>(i)])) shown.row(i).setZero();
-    variance += ByRow(shown).cwiseAbs2();
+    variance += VarianceOfDraw(shown, variance);
   }
-  run.sigma = variance.cwiseSqrt();
+  run.sigma = ByRow(variance.sqrt().matrix());
 }
 
 constexpr double kNoWeight = 1e5;  // times the noise: of a channel that a reading has not

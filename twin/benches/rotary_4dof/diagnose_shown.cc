@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -119,9 +121,15 @@ void StateNoise(const std::vector<Reading>& used, const Scenario& scenario,
       (BlockNoise_m(used, scenario, geometry).cwiseAbs2() + steps_m.cwiseAbs2() / 12.0).cwiseSqrt();
   comparison.rounding = steps_m.maxCoeff();
   comparison.noise_of = [noise_m](const Scenario&, const Reading&) -> Eigen::VectorXd { return noise_m; };
-  comparison.scatter = [sweep_rad = geometry.autocollimator_noise_rad](const Scenario&) {
-    return std::vector<diagnose::TwinComparison::Scatter>{{"mount.ez", sweep_rad, IsInCalibration},
-                                                          {"mount.ex", sweep_rad, IsInCalibration}};
+  comparison.scatter = [sweep_rad = geometry.autocollimator_noise_rad](const Scenario& believed) {
+    std::vector<diagnose::TwinComparison::Scatter> scatter = {{"mount.ez", sweep_rad, IsInCalibration},
+                                                              {"mount.ex", sweep_rad, IsInCalibration}};
+    const RotarySettings& own = RotaryOf(believed);
+    for (std::size_t c = 0; c < kComponents; ++c) {
+      scatter.push_back({fmt::format("target.{}", kComponentNames[c]), own.target.repeatability_sd[c]});
+      scatter.push_back({fmt::format("reference.{}", kComponentNames[c]), own.reference.repeatability_sd[c]});
+    }
+    return scatter;
   };
 }
 

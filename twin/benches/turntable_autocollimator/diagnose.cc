@@ -9,6 +9,7 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/at.h"
 #include "twin/diagnose/products.h"
+#include "twin/model/local_level.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::benches::turntable {
@@ -32,7 +33,7 @@ int InTurn(double angle_rad) {
 }
 
 /// What a face would have shown at its nominal angle: where a polygon is nulled the encoder, with its scatter,
-/// shows what the autocollimator does not, and what is regressed on must be without it.
+/// shows what the autocollimator does not, on a crosshair that is rolled, and what is regressed on must be without it.
 std::vector<Reading> AtNominal(std::vector<Reading> readings, const TurntableSettings& own) {
   if (!own.HasPolygon()) return readings;
   for (Reading& r : readings) {
@@ -40,7 +41,9 @@ std::vector<Reading> AtNominal(std::vector<Reading> readings, const TurntableSet
     const int setup = std::clamp(r.setup, 0, own.turntable_procedure.SetUps() - 1);
     const int face = static_cast<int>(std::lround(-r.reference_rad / own.Pitch_rad()));
     const double nominal_rad = own.FaceAngle_rad(setup, face);
-    r.autocollimator_yaw_rad -= r.target_rad - nominal_rad;
+    const double beside_rad = r.target_rad - nominal_rad;
+    r.autocollimator_yaw_rad -= beside_rad * std::cos(own.collimator.roll_rad);
+    r.autocollimator_tilt_rad += beside_rad * std::sin(own.collimator.roll_rad);
     r.target_rad = nominal_rad;
   }
   return readings;
@@ -115,19 +118,24 @@ double Deviation2(const Eigen::VectorXd& values) {
 }
 
 /// A zero that follows a temperature is told from the thermometer's, whose noise looks like a wrong coefficient: by
-/// the share that noise has of what was logged (errors in variables).
+/// the share that noise has of what was logged (errors in variables). Its noise itself the zero does not follow.
 void AddThermometer(const std::vector<Reading>& readings, const Scenario& scenario, TwinComparison& comparison) {
+  const double noise_K = scenario.environment.sensor_noise_K;
   const auto logged_K = [reference_degC = scenario.environment.reference_degC](const std::vector<Reading>& used) {
     const Eigen::VectorXd above_K = model::Above_K(model::CourseOf(used), reference_degC);
-    return Eigen::MatrixXd(above_K.array() - above_K.mean());
+    return Eigen::VectorXd(above_K.array() - above_K.mean());
   };
-  const double noise2 = std::pow(scenario.environment.sensor_noise_K, 2);
-  const double logged2 = Deviation2(logged_K(readings).col(0));
+  const auto smooth_K = [=](const std::vector<Reading>& used) -> Eigen::MatrixXd {
+    return model::Smoothed(model::CourseOf(used).time_s, logged_K(used), noise_K);
+  };
+  const double logged2 = Deviation2(logged_K(readings));
   const bool follows = TurntableOf(scenario).collimator.x_per_kelvin_rad != 0.0 ||
                        TurntableOf(scenario).collimator.y_per_kelvin_rad != 0.0;
-  if (follows && noise2 > 0.0 && logged2 > 0.0)
-    comparison.free_courses.push_back(
-        {"room.temperature", logged_K, "the thermometer", std::sqrt(std::min(1.0, noise2 / logged2))});
+  if (!follows || !(noise_K > 0.0) || !(logged2 > 0.0)) return;
+  const double share = std::min(1.0, std::pow(noise_K, 2) / logged2);
+  comparison.free_courses.push_back({"room.temperature", smooth_K, "the room", std::sqrt(share)});
+  const auto rough_K = [=](const std::vector<Reading>& used) -> Eigen::MatrixXd { return logged_K(used) - smooth_K(used); };
+  comparison.free_courses.push_back({"room.temperature", rough_K, "the thermometer's noise", 1.0});
 }
 
 /// What readings may absorb without anything being wrong: errors of the turntable at every position; of each
@@ -151,12 +159,11 @@ void LeaveFree(const std::vector<Reading>& readings, const Scenario& scenario, T
 
 /// What is drawn anew at a stop.
 std::vector<TwinComparison::Scatter> ScatterOf(const Scenario& scenario) {
-  constexpr std::array<const char*, kComponents> kNames = {"ex", "ey", "ez", "dx", "dy", "dz"};
   const TurntableSettings& own = TurntableOf(scenario);
   std::vector<TwinComparison::Scatter> scatter = {{"room.temperature", scenario.environment.sensor_noise_K}};
   for (std::size_t c = 0; c < kComponents; ++c) {
-    scatter.push_back({std::string("turntable.") + kNames[c], own.turntable.repeatability_sd[c]});
-    scatter.push_back({std::string("multitooth.") + kNames[c], own.multitooth_table.repeatability_sd[c]});
+    scatter.push_back({std::string("turntable.") + kComponentNames[c], own.turntable.repeatability_sd[c]});
+    scatter.push_back({std::string("multitooth.") + kComponentNames[c], own.multitooth_table.repeatability_sd[c]});
   }
   for (const EffectSettings& e : scenario.effects)
     if (e.name == "multitooth_seating") scatter.push_back({"multitooth.ez", e.parameters.at("scatter")});

@@ -55,7 +55,7 @@ struct TurntableTwin::Impl : Clock, MachineController, InstrumentSet, MachineFix
   Reading Read() override {
     Reading sample = Sample(world->Look());
     sample.time = world->ReadAt();
-    sample.temperature_degC = world->environment().Measure_degC(Now());
+    sample.temperature_degC = world->environment().Measure_degC(sample.time);
     return sample;
   }
   Reading Look() override { return Sample(world->LookOnTheWay()); }
