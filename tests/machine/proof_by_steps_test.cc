@@ -5,6 +5,7 @@
 #include "tests/machine/benches.h"
 #include "tests/machine/driven_twin.h"
 #include "tests/support/restless_bench.h"
+#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/bench_format.h"
@@ -253,6 +254,33 @@ TEST(ProofBySteps, InAStabilityTestTablesGoAStepBeforeItsFirstReadingAndBehindIt
   constexpr int kBefore = 3;  // blocks
   EXPECT_NE(EndOfTables(kBefore + 3, {}, {0.0, 0.0}, kept, "stability"), "");
   EXPECT_EQ(kept, 5u);
+}
+
+TEST(ProofByClosing, AZeroThatJumpsBetweenTwoPassesEndsTheMountingOnEveryBench) {
+  constexpr int kForGood = 1000;
+  Scenario stops = ShortStops();
+  EncoderOf(stops).device.noise_known = true, EncoderOf(stops).device.noise_rad = 1e-4 * units::deg;
+  struct Case {
+    Scenario scenario;
+    std::string column;
+    double jump;
+    int turned;        // first reading of the pass back
+    std::size_t last;  // of that pass
+  };
+  for (const auto& [scenario, column, jump, turned, last] :
+       {Case{ShortTurntable(), "autocollimator_x_arcsec", 10.0 * units::arcsec, 5 + 6, 5 + 11},
+        Case{ShortPolygon(), "autocollimator_x_arcsec", 10.0 * units::arcsec, 4, 7},
+        Case{stops, "measured_deg", 0.02 * units::deg, 12, 23}}) {
+    const Changes jumps = [&, &in = scenario, &name = column, &by = jump](Reading& r, const Reading&) { In(r, in, name) += by; };
+    EXPECT_EQ(RunWith(scenario, 0, 0, {}).fault, "") << scenario.bench;
+    const RunEnd run = RunWith(scenario, turned, kForGood, jumps);
+    EXPECT_EQ(run.fault, "implausible") << scenario.bench;
+    EXPECT_EQ(run.kept, last) << scenario.bench;
+  }
+  std::size_t kept = 0;
+  const ChangesVolts jumps = [](Blocks& c, const Blocks&) { c[0].mean_V += 0.5, c[2].mean_V += 0.5; };
+  EXPECT_EQ(EndOfTables(3 * 6, jumps, {}, kept), "implausible");
+  EXPECT_EQ(kept, 11u);
 }
 
 }  // namespace

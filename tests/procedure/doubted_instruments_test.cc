@@ -102,36 +102,6 @@ TEST(RequireGoesAlong, WhatFollowsGoesTheWayThatItShouldWithinHalfOfItAndARanged
   EXPECT_THROW(RequireGoesAlong({claim}, OfHob(10.1, 213.0), before), DeviceFault);
 }
 
-/// Eight positions there and back, of a curve and a reversal of 2 um that is not quite the same everywhere; x jumps before the n-th of
-/// all. How many pass.
-int PassUntilNoticed(int n, double jump_rad) {
-  const auto& columns = FormatOf("turntable_autocollimator").columns;
-  const ClaimedColumn claim{*std::ranges::find(columns, "autocollimator_x_arcsec", &ReadingColumn::name), kNoise, 0.0, {}, false, true};
-  std::vector<Reading> kept;
-  for (int k = 0; k < 16; ++k) {
-    Reading r;
-    r.reading = k, r.pass = k / 8, r.position = k < 8 ? k : 15 - k, r.phase = Phase::kFullCircle;
-    r.autocollimator_yaw_rad = 3e-5 * std::sin(r.position) + r.pass * (2e-6 + 2e-7 * std::cos(r.position)) + (k >= n ? jump_rad : 0.0);
-    try {
-      RequireNoJump({claim}, r, kept);
-    } catch (const DeviceFault&) {
-      return k;
-    }
-    kept.push_back(r);
-  }
-  return 16;
-}
-
-TEST(RequireNoJump, WhatPassesDifferByIsTheSameBeforeAndBehindEachReading) {
-  constexpr double kJump = 1e-5;
-  EXPECT_EQ(PassUntilNoticed(16, kJump), 16);
-  EXPECT_EQ(PassUntilNoticed(8, kJump), 16);  // between the passes: it may be a reversal
-  EXPECT_EQ(PassUntilNoticed(4, kJump), 13);  // in the first: behind two places of the second on either side
-  EXPECT_EQ(PassUntilNoticed(10, kJump), 11);
-  EXPECT_EQ(PassUntilNoticed(10, -kJump), 11);
-  EXPECT_EQ(PassUntilNoticed(4, 1e-6), 16);  // 10 times the noise
-}
-
 TEST(RequireAnother, ASampleAtTheLineOfTheOneBeforeIsNoneOfItsOwnWhateverElseItShows) {
   EXPECT_NO_THROW(RequireAnother(OfHob(12.0, 200.0), OfHob(10.0, 200.0), "hob_transmission"));
   EXPECT_THROW(RequireAnother(OfHob(10.0, 200.001), OfHob(10.0, 200.0), "hob_transmission"), DeviceFault);

@@ -20,7 +20,7 @@
 #include "twin/benches/proof_by_steps.h"
 #include "twin/benches/registry.h"
 #include "twin/core/bench_format.h"
-#include "twin/procedure/doubted_instruments.h"
+#include "twin/procedure/jumps.h"
 #include "twin/procedure/machine_options.h"
 #include "twin/procedure/machine_watch.h"
 #include "twin/procedure/watched_moves.h"

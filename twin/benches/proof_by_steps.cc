@@ -8,6 +8,7 @@
 #include "twin/benches/expected.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/names.h"
+#include "twin/benches/proof_by_closing.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/bench_format.h"
 #include "twin/procedure/step_proof.h"
@@ -86,8 +87,8 @@ std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scen
   // Of a comparison from reading to reading either device goes with the other.
   const bool is_compared = FormatOf(scenario.bench).compared.has_value();
   return [&bench, &scenario, &options, step, proof, is_compared, proved = std::optional<int>(),
-          columns = MovedByAxes(scenario)](const Reading& reading) mutable {
-    if (is_compared && proved == reading.setup) return;
+          columns = MovedByAxes(scenario), close = ProofByClosing(bench, scenario, options)](const Reading& reading) mutable {
+    if (is_compared && proved == reading.setup) return close(reading);
     std::vector<double> by = step;
     if (Reading here = reading; NumberIn(here, scenario, columns[0].column) > 0.0)
       for (double& way : by) way = -way;  // towards the middle of its range
@@ -103,29 +104,32 @@ std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scen
     }
     proof->Require(in_step);
     proved = reading.setup;
+    close(reading);
   };
 }
 
 std::function<void(const Reading&)> ProofBySteps(RotaryBench& bench, const Scenario& scenario, const procedure::Options& options) {
   const auto wires = std::make_shared<procedure::StepProof>(true), angles = std::make_shared<procedure::StepProof>(false);
   const RotarySettings& own = RotaryOf(scenario);
-  return [&bench, &options, &own, wires, angles, columns = MovedByAxes(scenario)](const Reading& reading) {
+  const auto show = [&bench, &own](const Reading& at) { return ShownNow(bench, at, own.adc.samples); };
+  return [&bench, &options, &own, wires, angles, show, columns = MovedByAxes(scenario),
+          close = ProofByClosing(bench, scenario, options, show)](const Reading& reading) {
     if (reading.status != ReadingStatus::kOk) return;
-    const Reading here = reading.n_samples > 0 ? reading : ShownNow(bench, reading, own.adc.samples);
+    const Reading here = reading.n_samples > 0 ? reading : show(reading);
     Reading unit_yaw, at_zero, beside;
     unit_yaw.target_rad = 1.0, unit_yaw.reference_rad = at_zero.target_rad = at_zero.reference_rad = 0.0;
     const auto V_rad = [&](const Expected& column) { return column.by_axes(unit_yaw) - column.by_axes(at_zero); };
     const double yaw = ShowsAngles(here) ? here.autocollimator_yaw_rad : here.mean_V[0] * V_rad(columns[0]);
     const double towards = yaw > 0.0 ? -1.0 : 1.0;  // the middle of its range
     double yaw_rad = towards * InSteps(kShareOfVolts * own.adc.range_V / std::abs(V_rad(columns[0])));
-    procedure::LookBeside(bench, yaw_rad, options, [&] { beside = ShownNow(bench, here, own.adc.samples); });
-    const Reading back = ShownNow(bench, here, own.adc.samples);
+    procedure::LookBeside(bench, yaw_rad, options, [&] { beside = show(here); });
+    const Reading back = show(here);
     std::vector<ColumnInStep> in_step;
     for (std::size_t c = 0; c < kChannels; ++c)
       in_step.push_back({columns[c].column, V_rad(columns[c]) * yaw_rad, beside.mean_V[c] - here.mean_V[c],
                          here.std_V[c] / std::sqrt(here.n_samples) + 0.3 * own.amplifier.hum_V, true, back.mean_V[c] - here.mean_V[c]});
     wires->Require(in_step);
-    if (!ShowsAngles(here)) return;
+    if (!ShowsAngles(here)) return close(here);
     const auto angle = [&](const char* column, double should_rad, double Reading::*shown_rad) {
       return ColumnInStep{column, should_rad, beside.*shown_rad - here.*shown_rad, own.autocollimator.noise_rad, true, back.*shown_rad - here.*shown_rad};
     };

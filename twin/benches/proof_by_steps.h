@@ -17,7 +17,9 @@ namespace twinbench {
 /// freeform_five_axis: A and B go until the spot has moved by two fifths of its size, each coordinate its own way. encoder_comparison:
 /// the shaft goes 5 deg beside the first reading of a mounting, from where on reference, device and axis are compared with each other.
 ///
-/// @param bench, scenario  Must outlive what is returned.
+/// And what ProofByClosing asks.
+///
+/// @param bench, scenario, options  Must outlive what is returned.
 std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scenario& scenario, const procedure::MachineOptions& options);
 std::function<void(const Reading&)> ProofBySteps(RotaryBench& bench, const Scenario& scenario, const procedure::Options& options);
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "twin/core/device_fault.h"
 
@@ -14,13 +13,7 @@ namespace {
 constexpr int kAgain = 16;  // readings that are all the same: of steps so coarse that noise hides in them, one in many is another
 constexpr int kSamplesTheSame = 64;
 constexpr double kAgree = 10.0;                    // times the noise of a difference
-constexpr double kAsBefore = 30.0;                 // the same, of readings between which axes moved and time went by
 constexpr double kFollows_rad = 1.0 * units::deg;  // more than the steps of any encoder
-
-double ValueOf(const ClaimedColumn& claim, const Reading& reading) {
-  Reading copy = reading;
-  return claim.column.number(copy);
-}
 
 bool IsAngle(const ClaimedColumn& claim) {
   return claim.follows && claim.is_angle;
@@ -51,42 +44,17 @@ std::string Text(const ClaimedColumn& claim, const Reading& reading) {
   throw DeviceFault(FaultKind::kStuck, "instruments", what);
 }
 
-/// By what a column differs between two passes, one entry a place that both have, in the order of the later pass.
-struct Repeats {
-  std::vector<double> differ;
-  std::vector<int> reading;  // of the earlier pass
-};
-
-Repeats RepeatsOf(const ClaimedColumn& claim, const Reading& reading, const std::vector<Reading>& kept) {
-  const auto is_of = [&](const Reading& r, int pass) { return r.setup == reading.setup && r.phase == reading.phase && r.pass == pass; };
-  std::map<int, const Reading*> before;
-  Repeats repeats;
-  const auto add = [&](const Reading& again) {
-    const auto first = before.find(again.position);
-    if (first == before.end()) return;
-    repeats.differ.push_back(ValueOf(claim, again) - ValueOf(claim, *first->second));
-    repeats.reading.push_back(first->second->reading);
-  };
-  for (const Reading& r : kept)
-    if (is_of(r, reading.pass - 1)) before[r.position] = &r;
-  for (const Reading& r : kept)
-    if (is_of(r, reading.pass)) add(r);
-  add(reading);
-  return repeats;
-}
-
-struct Level {
-  double mean = 0.0, squares = 0.0;  // about the mean
-};
-
-Level LevelOf(const std::vector<double>& values, std::size_t first, std::size_t end) {
-  Level level;
-  for (std::size_t k = first; k < end; ++k) level.mean += values[k] / static_cast<double>(end - first);
-  for (std::size_t k = first; k < end; ++k) level.squares += std::pow(values[k] - level.mean, 2);
-  return level;
-}
-
 }  // namespace
+
+double ValueOf(const ClaimedColumn& claim, const Reading& reading) {
+  Reading copy = reading;
+  return claim.column.number(copy);
+}
+
+double AllowedAtPlace(const ClaimedColumn& claim) {
+  constexpr double kTimesNoise = 30.0;  // of a difference of readings between which axes moved and time went by
+  return kTimesNoise * std::sqrt(2.0) * claim.noise + claim.repeats;
+}
 
 void RequireGoesAlong(const std::vector<ClaimedColumn>& claims, const Reading& reading, const Reading& before) {
   constexpr double kShareOfAngle = 0.5, kShareOfPlace = 0.1, kShareOfRange = 0.01;
@@ -107,30 +75,10 @@ void RequireGoesAlong(const std::vector<ClaimedColumn>& claims, const Reading& r
   }
 }
 
-void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& reading, const std::vector<Reading>& kept) {
-  constexpr std::size_t kFewest = 2;  // on either side
-  constexpr double kTimesScatter = 8.0;
-  for (const ClaimedColumn& claim : claims) {
-    const Repeats repeats = RepeatsOf(claim, reading, kept);
-    const auto& [differ, number] = repeats;
-    for (std::size_t k = kFewest; k + kFewest <= differ.size() && claim.is_of_place && claim.noise > 0.0; ++k) {
-      const Level one = LevelOf(differ, 0, k), other = LevelOf(differ, k, differ.size());
-      const double jump = std::abs(other.mean - one.mean);
-      const double scatter = std::sqrt((one.squares + other.squares) / static_cast<double>(differ.size() - 2));
-      if (!(jump > std::max(kAsBefore * std::sqrt(2.0) * claim.noise, kTimesScatter * scatter))) continue;
-      throw DeviceFault(FaultKind::kImplausible, "instruments",
-                        fmt::format("show {} by {:.4g} (SI) otherwise against the pass before at places up to that of reading {} than at those "
-                                    "from reading {} on: a zero, a mirror or the mounting jumped, in this pass or the one before; measure mounting "
-                                    "{} again",
-                                    claim.column.name, jump, number[k - 1], number[k], reading.setup));
-    }
-  }
-}
-
 void RequireAsBefore(const std::vector<ClaimedColumn>& claims, const Reading& again, const Reading& before) {
   for (const ClaimedColumn& claim : claims) {
     const double was = ValueOf(claim, before), off = std::abs(ValueOf(claim, again) - was);
-    if (!(claim.noise > 0.0) || !std::isfinite(was) || off <= kAsBefore * std::sqrt(2.0) * claim.noise) continue;
+    if (!(claim.noise > 0.0) || !std::isfinite(was) || off <= AllowedAtPlace(claim)) continue;
     throw DeviceFault(FaultKind::kImplausible, "instruments",
                       fmt::format("showed {} at reading {} and show {} at its place behind the fault: is a zero, a unit or the mounting "
                                   "another than before?",

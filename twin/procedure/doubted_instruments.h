@@ -17,7 +17,13 @@ struct ClaimedColumn {
   std::function<double(const Reading&)> follows = {};
   bool is_angle = false;  // follows: by what is shown with it, whole turns apart
   bool is_of_place = false;  // at a place it is the same in every pass, but for noise and what is the same everywhere
+  double repeats = 0.0;      // by how much coming to a place again may change it, beyond noise
 };
+
+/// What it shows in a reading [SI].
+double ValueOf(const ClaimedColumn& claim, const Reading& reading);
+/// By how much it may differ between two readings of a place.
+double AllowedAtPlace(const ClaimedColumn& claim);
 
 /// Of a reading and the one before in its set-up.
 /// @throws DeviceFault kMoved where from one to the next a column did not go the way that it should by angles, within half of it, or by
@@ -27,13 +33,6 @@ void RequireGoesAlong(const std::vector<ClaimedColumn>& claims, const Reading& r
 /// Of a reading that is taken again at its place.
 /// @throws DeviceFault kImplausible where a column shows something else than before, by thirty times the noise, or nothing.
 void RequireAsBefore(const std::vector<ClaimedColumn>& claims, const Reading& again, const Reading& before);
-
-/// Of a reading at a place where the pass before in its set-up has one, too, and all between them.
-/// @param kept  All before it.
-/// @throws DeviceFault kImplausible where what a column shows at places that were come to behind some reading, in either pass, differs
-///         from pass to pass by another amount than at those before it: a zero, a mirror or a mounting has jumped. What differs by
-///         the same everywhere may be the reversal of what is measured.
-void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& reading, const std::vector<Reading>& kept);
 
 /// Instruments of a real bench, which are not believed at once. Every reading at rest is taken twice at its place, and both must agree
 /// within ten times the noise: those that answer late by one show the place before, and a spike comes alone. One that is the reading

@@ -30,6 +30,12 @@ void GoStraight(MachineBench& bench, const std::vector<double>& to, const Machin
   Watch(bench, takes_s, where, options);
 }
 
+std::vector<double> CommandedOf(MachineBench& bench) {
+  std::vector<double> at;
+  for (const AxisState& axis : bench.machine.State()) at.push_back(std::isnan(axis.commanded) ? axis.encoder : axis.commanded);
+  return at;
+}
+
 /// What the column should do that does most, with its sign; 0: none is of a size.
 double LargestStep(const std::vector<ColumnInStep>& columns) {
   double largest = 0.0;
@@ -71,8 +77,8 @@ void StepProof::Require(std::vector<ColumnInStep> columns) {
 }
 
 Reading ShownBeside(MachineBench& bench, std::vector<double>& by, const MachineOptions& options) {
-  std::vector<double> here, there;
-  for (const AxisState& axis : bench.machine.State()) here.push_back(std::isnan(axis.commanded) ? axis.encoder : axis.commanded);
+  const std::vector<double> here = CommandedOf(bench);
+  std::vector<double> there;
   for (std::size_t k = 0; k < here.size(); ++k) {
     const AxisLimits limits = LimitsOf(options.axes, k);
     if (here[k] + by[k] < limits.lower || here[k] + by[k] > limits.upper) by[k] = -by[k];
@@ -82,6 +88,24 @@ Reading ShownBeside(MachineBench& bench, std::vector<double>& by, const MachineO
   const Reading shown = bench.instruments.Look();
   GoStraight(bench, here, options);
   return shown;
+}
+
+Reading ShownAgain(MachineBench& bench, double away_rad, Duration dwell, const MachineOptions& options) {
+  const std::vector<double> here = CommandedOf(bench);
+  std::vector<double> away = here;
+  away[0] += away_rad;
+  GoStraight(bench, away, options);
+  GoStraight(bench, here, options);
+  WaitFor(bench, dwell, options);
+  return bench.instruments.Look();
+}
+
+void ComeAgain(RotaryBench& bench, double away_rad, Duration dwell, const Options& options) {
+  const std::array<double, 2> here_rad = {bench.target.State().commanded_rad, bench.reference.State().commanded_rad};
+  const std::array<double, 2> there_rad = {here_rad[0] + away_rad, here_rad[1] - away_rad};
+  MoveBoth(bench, there_rad[0], there_rad[1], options, here_rad);
+  MoveBoth(bench, here_rad[0], here_rad[1], options, there_rad);
+  WaitFor(bench, dwell, options);
 }
 
 void LookBeside(RotaryBench& bench, double& yaw_rad, const Options& options, const std::function<void()>& look) {

@@ -40,7 +40,12 @@ class StepProof {
 /// @param by  One entry an axis [m or rad]; becomes the way that was gone.
 /// @throws what Watch throws.
 Reading ShownBeside(MachineBench& bench, std::vector<double>& by, const MachineOptions& options);
-/// The same of two tables on each other: the target goes twice as far and the reference back by half of that, so that one which
+/// Goes away by so much of the first axis [rad] and comes back, which is how it shows what it shows when it comes from there.
+Reading ShownAgain(MachineBench& bench, double away_rad, Duration dwell, const MachineOptions& options);
+/// Two tables on each other do, the reference the other way round.
+void ComeAgain(RotaryBench& bench, double away_rad, Duration dwell, const Options& options);
+
+/// ShownBeside of two tables on each other: the target goes twice as far and the reference back by half of that, so that one which
 /// stands, or goes against its command, changes the yaw by no less than all of it.
 /// @param yaw_rad  Of what stands on both.
 /// @param look     Called beside where they stand.

@@ -1,0 +1,91 @@
+#include "twin/benches/proof_by_closing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/expected.h"
+#include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
+#include "twin/core/bench_format.h"
+#include "twin/procedure/jumps.h"
+#include "twin/procedure/step_proof.h"
+
+namespace twinbench {
+namespace {
+
+using plausible::Expected;
+using procedure::ClaimedColumn;
+
+Duration DwellOf(const Reading& reading) {
+  return std::isfinite(reading.dwell_s) ? FromSeconds(reading.dwell_s) : Duration(0);
+}
+
+/// By which a pass comes to its first place from behind; 0: it does not.
+double RunUp_rad(const Scenario& scenario) {
+  if (scenario.bench == kEncoderBench) return 0.5 * units::turn / EncoderOf(scenario).encoder_procedure.stops;
+  if (scenario.bench != kTurntableBench) return 0.0;
+  const TurntableProcedureSettings& s = TurntableOf(scenario).turntable_procedure;
+  return s.run_up_steps * units::turn / s.positions;
+}
+
+ClaimedColumn ClaimOf(const Expected& expected, const Scenario& scenario) {
+  const auto column = std::ranges::find(FormatOf(scenario.bench).columns, expected.column, &ReadingColumn::name);
+  return {.column = *column, .noise = expected.noise, .follows = expected.by_axes, .is_angle = expected.is_angle};
+}
+
+std::vector<ClaimedColumn> ClaimsOfMachine(const Scenario& scenario) {
+  std::vector<ClaimedColumn> claims;
+  for (const Expected& expected : ExpectedOf(scenario, {}))
+    if (expected.by_axes) claims.push_back(ClaimOf(expected, scenario));
+  if (scenario.bench == kTurntableBench)
+    for (ClaimedColumn& claim : claims) claim.noise = TurntableOf(scenario).ReadingNoise_rad();  // also of x that is nulled
+  return claims;
+}
+
+std::vector<ClaimedColumn> ClaimsOfTables(const Scenario& scenario) {
+  const RotarySettings& s = RotaryOf(scenario);
+  std::vector<ClaimedColumn> claims;
+  for (const Expected& expected : ExpectedOf(scenario, {})) {
+    claims.push_back(ClaimOf(expected, scenario));
+    claims.back().noise = std::hypot(s.amplifier.noise_V / std::sqrt(s.adc.samples), 2.0 * s.adc.range_V * std::pow(0.5, s.adc.bits));
+    claims.back().repeats = 3.0 * s.amplifier.hum_V + 5e-4 * s.adc.range_V;
+  }
+  return claims;
+}
+
+}  // namespace
+
+std::function<void(const Reading&)> ProofByClosing(MachineBench& bench, const Scenario& scenario, const procedure::MachineOptions& options) {
+  const double run_up_rad = RunUp_rad(scenario);
+  if (!(run_up_rad > 0.0)) return [](const Reading&) {};
+  const bool is_table = scenario.bench == kTurntableBench;
+  const std::vector<ClaimedColumn> claims = ClaimsOfMachine(scenario);
+  return [&bench, &options, run_up_rad, is_table, claims, closing = procedure::Closing(claims)](Reading reading) mutable {
+    if (is_table) reading.target_rad = bench.machine.State()[0].commanded;  // a face is nulled
+    closing.Took(reading);
+    const Reading* const then = closing.Asks();
+    if (!then) return;
+    const Reading shown = procedure::ShownAgain(bench, -then->direction * run_up_rad, DwellOf(reading), options);
+    for (const ClaimedColumn& claim : claims) claim.column.number(reading) = ValueOf(claim, shown);
+    if (!is_table) reading.reference_rad = shown.reference_rad;
+    closing.Require(reading);
+  };
+}
+
+std::function<void(const Reading&)> ProofByClosing(RotaryBench& bench, const Scenario& scenario, const procedure::Options& options,
+                                                   const std::function<Reading(const Reading&)>& show) {
+  const double run_up_rad = RotaryOf(scenario).procedure.run_up_steps * units::turn / RotaryOf(scenario).procedure.positions;
+  const std::vector<ClaimedColumn> claims = ClaimsOfTables(scenario);
+  return [&bench, &options, run_up_rad, claims, show, closing = procedure::Closing(claims)](const Reading& reading) mutable {
+    closing.Took(reading);
+    for (const auto& [a, b] : {std::pair(0, 2), std::pair(1, 3)}) procedure::RequireNotExchanged(claims[a], claims[b], reading, closing.taken());
+    const Reading* const then = closing.Asks();
+    if (!then || !(run_up_rad > 0.0)) return;
+    procedure::ComeAgain(bench, -then->direction * run_up_rad, DwellOf(reading), options);
+    closing.Require(show(reading));
+  };
+}
+
+}  // namespace twinbench

@@ -1,0 +1,153 @@
+#include "twin/procedure/jumps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "twin/core/device_fault.h"
+#include "twin/core/distributions.h"
+
+namespace twinbench::procedure {
+namespace {
+
+using ValueIn = std::function<double(const Reading&)>;
+
+/// One place in two passes.
+struct Repeat {
+  double before, again;
+  int reading;  // the earlier
+  double Differs() const { return again - before; }
+};
+
+/// One entry a place that both have, this reading's pass and the one before it, in the order of the later.
+std::vector<Repeat> RepeatsOf(const ValueIn& value, const Reading& reading, const std::vector<Reading>& kept) {
+  const auto is_of = [&](const Reading& r, int pass) { return r.setup == reading.setup && r.phase == reading.phase && r.pass == pass; };
+  std::map<int, const Reading*> before;
+  std::vector<Repeat> repeats;
+  const auto add = [&](const Reading& again) {
+    const auto first = before.find(again.position);
+    if (first != before.end()) repeats.push_back({value(*first->second), value(again), first->second->reading});
+  };
+  for (const Reading& r : kept)
+    if (is_of(r, reading.pass - 1)) before[r.position] = &r;
+  for (const Reading& r : kept)
+    if (is_of(r, reading.pass) && r.reading != reading.reading) add(r);
+  add(reading);
+  return repeats;
+}
+
+struct Level {
+  double mean = 0.0, squares = 0.0;  // about the mean
+};
+
+Level LevelOf(const std::vector<Repeat>& repeats, std::size_t first, std::size_t end) {
+  Level level;
+  for (std::size_t k = first; k < end; ++k) level.mean += repeats[k].Differs() / static_cast<double>(end - first);
+  for (std::size_t k = first; k < end; ++k) level.squares += std::pow(repeats[k].Differs() - level.mean, 2);
+  return level;
+}
+
+/// Median size about the median, in which a few that have jumped count for nothing; nor does the last, which is asked about.
+double ScatterBefore(const std::vector<Repeat>& repeats) {
+  if (repeats.size() < 2) return 0.0;
+  std::vector<double> differ;
+  for (std::size_t k = 0; k + 1 < repeats.size(); ++k) differ.push_back(repeats[k].Differs());
+  const double median = Median(differ);
+  for (double& one : differ) one = std::abs(one - median);
+  return Median(std::move(differ));
+}
+
+/// What is left of the axes' own way where the column goes along with them.
+double Left(const ClaimedColumn& claim, const Reading& reading) {
+  const double value = ValueOf(claim, reading);
+  if (!claim.follows) return value;
+  const double left = value - claim.follows(reading);
+  return claim.is_angle ? std::remainder(left, units::turn) : left;
+}
+
+}  // namespace
+
+void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& reading, const std::vector<Reading>& kept) {
+  constexpr std::size_t kFewest = 2;  // on either side
+  constexpr double kTimesScatter = 8.0;
+  for (const ClaimedColumn& claim : claims) {
+    if (!claim.is_of_place || !(claim.noise > 0.0)) continue;
+    const std::vector<Repeat> repeats = RepeatsOf([&](const Reading& r) { return ValueOf(claim, r); }, reading, kept);
+    for (std::size_t k = kFewest; k + kFewest <= repeats.size(); ++k) {
+      const Level one = LevelOf(repeats, 0, k), other = LevelOf(repeats, k, repeats.size());
+      const double jump = std::abs(other.mean - one.mean);
+      const double scatter = std::sqrt((one.squares + other.squares) / static_cast<double>(repeats.size() - 2));
+      if (!(jump > std::max(AllowedAtPlace(claim), kTimesScatter * scatter))) continue;
+      throw DeviceFault(FaultKind::kImplausible, "instruments",
+                        fmt::format("show {} by {:.4g} (SI) otherwise against the pass before at places up to that of reading {} than at those "
+                                    "from reading {} on: a zero, a mirror or the mounting jumped, in this pass or the one before; measure mounting "
+                                    "{} again",
+                                    claim.column.name, jump, repeats[k - 1].reading, repeats[k].reading, reading.setup));
+    }
+  }
+}
+
+void RequireNotExchanged(const ClaimedColumn& a, const ClaimedColumn& b, const Reading& reading, const std::vector<Reading>& kept) {
+  constexpr std::size_t kPlaces = 4;
+  constexpr double kTimes = 3.0, kTimesNoise = 10.0;  // root mean squares
+  std::vector<Repeat> last = RepeatsOf([&](const Reading& r) { return ValueOf(a, r) - ValueOf(b, r); }, reading, kept);
+  if (last.size() < kPlaces) return;
+  last.erase(last.begin(), last.end() - kPlaces);
+  double differs = 0.0, adds = 0.0, mean_differs = 0.0, mean_adds = 0.0;
+  for (const Repeat& one : last) mean_differs += one.Differs() / kPlaces, mean_adds += (one.again + one.before) / kPlaces;
+  for (const Repeat& one : last) {
+    differs += std::pow(one.Differs() - mean_differs, 2);
+    adds += std::pow(one.again + one.before - mean_adds, 2);
+  }
+  const double noise = std::sqrt(2.0 * kPlaces) * std::hypot(a.noise, b.noise);
+  if (!(std::sqrt(differs) > std::max(kTimes * std::sqrt(adds), kTimesNoise * noise))) return;
+  throw DeviceFault(FaultKind::kImplausible, "instruments",
+                    fmt::format("show at the places of the last {} readings that {} and {} differ the other way round than in the pass before: were "
+                                "they exchanged, in this pass or that one? Measure mounting {} again",
+                                kPlaces, a.column.name, b.column.name, reading.setup));
+}
+
+void Closing::Took(const Reading& reading) {
+  const auto is_other = [&](const Reading& r) {
+    return r.setup != reading.setup || r.phase != reading.phase || r.reading >= reading.reading;
+  };
+  std::erase_if(taken_, is_other);
+  taken_.push_back(reading);
+}
+
+std::size_t Closing::CountOf(int pass) const {
+  return static_cast<std::size_t>(std::ranges::count(taken_, pass, &Reading::pass));
+}
+
+/// Passes of one direction take as long to every place: between them a drift could not be told from a jump.
+const Reading* Closing::Asks() const {
+  constexpr double kSamePlace_rad = 1e-3;  // a table that has turned on for a turn stands elsewhere
+  const Reading& last = taken_.back();
+  if (last.phase == Phase::kCalibration) return nullptr;
+  const auto own = std::ranges::find(taken_, last.pass, &Reading::pass);
+  auto turned = own;
+  while (turned != taken_.begin() && std::prev(turned)->direction == -last.direction) --turned;
+  const auto begun = std::find_if(turned, own, [&](const Reading& r) {
+    return r.position == last.position && !(std::abs(r.target_rad - last.target_rad) > kSamePlace_rad) && CountOf(r.pass) == CountOf(last.pass);
+  });
+  return begun == own ? nullptr : &*begun;
+}
+
+void Closing::Require(const Reading& again) const {
+  constexpr double kTimesScatter = 8.0;
+  const Reading& then = *Asks();
+  for (const ClaimedColumn& claim : claims_) {
+    const auto left = [&](const Reading& r) { return Left(claim, r); };
+    const double off = std::abs(left(again) - left(then));
+    const double scatter = ScatterBefore(RepeatsOf(left, taken_.back(), taken_));
+    if (!(claim.noise > 0.0) || !(off > std::max(AllowedAtPlace(claim), kTimesScatter * scatter))) continue;
+    throw DeviceFault(FaultKind::kImplausible, "instruments",
+                      fmt::format("showed {} = {} at reading {} and show {} at its place, come to from the same side, behind the passes: a zero, a "
+                                  "mirror or the mounting jumped, or it had not come to rest; measure mounting {} again",
+                                  claim.column.name, claim.column.print(then), then.reading, claim.column.print(again), then.setup));
+  }
+}
+
+}  // namespace twinbench::procedure
