@@ -5,6 +5,8 @@
 #include "tests/machine/benches.h"
 #include "tests/machine/driven_twin.h"
 #include "tests/support/restless_bench.h"
+#include "tools/twinbench/planned_run.h"
+#include "tools/twinbench/real_bench.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
@@ -281,6 +283,23 @@ TEST(ProofByClosing, AZeroThatJumpsBetweenTwoPassesEndsTheMountingOnEveryBench) 
   const ChangesVolts jumps = [](Blocks& c, const Blocks&) { c[0].mean_V += 0.5, c[2].mean_V += 0.5; };
   EXPECT_EQ(EndOfTables(3 * 6, jumps, {}, kept), "implausible");
   EXPECT_EQ(kept, 11u);
+}
+
+/// By the bench's clock, of a run whose readings are proved, with hands that take as long as the scenario says.
+double MinutesProved(const Scenario& scenario) {
+  DrivenTwin twin(scenario);
+  twin.options.prove = ProofBySteps(twin.bench, twin.scenario, twin.options);
+  EXPECT_EQ(twin.Fault(), "");
+  return ToSeconds(twin.bench.clock.Now()) / 60.0;
+}
+
+TEST(MinutesOnRealBench, AreThoseOfARunWhoseReadingsAreProved) {
+  for (const Scenario& scenario : {ShortTurntable(), ShortPolygon(), ShortStops(), ShortFreeform()}) {
+    const auto told = tools::MinutesOnRealBench(scenario);
+    ASSERT_TRUE(told) << scenario.bench;
+    EXPECT_NEAR(*told / MinutesProved(scenario), 1.0, 0.2) << scenario.bench;  // promised
+  }
+  EXPECT_GT(*tools::MinutesOnRealBench(ShortTurntable()), 1.05 * tools::OutlookAtOnce(ShortTurntable()).minutes);
 }
 
 }  // namespace

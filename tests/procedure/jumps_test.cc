@@ -120,8 +120,9 @@ int PassUntilExchangeIsNoticed(int n, double curve_V) {
 TEST(RequireNotExchanged, SpotsDifferAgainstEachOtherAsInThePassBefore) {
   EXPECT_EQ(PassUntilExchangeIsNoticed(100, 1e-4), 16);
   EXPECT_EQ(PassUntilExchangeIsNoticed(0, 1e-4), 16);  // from the begin on nothing tells it
-  EXPECT_EQ(PassUntilExchangeIsNoticed(8, 1e-4), 11);
-  EXPECT_EQ(PassUntilExchangeIsNoticed(4, 1e-4), 15);
+  EXPECT_EQ(PassUntilExchangeIsNoticed(8, 1e-4), 13);
+  EXPECT_EQ(PassUntilExchangeIsNoticed(10, 1e-4), 15);
+  EXPECT_EQ(PassUntilExchangeIsNoticed(4, 1e-4), 16);  // four places are too few
   EXPECT_EQ(PassUntilExchangeIsNoticed(8, 1e-6), 16);  // less than ten times the noise
 }
 

@@ -7,6 +7,7 @@
 #include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/planned_run.h"
+#include "tools/twinbench/real_bench.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -37,7 +38,8 @@ Expected ExpectedOf(const Scenario& scenario) {
   }
 }
 
-nlohmann::json JsonOf(const CheckOptions& options, const Scenario& scenario, int readings, const Expected& expected) {
+nlohmann::json JsonOf(const CheckOptions& options, const Scenario& scenario, int readings, const Expected& expected,
+                      const std::optional<double>& on_real_bench) {
   nlohmann::json json = {{"scenario", options.scenario},
                          {"bench", scenario.bench},
                          {"title", scenario.title},
@@ -48,6 +50,7 @@ nlohmann::json JsonOf(const CheckOptions& options, const Scenario& scenario, int
     json["expected"] = report::OutlookJson({"as the scenario says", {}, *expected.outlook});
   else
     json["no_results"] = expected.why_not;
+  if (on_real_bench) json["real_bench_minutes"] = *on_real_bench;
   return json;
 }
 
@@ -64,14 +67,15 @@ void Check(const CheckOptions& options, JsonAnswer& answer) {
   static_cast<void>(bench.make_twin(scenario));
   const int readings = bench.planned_readings(scenario);
   const Expected expected = ExpectedOf(scenario);
-  answer.Write(JsonOf(options, scenario, readings, expected));
+  const std::optional<double> on_real_bench = MinutesOnRealBench(scenario);
+  answer.Write(JsonOf(options, scenario, readings, expected, on_real_bench));
   if (answer.IsOnStdout()) return;
   fmt::print("{}: fine. Bench {}, {}, {}, {} with a stated uncertainty\n", options.scenario, scenario.bench,
              Counted(static_cast<std::size_t>(readings), "reading"), Counted(scenario.effects.size(), "effect"),
              Counted(scenario.uncertainties.size(), "constant"));
   if (!expected.outlook) return fmt::print("It would come to no result: {}\n", expected.why_not);
-  fmt::print("{:.0f} minutes by the procedure's clock\n\n{}", expected.outlook->minutes,
-             report::WithoutNoNumbers(report::OutlookText(*expected.outlook)));
+  fmt::print("{:.0f} minutes by the procedure's clock{}\n\n{}", expected.outlook->minutes,
+             WithProofs(expected.outlook->minutes, on_real_bench), report::WithoutNoNumbers(report::OutlookText(*expected.outlook)));
 }
 
 }  // namespace

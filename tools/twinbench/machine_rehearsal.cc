@@ -100,7 +100,7 @@ MachineRehearsal RehearseMachine(const Scenario& scenario, const std::vector<Axi
   MachineBench watched{inner.clock, machine, inner.instruments, inner.fixture, inner.simulation, inner.indexer};
   ReadingCount count(rehearsal);
   procedure::MachineOptions options;
-  if (is_real) options.prove = ProofBySteps(inner, scenario, options);  // which keep within limits by themselves
+  if (is_real) options.prove = WayOf(ProofBySteps(inner, scenario, options));  // which keeps within limits by themselves
   bench.drive(watched, scenario, count, {}, options);
   rehearsal.duration_s = ToSeconds(inner.clock.Now());
   JudgeTravel(inner.machine.Axes(), limits, rehearsal);

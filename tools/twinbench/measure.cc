@@ -18,6 +18,7 @@
 #include "tools/twinbench/measured_run.h"
 #include "tools/twinbench/opened_again.h"
 #include "tools/twinbench/progress.h"
+#include "tools/twinbench/real_bench.h"
 #include "tools/twinbench/rehearsal.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/stop_signal.h"
@@ -64,27 +65,28 @@ procedure::Options Carefulness(const hw::BenchFile& file, bool allow_homing) {
   return options;
 }
 
-/// With what the controllers of a real bench say about their limits; they are asked, nothing moves.
-/// @param is_real  Becomes whether it is one, and no twin that is served.
-procedure::Options WithAgreedLimits(procedure::Options options, const hw::BenchFile& file, const Scenario& scenario, bool& is_real) {
-  if (file.kind != "hardware") return options;
+struct Asked {
+  procedure::Options options;
+  bool is_real = false;
+};
+
+/// With what the controllers of a bench of hardware say about their limits; they are asked, nothing moves.
+Asked WithAgreedLimits(const procedure::Options& options, const hw::BenchFile& file, const Scenario& scenario) {
+  Asked asked{options};
+  if (file.kind != "hardware") return asked;
   const hw::BenchLock lock(hw::AddressesOf(file), "rehearse");
   const auto bench = OpenAnyBench(file, scenario, {});
-  is_real = !bench->Bench().simulation;
-  const auto limits = bench->Limits();
-  if (!limits) return options;
-  options.target = limits->target;
-  options.reference = limits->reference;
-  return options;
+  asked.is_real = IsRealBench(file.kind, bench->Bench().simulation);
+  if (const auto limits = bench->Limits()) asked.options.target = limits->target, asked.options.reference = limits->reference;
+  return asked;
 }
 
 /// Nothing moves here.
 /// @throws BenchError if the twin finds that the bench could not do it.
 Rehearsal RehearseFirst(const Scenario& scenario, const procedure::Options& options, const hw::BenchFile& file) {
-  bool is_real = false;
-  const procedure::Options limits = WithAgreedLimits(options, file, scenario, is_real);
-  const Rehearsal rehearsal = Rehearse(scenario, limits, file.adc.mains_Hz, is_real);
-  fmt::print(stderr, "{}", Summary(rehearsal, limits));
+  const Asked asked = WithAgreedLimits(options, file, scenario);
+  const Rehearsal rehearsal = Rehearse(scenario, asked.options, file.adc.mains_Hz, asked.is_real);
+  fmt::print(stderr, "{}", Summary(rehearsal, asked.options));
   if (!rehearsal.problems.empty()) throw BenchError("the rehearsal found problems; nothing was moved");
   return rehearsal;
 }
@@ -92,7 +94,7 @@ Rehearsal RehearseFirst(const Scenario& scenario, const procedure::Options& opti
 /// @param kind  Of the bench file: in a replay nothing moves that could be asked.
 void CarryOutOn(RotaryBench devices, const Scenario& scenario, RunRecord& record, procedure::Options& options,
                 const std::string& kind, LivePage& page) {
-  const bool is_real = kind == "hardware" && !devices.simulation;
+  const bool is_real = IsRealBench(kind, devices.simulation);
   procedure::WatchedTables watched(devices, options.target, options.reference);
   RotaryBench bench = {devices.clock,     is_real ? watched.target() : devices.target, is_real ? watched.reference() : devices.reference,
                        devices.adc,       devices.autocollimator, devices.thermometer,
@@ -146,7 +148,7 @@ void RequireBenchFileFor(const Scenario& scenario, const std::string& path) {
   if (!of.empty()) throw InputError(path, "a scenario of " + of + ", no bench file", wanted);
   const bool is_driven = BenchOf(scenario).drive != nullptr;
   const std::string table = is_driven ? "adc" : "machine";  // what the other kind has
-  if (("\n" + text).find("\n[" + table + "]") != std::string::npos)
+  if (HasTable(text, path, table))
     throw InputError(path, fmt::format("a bench file with [{}], so of {}", table, is_driven ? "two tables with an AD converter" : "a machine"), wanted);
 }
 

@@ -12,6 +12,7 @@
 #include "tools/twinbench/machine_rehearsal.h"
 #include "tools/twinbench/opened_again.h"
 #include "tools/twinbench/progress.h"
+#include "tools/twinbench/real_bench.h"
 #include "tools/twinbench/stop_signal.h"
 #include "tools/twinbench/told_link.h"
 #include "tools/twinbench/told_stopped.h"
@@ -92,7 +93,7 @@ std::unique_ptr<hw::OpenMachine> OpenAnyMachine(const hw::MachineFile& file, con
 MachineRehearsal RehearseMachineFirst(const Scenario& scenario, const std::vector<MachineAxis>& axes,
                                       hw::OpenMachine& opened, const std::string& kind) {
   const std::vector<AxisLimits> limits = opened.Limits();
-  const MachineRehearsal rehearsal = RehearseMachine(scenario, limits, kind == "hardware" && !opened.Devices().simulation);
+  const MachineRehearsal rehearsal = RehearseMachine(scenario, limits, IsRealBench(kind, opened.Devices().simulation));
   fmt::print(stderr, "{}", Summary(rehearsal, axes, limits));
   if (!rehearsal.problems.empty()) throw BenchError("the rehearsal found problems; nothing was moved");
   return rehearsal;
@@ -136,7 +137,7 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
   const MachineBench devices = opened.Devices();
   procedure::DoubtedInstruments doubted(devices.instruments, ClaimedColumns(scenario));
   // A simulated bench is read as often as its run asks, so that it is that run.
-  const bool is_real = kind == "hardware" && !devices.simulation;
+  const bool is_real = IsRealBench(kind, devices.simulation);
   procedure::WatchedMachine watched(devices.machine, devices.clock, options.axes);
   InstrumentSet& instruments = is_real ? doubted : devices.instruments;
   MachineController& machine = is_real ? watched : devices.machine;
@@ -159,10 +160,10 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
   record.Finish();
 }
 
-/// So does the replay of such a bench.
-bool IsReal(const hw::MachineFile& file, hw::OpenMachine& bench) {
+/// Its readings are judged, and so are those in the replay of such a bench.
+bool IsJudged(const hw::MachineFile& file, hw::OpenMachine& bench) {
   const auto* replay = dynamic_cast<const RecordedMachine*>(&bench);
-  return replay ? !replay->IsOfSimulation() : file.kind == "hardware" && !bench.Devices().simulation;
+  return replay ? !replay->IsOfSimulation() : IsRealBench(file.kind, bench.Devices().simulation);
 }
 
 void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const hw::MachineFile& file,
@@ -170,7 +171,7 @@ void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const
   const bool resumed = begun.record != nullptr;
   if (resumed) TakeUp(begun, bench.Identity());
   procedure::MachineOptions options = Carefully(file, bench, begun, allow_homing);
-  if (IsReal(file, bench)) {
+  if (IsJudged(file, bench)) {
     using std::placeholders::_1, std::placeholders::_2;
     options.require_no_jump = std::bind(procedure::RequireNoJump, ClaimedColumns(scenario), _1, _2);
     options.require_goes_along = std::bind(procedure::RequireGoesAlong, ClaimedColumns(scenario), _1, _2);

@@ -16,6 +16,7 @@
 #include "tools/twinbench/planned_run.h"
 #include "tools/twinbench/planning.h"
 #include "tools/twinbench/progress.h"
+#include "tools/twinbench/real_bench.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -35,6 +36,7 @@ struct PlanOptions : PlanWish {
 /// What is told of a scenario.
 struct Planned {
   std::vector<report::PlannedRun> runs;
+  std::optional<double> on_real_bench;  // the scenario's own run [min]
   report::PlannedEffects effects;
   std::vector<report::Mending> mendings;
   std::vector<plan::Advice> advice;
@@ -98,6 +100,7 @@ Planned PlanOf(const PlanWish& options, const Scenario& scenario) {
   RequireGoal(options.goal, own);
   const std::vector<Reading> readings = ReadingsOfTwin(Quick(scenario));
   Planned planned;
+  planned.on_real_bench = MinutesOnRealBench(scenario);
   std::vector<LookedAt> others = LookAtOthers(scenario, setups, kOfOtherRuns, patience);
   planned.effects = EffectsIn(scenario, readings, patience);
   own.isolability = planned.effects.seen.isolability;
@@ -173,6 +176,7 @@ nlohmann::json JsonOf(const Planned& planned, const std::vector<plan::NextRun>& 
   json["advice"] = report::PlanAdviceJson(planned.advice);
   if (!planned.programme.empty()) json["programme"] = report::ProgrammeJson(planned.programme.front());
   json["left_out"] = planned.left_out;
+  if (planned.on_real_bench) json["real_bench_minutes"] = *planned.on_real_bench;
   json["next"] = next.front().name;
   for (const plan::NextRun& run : next) json["next_runs"].push_back(run.name);
   return json;
@@ -186,7 +190,10 @@ std::string LeftOutText(const std::map<std::string, int>& left_out) {
 }
 
 std::string TextOf(const Planned& planned) {
+  const double minutes = planned.runs.front().outlook.minutes;
+  const std::string with_proofs = WithProofs(minutes, planned.on_real_bench);
   std::string text = report::PlanText(planned.runs, planned.effects, planned.programme) + "\n" + report::MendingText(planned.mendings);
+  if (!with_proofs.empty()) text += fmt::format("\nAs the scenario says it takes {:.0f} minutes{}.\n", minutes, with_proofs);
   if (!planned.mendings.empty()) text += "\n";
   text += report::PlanAdviceText(planned.advice);
   if (!planned.programme.empty()) text += "\n" + report::ProgrammeText(planned.programme.front());

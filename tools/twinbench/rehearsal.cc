@@ -137,7 +137,7 @@ Rehearsal Rehearse(const Scenario& scenario, const procedure::Options& limits, d
   RotaryBench bench = twin.Bench();
   procedure::Options options;
   options.log = &watcher;
-  if (is_real) options.prove = ProofBySteps(bench, scenario, options);
+  if (is_real) options.prove = WayOf(ProofBySteps(bench, scenario, options));
   procedure::CarryOut(bench, scenario, watcher, {}, options);
   JudgeTravel("target", rehearsal.target, limits.target, rehearsal.problems);
   JudgeTravel("reference", rehearsal.reference, limits.reference, rehearsal.problems);

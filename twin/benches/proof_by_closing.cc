@@ -49,7 +49,7 @@ std::vector<ClaimedColumn> ClaimsOfTables(const Scenario& scenario) {
   std::vector<ClaimedColumn> claims;
   for (const Expected& expected : ExpectedOf(scenario, {})) {
     claims.push_back(ClaimOf(expected, scenario));
-    claims.back().noise = std::hypot(s.amplifier.noise_V / std::sqrt(s.adc.samples), 2.0 * s.adc.range_V * std::pow(0.5, s.adc.bits));
+    claims.back().noise = std::hypot(s.amplifier.noise_V / std::sqrt(s.adc.samples), expected.step / std::sqrt(12.0));
     claims.back().repeats = 3.0 * s.amplifier.hum_V + 5e-4 * s.adc.range_V;
   }
   return claims;

@@ -11,6 +11,7 @@
 #include "twin/benches/proof_by_closing.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/bench_format.h"
+#include "twin/core/device_fault.h"
 #include "twin/procedure/step_proof.h"
 
 namespace twinbench {
@@ -79,6 +80,17 @@ Reading ShownNow(RotaryBench& bench, Reading reading, int samples) {
 }
 
 }  // namespace
+
+std::function<void(const Reading&)> WayOf(const std::function<void(const Reading&)>& proof) {
+  if (!proof) return {};
+  return [proof](const Reading& reading) {
+    try {
+      proof(reading);
+    } catch (const DeviceFault& fault) {
+      if (fault.kind() != FaultKind::kMoved && fault.kind() != FaultKind::kImplausible) throw;
+    }
+  };
+}
 
 std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scenario& scenario, const procedure::MachineOptions& options) {
   const std::vector<double> step = StepOf(scenario);

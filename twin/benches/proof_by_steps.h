@@ -23,4 +23,7 @@ namespace twinbench {
 std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scenario& scenario, const procedure::MachineOptions& options);
 std::function<void(const Reading&)> ProofBySteps(RotaryBench& bench, const Scenario& scenario, const procedure::Options& options);
 
+/// The way of a proof without its judgement: effects of a twin are there on purpose.
+std::function<void(const Reading&)> WayOf(const std::function<void(const Reading&)>& proof);
+
 }  // namespace twinbench

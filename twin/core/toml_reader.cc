@@ -67,4 +67,9 @@ std::string TextAtTop(const std::string& text, const std::string& name, const st
   return source.sources().front().root[key].value_or(std::string());
 }
 
+bool HasTable(const std::string& text, const std::string& name, const std::string& table) {
+  const ScenarioText source(text, name, {});
+  return source.sources().front().root[table].is_table();
+}
+
 }  // namespace twinbench

@@ -23,4 +23,8 @@ KeyPlaces ReadToml(const std::string& text, const std::string& name, const std::
 /// @throws InputError with file:line for a syntax error.
 std::string TextAtTop(const std::string& text, const std::string& name, const std::string& key);
 
+/// Whether there is such a table.
+/// @throws InputError as above.
+bool HasTable(const std::string& text, const std::string& name, const std::string& table);
+
 }  // namespace twinbench

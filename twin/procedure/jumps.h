@@ -15,7 +15,7 @@ namespace twinbench::procedure {
 void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& reading, const std::vector<Reading>& kept);
 
 /// Of the same readings and two columns that show nearly the same: two spots of one grating.
-/// @throws DeviceFault kImplausible where at the last four places both differ against each other as they did in the pass before, but the
+/// @throws DeviceFault kImplausible where at the last six places both differ against each other as they did in the pass before, but the
 ///         other way round, by ten times the noise: one was plugged in where the other was. What is the same everywhere counts for nothing.
 void RequireNotExchanged(const ClaimedColumn& a, const ClaimedColumn& b, const Reading& reading, const std::vector<Reading>& kept);
 
