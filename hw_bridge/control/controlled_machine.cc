@@ -25,7 +25,7 @@ std::string ControlledMachine::Place(std::size_t axis, double at) const {
 }
 
 void ControlledMachine::AgreeOnLimits() {
-  const std::vector<AxisLimits> travel = allowed_ = Travel();
+  const std::vector<AllowedMotion> travel = agreed_ = Allowed();
   for (std::size_t k = 0; k < axes_.size(); ++k) {
     AxisLimits& ours = limits_[k];
     if (std::isinf(ours.lower)) ours.lower = travel[k].lower;
@@ -38,15 +38,16 @@ void ControlledMachine::AgreeOnLimits() {
   }
 }
 
-void ControlledMachine::RequireTravelAsBefore() {
-  if (allowed_.empty()) return;
-  const std::vector<AxisLimits> travel = Travel();
-  for (std::size_t k = 0; k < axes_.size(); ++k) {
-    if (travel[k].lower == allowed_[k].lower && travel[k].upper == allowed_[k].upper) continue;
-    line_.Fail(FaultKind::kMoved, fmt::format("the controller allowed axis {} {} to {} and now allows {} to {}: somebody else set its limits",
-                                              axes_[k].name, Place(k, allowed_[k].lower), Place(k, allowed_[k].upper),
-                                              Place(k, travel[k].lower), Place(k, travel[k].upper)));
-  }
+std::vector<AllowedMotion> ControlledMachine::Allowed() {
+  std::vector<AllowedMotion> allowed;
+  for (const AxisLimits& travel : Travel()) allowed.push_back({travel.lower, travel.upper, Fastest(allowed.size())});
+  return allowed;
+}
+
+void ControlledMachine::RequireAllowedAsAgreed() {
+  if (agreed_.empty()) return;
+  const std::vector<AllowedMotion> now = Allowed();
+  for (std::size_t k = 0; k < axes_.size(); ++k) RequireAsAgreed(line_, axes_[k], agreed_[k], now[k]);
 }
 
 void ControlledMachine::RequireWithinLimits(std::size_t axis, double to) {

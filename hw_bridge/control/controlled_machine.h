@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "hw_bridge/control/allowed_motion.h"
 #include "hw_bridge/control/command_numbers.h"
 #include "hw_bridge/control/device_line.h"
 #include "twin/core/machine.h"
@@ -52,8 +53,8 @@ class ControlledMachine : public MachineController {
   double Feed_m_s(double feed_m_s) const { return feed_m_s > 0.0 ? feed_m_s : manner_.traverse_m_s; }
 
   /// Before a move, of a controller that answers at once.
-  /// @throws DeviceFault kMoved if it allows another travel than when limits were agreed on.
-  void RequireTravelAsBefore();
+  /// @throws what RequireAsAgreed throws.
+  void RequireAllowedAsAgreed();
   void RequireWithinLimits(std::size_t axis, double to);
   void RequireReady(const std::vector<AxisState>& states);
   [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why) {
@@ -66,12 +67,16 @@ class ControlledMachine : public MachineController {
   virtual void SendStop() = 0;
   virtual bool AskDone() = 0;
   virtual void SendHome() = 0;
+  virtual std::optional<double> Fastest(std::size_t /*axis*/) { return std::nullopt; }
   /// Lets at most `within` pass. @return true as soon as every axis has its origin again.
   virtual bool FindsOrigin(Duration within) = 0;
 
+  std::vector<AllowedMotion> Allowed();
+
   DeviceLine line_;
   std::vector<MachineAxis> axes_;
-  std::vector<AxisLimits> limits_, allowed_;  // allowed: by the controller, when limits were agreed on
+  std::vector<AxisLimits> limits_;
+  std::vector<AllowedMotion> agreed_;
   MachineManner manner_;
   std::function<bool()> stop_asked_;
 };

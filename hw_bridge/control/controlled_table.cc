@@ -23,7 +23,7 @@ ControlledTable::ControlledTable(DeviceLine line, const TableLimits& limits, Com
 void ControlledTable::StartMove(double angle_rad) {
   RequireWithinLimits(angle_rad);
   RequireOrigin(State());
-  RequireLimitsAsBefore();
+  if (agreed_) RequireAsAgreed(line_, {"of the table", true}, *agreed_, ReadAllowed());
   SendMove(numbers_.Text(angle_rad, units::deg));
   RequireUnderstood(angle_rad, State());
 }
@@ -91,19 +91,9 @@ void ControlledTable::Home() {
     line_.Fail(FaultKind::kRestarted, "the controller has no origin after it looked for one");
 }
 
-void ControlledTable::RequireLimitsAsBefore() {
-  if (!allowed_rad_) return;
-  const auto [lower_rad, upper_rad] = *allowed_rad_;
-  const double is_lower_rad = ReadLowerLimit_rad(), is_upper_rad = ReadUpperLimit_rad();
-  if (is_lower_rad == lower_rad && is_upper_rad == upper_rad) return;
-  line_.Fail(FaultKind::kMoved,
-             fmt::format("the controller allowed {:.6f} to {:.6f} deg and now allows {:.6f} to {:.6f} deg: somebody else set its limits",
-                         lower_rad / units::deg, upper_rad / units::deg, is_lower_rad / units::deg, is_upper_rad / units::deg));
-}
-
 void ControlledTable::AgreeOnLimits() {
-  const double lower_rad = ReadLowerLimit_rad(), upper_rad = ReadUpperLimit_rad();
-  allowed_rad_ = {lower_rad, upper_rad};
+  agreed_ = ReadAllowed();
+  const double lower_rad = agreed_->lower, upper_rad = agreed_->upper;
   if (std::isinf(limits_.lower_rad)) limits_.lower_rad = lower_rad;
   if (std::isinf(limits_.upper_rad)) limits_.upper_rad = upper_rad;
   const double slack_rad = numbers_.Understood(units::deg);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "hw_bridge/control/allowed_motion.h"
 #include "hw_bridge/control/command_numbers.h"
 #include "hw_bridge/control/device_line.h"
 #include "twin/core/devices.h"
@@ -28,7 +29,7 @@ class ControlledTable : public RotaryTable {
   void Stop() override;
   void Home() override;
 
-  /// Takes over the controller's own limits where the bench file gives none; one that allows others before a later move is kMoved.
+  /// Takes over the controller's own limits where the bench file gives none; RequireAsAgreed holds before later moves.
   /// @throws DeviceFault kRefused if the controller allows less than the bench file.
   void AgreeOnLimits();
   const TableLimits& limits() const { return limits_; }
@@ -48,12 +49,10 @@ class ControlledTable : public RotaryTable {
   virtual std::string StopWord() const = 0;
   virtual void SendStop() = 0;
   virtual void SendHome() = 0;
-  virtual double ReadLowerLimit_rad() = 0;
-  virtual double ReadUpperLimit_rad() = 0;
+  virtual AllowedMotion ReadAllowed() = 0;
 
   bool AwaitSettledOrStop(Duration within);
   void RequireWithinLimits(double angle_rad) const;
-  void RequireLimitsAsBefore();
   void RequireOrigin(const TableState& now) const;
   void RequireUnderstood(double angle_rad, const TableState& now);
   [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why) {
@@ -62,7 +61,7 @@ class ControlledTable : public RotaryTable {
 
   DeviceLine line_;
   TableLimits limits_;
-  std::optional<std::pair<double, double>> allowed_rad_;  // by the controller, when limits were agreed on
+  std::optional<AllowedMotion> agreed_;
   CommandNumbers numbers_;
   std::function<bool()> stop_asked_;
 };

@@ -30,6 +30,7 @@ void EspMachine::Prepare() {
   if (opening == prepared_opening_) return;
   if (IsGroup()) FormEspGroup(line(), Axes().size());  // first: a controller of other axes says no
   knows_status_ = EspAnswerTo(line(), "1MS?").has_value();
+  if (prepared_opening_ == 0) knows_speed_ = EspAnswerTo(line(), "1VU?").has_value();
   for (std::size_t k = 0; k < Axes().size(); ++k) PrepareAxis(k);
   prepared_opening_ = opening;
 }
@@ -50,6 +51,11 @@ std::vector<AxisLimits> EspMachine::Travel() {
   return travel;
 }
 
+std::optional<double> EspMachine::Fastest(std::size_t axis) {
+  if (!knows_speed_) return std::nullopt;
+  return line().AskNumber(OfAxis(axis, "VU?"), Axes()[axis].to_SI());
+}
+
 void EspMachine::SetFeed(double feed_m_s) {
   TellEsp(line(), "1HV" + Text(Feed_m_s(feed_m_s), units::mm));
 }
@@ -58,7 +64,7 @@ void EspMachine::StartMove(const std::vector<double>& to, double feed_m_s) {
   Require(to.size() == Axes().size(), "a move has one coordinate an axis");
   for (std::size_t k = 0; k < to.size(); ++k) RequireWithinLimits(k, to[k]);
   RequireReady(State());
-  RequireTravelAsBefore();
+  RequireAllowedAsAgreed();
   if (IsGroup()) SetFeed(feed_m_s);
   std::string command = IsGroup() ? "1HL" : "1PA";
   for (std::size_t k = 0; k < to.size(); ++k) command += (k > 0 ? "," : "") + Text(to[k], Axes()[k].to_SI());

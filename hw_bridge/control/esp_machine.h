@@ -25,6 +25,7 @@ class EspMachine : public ControlledMachine {
   void SendStop() override;
   bool AskDone() override;
   void SendHome() override;
+  std::optional<double> Fastest(std::size_t axis) override;
   bool FindsOrigin(Duration within) override { return Settles(within); }
 
   bool IsGroup() const { return Axes().size() > 1; }  // one axis alone goes by itself, as fast as it was set up
@@ -35,7 +36,7 @@ class EspMachine : public ControlledMachine {
   void RequireUnderstood(const std::vector<double>& to);
 
   int prepared_opening_ = 0;
-  bool knows_status_ = true;  // MS?
+  bool knows_status_ = true, knows_speed_ = false;  // MS?, VU?
   std::vector<bool> lost_origin_;  // of each axis, so far as its motor tells
 };
 

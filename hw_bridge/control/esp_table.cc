@@ -34,6 +34,7 @@ void EspTable::Prepare() {
   const int opening = line().Openings();
   if (opening == prepared_opening_) return;
   knows_status_ = EspAnswerTo(line(), Axis("MS?")).has_value();
+  if (prepared_opening_ == 0) knows_speed_ = EspAnswerTo(line(), Axis("VU?")).has_value();
   if (line().AskWholeNumber(Axis("SN?")) != kDegrees) Tell("SN" + std::to_string(kDegrees));
   const bool motor_is_off = line().AskWholeNumber(Axis("MO?")) == 0;
   if (motor_is_off && !knows_status_) lost_origin_ = true;
@@ -123,14 +124,11 @@ void EspTable::SendHome() {
   done_ = false;
 }
 
-double EspTable::ReadLowerLimit_rad() {
+AllowedMotion EspTable::ReadAllowed() {
   Prepare();
-  return line().AskNumber(Axis("SL?"), units::deg);
-}
-
-double EspTable::ReadUpperLimit_rad() {
-  Prepare();
-  return line().AskNumber(Axis("SR?"), units::deg);
+  AllowedMotion allowed{line().AskNumber(Axis("SL?"), units::deg), line().AskNumber(Axis("SR?"), units::deg)};
+  if (knows_speed_) allowed.fastest = line().AskNumber(Axis("VU?"), units::deg);
+  return allowed;
 }
 
 }  // namespace twinbench::hw

@@ -25,8 +25,7 @@ class EspTable : public ControlledTable {
   std::string StopWord() const override { return Axis("ST"); }
   void SendStop() override;
   void SendHome() override;
-  double ReadLowerLimit_rad() override;
-  double ReadUpperLimit_rad() override;
+  AllowedMotion ReadAllowed() override;
 
   std::string Axis(const std::string& command) const;
   void Tell(const std::string& command);
@@ -40,7 +39,7 @@ class EspTable : public ControlledTable {
   int axis_;
   bool polls_pass_time_;
   int prepared_opening_ = 0;
-  bool knows_status_ = true;  // MS?
+  bool knows_status_ = true, knows_speed_ = false;  // MS?, VU?
   bool lost_origin_ = false;  // so far as the motor tells
   bool done_ = true;          // the last answer to MD?
 };

@@ -61,12 +61,8 @@ void ScpiTable::SendHome() {
   TellScpi(line(), rotation_ + "HOME");
 }
 
-double ScpiTable::ReadLowerLimit_rad() {
-  return line().AskNumber(rotation_ + "LIM:LOW?", units::deg);
-}
-
-double ScpiTable::ReadUpperLimit_rad() {
-  return line().AskNumber(rotation_ + "LIM:UPP?", units::deg);
+AllowedMotion ScpiTable::ReadAllowed() {
+  return {line().AskNumber(rotation_ + "LIM:LOW?", units::deg), line().AskNumber(rotation_ + "LIM:UPP?", units::deg)};
 }
 
 }  // namespace twinbench::hw

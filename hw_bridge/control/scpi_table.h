@@ -16,8 +16,7 @@ class ScpiTable : public ControlledTable {
   std::string StopWord() const override { return rotation_ + "STOP"; }
   void SendStop() override;
   void SendHome() override;
-  double ReadLowerLimit_rad() override;
-  double ReadUpperLimit_rad() override;
+  AllowedMotion ReadAllowed() override;
 
   std::string rotation_;  // "ROT1:"
 };

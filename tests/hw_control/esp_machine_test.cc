@@ -24,7 +24,7 @@ struct EspGroupModel {
   std::mutex mutex;
   std::array<double, 2> at_mm{};
   std::array<bool, 2> motor_on = {true, true};
-  int decimals = 4, error = 0, upper_mm = 100;
+  int decimals = 4, error = 0, upper_mm = 100, fastest_mm_s = 0;  // 0: it knows no VU?
   std::string group;  // that somebody else has formed: "1,2"; it cannot be formed again
 
   /// Several questions stand on one line.
@@ -52,6 +52,7 @@ struct EspGroupModel {
     if (verb == "PA?" || verb == "TP?") return fmt::format("{}", at_mm[axis]);
     if (verb == "SL?") return "-100";
     if (verb == "SR?") return std::to_string(upper_mm);
+    if (verb == "VU?" && fastest_mm_s > 0) return std::to_string(fastest_mm_s);
     Obey(axis, verb);
     return "";
   }
@@ -122,6 +123,16 @@ TEST_F(EspMachineWithoutStatus, LimitsThatSomebodyElseSetAreToldBeforeAnythingMo
     EXPECT_EQ(test::KindOf([&] { machine.StartMove({0.02, 0.0}, 0.0); }), FaultKind::kMoved);
     EXPECT_NEAR(machine.State()[0].encoder, 0.01, 1e-12);
   }
+}
+
+TEST_F(EspMachineWithoutStatus, AGreatestSpeedThatSomebodyElseSetIsToldBeforeAnythingMovesWhereTheControllerTellsIt) {
+  model_.fastest_mm_s = 20;
+  EspMachine machine = Machine();
+  machine.AgreeOnLimits();
+  machine.StartMove({0.01, 0.0}, 0.0);
+  model_.fastest_mm_s = 40;
+  EXPECT_EQ(test::KindOf([&] { machine.StartMove({0.02, 0.0}, 0.0); }), FaultKind::kMoved);
+  EXPECT_NEAR(machine.State()[0].encoder, 0.01, 1e-12);
 }
 
 TEST_F(EspMachineWithoutStatus, AGroupThatIsThereAlreadyIsOursIfItIsOfOurAxes) {

@@ -73,6 +73,7 @@ struct EspModel {
   int switches = 0;  // of MS?: 2 the lower one, 4 the upper one
   int unit = 7, error = 0;
   int polls_until_done = 0;
+  int fastest_deg_s = 0;  // 0: it knows no VU?
 
   Reply operator()(const std::string& line) {
     const std::lock_guard lock(mutex);
@@ -89,6 +90,7 @@ struct EspModel {
     if (verb == "PA?") return {fmt::format("{}\r\n", a.commanded_deg)};
     if (verb == "SL?") return {fmt::format("{}\r\n", a.lower_deg)};
     if (verb == "SR?") return {fmt::format("{}\r\n", a.upper_deg)};
+    if (verb == "VU?" && fastest_deg_s > 0) return {fmt::format("{}\r\n", fastest_deg_s)};
     Obey(a, verb);
     return {};
   }
@@ -279,6 +281,19 @@ TEST_F(EspTables, OfMsQueryTheLimitSwitchHasItsSide) {
       model_.switches = switches;
     }
     EXPECT_EQ(table.State().limit, side);
+  }
+}
+
+TEST_F(EspTables, LimitsAndAGreatestSpeedThatSomebodyElseSetAreToldBeforeAnythingMoves) {
+  for (const int fastest_deg_s : {0, 40}) {
+    model_.fastest_deg_s = fastest_deg_s;
+    EspTable table = Table(1);
+    table.AgreeOnLimits();
+    table.StartMove(0.5);
+    model_.fastest_deg_s *= 2;
+    if (fastest_deg_s == 0) model_.axis[1].upper_deg += 1.0;
+    EXPECT_EQ(KindOf([&] { table.StartMove(0.25); }), FaultKind::kMoved);
+    EXPECT_NEAR(table.State().encoder_rad, 0.5, 1e-9);
   }
 }
 
