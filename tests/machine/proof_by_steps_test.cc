@@ -88,6 +88,73 @@ TEST(ProofBySteps, InstrumentsWhoseSignsAxesOrUnitsChangeAreNoticedAtOnceWhereSi
   }
 }
 
+/// A machine whose controller says that it goes where it is told and that stands, or goes against it, from a reading on.
+class LyingMachine : public MachineController {
+ public:
+  LyingMachine(MachineController& inner, const MemoryLog& log, std::size_t good, double share)
+      : inner_(inner), log_(log), good_(good), share_(share) {}
+  const std::vector<MachineAxis>& Axes() const override { return inner_.Axes(); }
+  std::vector<AxisLimits> Travel() override { return inner_.Travel(); }
+  void StartMove(const std::vector<double>& to, double feed_m_s) override {
+    told_ = to;
+    if (log_.readings.size() < good_) return inner_.StartMove(to, feed_m_s);
+    std::vector<double> gone = to;
+    const std::vector<AxisState> at = inner_.State();
+    for (std::size_t k = 0; k < to.size(); ++k) gone[k] = at[k].encoder + share_ * (to[k] - at[k].encoder);
+    inner_.StartMove(gone, feed_m_s);
+  }
+  void StartArc(const Arc& arc) override {
+    told_.clear();
+    inner_.StartArc(arc);
+  }
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override { inner_.StartTurning(axis, speed_rad_s, ramp); }
+  bool Settles(Duration within) override { return inner_.Settles(within); }
+  std::vector<AxisState> State() override {
+    std::vector<AxisState> states = inner_.State();
+    for (std::size_t k = 0; k < told_.size(); ++k) states[k].encoder = states[k].commanded = told_[k];
+    return states;
+  }
+  void Stop() override { inner_.Stop(); }
+  void Home() override { inner_.Home(); }
+
+ private:
+  MachineController& inner_;
+  const MemoryLog& log_;
+  std::size_t good_;
+  double share_;
+  std::vector<double> told_;
+};
+
+TEST(ProofBySteps, AtStopsOnACircleBarAndGridGoWithAMachineThatGoesOffIt) {
+  const Scenario scenario = ShortCircles();
+  constexpr std::size_t kStops = 24;  // the first reading at rest, of the bar; the grid's are the last 8
+  const auto end_of = [&](std::size_t good, double share, const Changes& changes) {
+    DrivenTwin twin(scenario);
+    LyingMachine machine(twin.bench.machine, twin.log, good, share);
+    ChangedInstruments instruments(twin.bench.instruments, changes ? static_cast<int>(good) : 1000, 1000, changes);
+    MachineBench bench = {twin.bench.clock, machine, instruments, twin.bench.fixture, nullptr, twin.bench.indexer};
+    twin.options.prove = ProofBySteps(bench, twin.scenario, twin.options);
+    return RunEnd{twin.FaultOn(bench), twin.log.readings.size()};
+  };
+  EXPECT_EQ(end_of(1000, 1.0, {}).fault, "");
+  for (const double share : {0.0, -1.0, 1e-3}) {
+    const RunEnd run = end_of(kStops + 3, share, {});
+    EXPECT_EQ(run.fault, "moved") << share;
+    EXPECT_EQ(run.kept, kStops + 3) << share;
+  }
+  const auto value = [&](Reading& r, const char* column) -> double& { return In(r, scenario, column); };
+  const std::pair<std::size_t, Changes> changes[] = {
+      {0, [&](Reading& r, const Reading&) { value(r, "bar_um") = -value(r, "bar_um"); }},
+      {0, [&](Reading& r, const Reading&) { value(r, "bar_um") *= 1e-3; }},
+      {8, [&](Reading& r, const Reading&) { std::swap(value(r, "grid_x_mm"), value(r, "grid_y_mm")); }},
+      {8, [&](Reading& r, const Reading&) { value(r, "grid_y_mm") = -value(r, "grid_y_mm"); }}};
+  for (const auto& [from, change] : changes) {  // from a reading at rest on
+    const RunEnd run = end_of(from, 1.0, change);
+    EXPECT_EQ(run.fault, "moved") << from;
+    EXPECT_EQ(run.kept, from == 0 ? kStops : 2 * kStops + 8) << from;
+  }
+}
+
 TEST(ProofBySteps, OneLateAnswerOfBothEncodersCostsAnAttemptWhereNothingBeforeItIsOfItsMounting) {
   const Scenario scenario = ShortStops();
   const Changes late = [](Reading& r, const Reading& before) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/expected.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/names.h"
@@ -24,10 +25,15 @@ constexpr double kShareOfMachineRange = 0.05;  // of an instrument's, which the 
 constexpr double kShareOfVolts = 0.01;
 constexpr double kShareOfSpot = 0.4;
 constexpr double kShaftStep_rad = 5.0 * units::deg;
+constexpr double kBesideRadius_rad = 0.6;         // so that either axis goes a part of it at whole parts of a turn
+constexpr double kOffCircle_m = 0.2 * units::mm;  // less than the stroke of any bar, and more than lost motion
 
 /// Those columns that a step of an axis moves, or should leave alone.
 std::vector<Expected> MovedByAxes(const Scenario& scenario) {
   std::vector<Expected> moved = ExpectedOf(scenario, {});
+  if (scenario.bench == kCircularBench)
+    for (Expected& column : moved)
+      if (!column.is_angle) column.by_axes = column.nominal ? column.nominal : benches::circular::Radius_m;
   std::erase_if(moved, [](const Expected& column) { return !column.by_axes; });
   if (const auto& compared = FormatOf(scenario.bench).compared)
     moved.push_back({.column = compared->reference, .by_axes = [](const Reading& r) { return r.reference_rad; }, .is_angle = true});
@@ -45,7 +51,11 @@ double InSteps(double angle_rad) {
 }
 
 /// By how much each axis of a bench's machine goes beside a reading; empty: nothing proves anything.
-std::vector<double> StepOf(const Scenario& scenario) {
+std::vector<double> StepOf(const Scenario& scenario, const Reading& reading) {
+  if (scenario.bench == kCircularBench) {
+    const double towards_rad = reading.target_rad + kBesideRadius_rad;
+    return {kOffCircle_m * std::cos(towards_rad), kOffCircle_m * std::sin(towards_rad)};
+  }
   if (scenario.bench == kTurntableBench)
     return {InSteps(kShareOfMachineRange * FormatOf(scenario.bench).range_of(scenario, "autocollimator_x_arcsec"))};
   if (scenario.bench == kEncoderBench) return {kShaftStep_rad};
@@ -58,9 +68,11 @@ std::vector<double> StepOf(const Scenario& scenario) {
 /// A reading filed so far beside another.
 Reading Beside(const Reading& reading, const std::vector<double>& by, const std::vector<MachineAxis>& axes, const Scenario& scenario) {
   const auto& compared = FormatOf(scenario.bench).compared;  // its axis is filed where the reference stands
+  const std::string commanded = scenario.bench == kCircularBench ? "commanded_" : "";
   Reading beside = reading;
   for (std::size_t k = 0; k < by.size(); ++k)
-    if (by[k] != 0.0) NumberIn(beside, scenario, compared ? compared->reference : axes[k].name + "_" + axes[k].unit()) += by[k];
+    if (by[k] != 0.0)
+      NumberIn(beside, scenario, compared ? compared->reference : commanded + axes[k].name + "_" + axes[k].unit()) += by[k];
   return beside;
 }
 
@@ -93,21 +105,21 @@ std::function<void(const Reading&)> WayOf(const std::function<void(const Reading
 }
 
 std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scenario& scenario, const procedure::MachineOptions& options) {
-  const std::vector<double> step = StepOf(scenario);
-  if (step.empty()) return {};
+  if (StepOf(scenario, {}).empty()) return {};
   const auto proof = std::make_shared<procedure::StepProof>(false);
   // Of a comparison from reading to reading either device goes with the other.
   const bool is_compared = FormatOf(scenario.bench).compared.has_value();
-  return [&bench, &scenario, &options, step, proof, is_compared, proved = std::optional<int>(),
+  return [&bench, &scenario, &options, proof, is_compared, proved = std::optional<int>(),
           columns = MovedByAxes(scenario), close = ProofByClosing(bench, scenario, options)](const Reading& reading) mutable {
     if (is_compared && proved == reading.setup) return close(reading);
-    std::vector<double> by = step;
+    std::vector<double> by = StepOf(scenario, reading);
     if (Reading here = reading; NumberIn(here, scenario, columns[0].column) > 0.0)
       for (double& way : by) way = -way;  // towards the middle of its range
     Reading shown = procedure::ShownBeside(bench, by, options), back = bench.instruments.Look(), here = reading;
     const Reading there = Beside(reading, by, bench.machine.Axes(), scenario);
     std::vector<ColumnInStep> in_step;
     for (const Expected& c : columns) {
+      if (scenario.bench == kCircularBench && !std::isfinite(NumberIn(here, scenario, c.column))) continue;  // of the other instrument
       const auto since = [&](Reading& later) {
         const double went = NumberIn(later, scenario, c.column) - NumberIn(here, scenario, c.column);
         return c.is_angle ? std::remainder(went, units::turn) : went;

@@ -15,7 +15,8 @@ namespace twinbench {
 /// tables go so that the spots move by a hundredth of the converter's range; which way is learned from the first step, and that of
 /// the autocollimator's angles is known. Of a reading without volts what shows them is asked first.
 /// freeform_five_axis: A and B go until the spot has moved by two fifths of its size, each coordinate its own way. encoder_comparison:
-/// the shaft goes 5 deg beside the first reading of a mounting, from where on reference, device and axis are compared with each other.
+/// the shaft goes 5 deg beside the first reading of a mounting, from where on reference, device and axis are compared with each other. circular_motion at rest: the machine goes 0.2 mm off its
+/// circle, with both axes, and bar or grid with it.
 ///
 /// And what ProofByClosing asks.
 ///

@@ -14,6 +14,8 @@ namespace {
 
 using namespace benches::circular;
 
+constexpr double kOnCircle_m = 1.0 * units::nm;  // more: the machine went beside it
+
 /// With the room's temperature, as the bench's thermometer shows it.
 std::vector<Reading> WithTemperatures(std::vector<Reading> course, const Scenario& scenario) {
   Environment environment(scenario.environment, scenario.RunSeed());
@@ -128,7 +130,10 @@ Reading CircleRun::TakeBeside(std::vector<Reading> course, const Reading& comman
   course.push_back(commanded);
   course = WithTemperatures(WithAngles(std::move(course)), scenario_);
   BodiesOnce bodies;  // of this course; axes that are bodies take a second or two for it
-  return Shown(course.back(), CircleTwin(scenario_, course, Above_K(scenario_, course), bodies), course.size() - 1);
+  Reading shown = Shown(course.back(), CircleTwin(scenario_, course, Above_K(scenario_, course), bodies), course.size() - 1);
+  const double off_m = Radius_m(shown) - SetupOf(shown).radius_m;
+  if (SetupOf(shown).IsBar() && std::abs(off_m) > kOnCircle_m) kBar_m(shown) += off_m;
+  return shown;
 }
 
 namespace {
