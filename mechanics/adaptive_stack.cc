@@ -68,13 +68,14 @@ void AdaptiveStack::Plan(Nanoseconds time, const Commands& commands) {
   index_ = 0;
   planned_ == 0 ? Begin() : GoOn();
 
-  double miss = 0.0;
-  Vector12 found;
-  for (;; stride_ = std::max<std::size_t>(1, stride_ / 2)) {
-    Sweep(time, commands);
+  Sweep(time, commands);
+  Vector12 found = Total(ticks_.back()) - Linear(ticks_.back());
+  double miss = Foresee(found);
+  while (miss > 1.0 && stride_ > 1) {
+    stride_ /= 2;
+    ticks_.resize(stride_ + 1, ticks_[0]);  // along the same line: its first half is that of the longer stride
     found = Total(ticks_.back()) - Linear(ticks_.back());
     miss = Foresee(found);
-    if (miss <= 1.0 || stride_ == 1) break;
   }
   const double long_s = static_cast<double>(stride_) * propagator_.period_s();
   slope_ = (found - remainder_) / long_s;

@@ -24,10 +24,7 @@ class StackPropagator {
   explicit StackPropagator(const StackParameters& parameters);
 
   /// State after `parts` eighths of a period, 0 to 8.
-  State Step(const State& from, const Vector12& acceleration, int parts = kParts) const {
-    const auto i = static_cast<std::size_t>(parts);
-    return transition_[i] * from + drive_[i] * acceleration;
-  }
+  State Step(const State& from, const Vector12& acceleration, int parts = kParts) const;
 
   /// State after `since_s`, from 0 to a period: by the nearest eighth and four terms of Taylor's series, within
   /// 1e-6 of the amplitude of a mode of 825 Hz.

@@ -126,5 +126,16 @@ TEST(RestDecay, IsTheMotionItStandsFor) {
   EXPECT_EQ(decay.After(distance, std::int64_t{1} << 40), RestDecay::Distance(RestDecay::Distance::Zero()));
 }
 
+// Added up column by column, on every processor as Eigen does it here.
+TEST(StackPropagator, StepsByTheBitsOfItsMatrices) {
+  const StackPropagator propagator(CrookedStack());
+  const StackPropagator::State from = StackPropagator::State::LinSpaced(-1e-6, 3e-6).array().sin();
+  const Vector12 acceleration = Vector12::LinSpaced(0.3, -0.7).array().cos();
+  for (int parts = 0; parts <= StackPropagator::kParts; ++parts) {
+    const StackPropagator::State to = propagator.transition(parts) * from + propagator.drive(parts) * acceleration;
+    EXPECT_EQ(propagator.Step(from, acceleration, parts), to) << parts;
+  }
+}
+
 }  // namespace
 }  // namespace twinbench::mechanics
