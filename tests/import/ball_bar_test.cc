@@ -121,6 +121,40 @@ TEST_F(BallBar, LeavesAnEncoderBesideItsErrorAlone) {
   EXPECT_EQ(Take(text).bench, "encoder_comparison");
 }
 
+/// Once round each way about (250, 120) mm, X 20 um/m too long: a line of run-in first.
+std::string GridPlate(const std::string& header, double x_mm, double y_mm, const char* form) {
+  std::string text = header + fmt::format(fmt::runtime(form), x_mm, y_mm, x_mm, y_mm);
+  for (const int direction : {1, -1}) {
+    for (int k = 0; k < 72; ++k) {
+      const double angle_rad = direction * (5.0 * k + 1.0) * kDeg, x = 100.0 * std::cos(angle_rad), y = 100.0 * std::sin(angle_rad);
+      text += fmt::format(fmt::runtime(form), x_mm + x, y_mm + y, x_mm + x * (1.0 + 20e-6), y_mm + y);
+    }
+  }
+  return text;
+}
+
+TEST_F(Importing, TakesAGridPlateAboutTheCentreOfItsCommandedCircle) {
+  const Imported taken = Take(GridPlate("Soll X [mm];Soll Y [mm];Ist X [mm];Ist Y [mm]\n", 250.0, 120.0, "{:.7f};{:.7f};{:.7f};{:.7f}\n"));
+  EXPECT_THAT(taken.story, HasSubstr("taken as --map grid"));
+  EXPECT_THAT(taken.story, HasSubstr("the feed is not stated: taken as 1000 mm/min"));
+  ASSERT_EQ(taken.readings.size(), 144U) << taken.story;
+  const Quantity x_m{"commanded_x_mm"}, y_m{"commanded_y_mm"}, grid_x_m{"grid_x_mm"};
+  for (const Reading& r : taken.readings) {
+    EXPECT_NEAR(std::hypot(x_m(r), y_m(r)) / units::mm, 100.0, 0.01);  // the middle of places every 5 deg
+    EXPECT_NEAR((grid_x_m(r) - x_m(r)) / units::um, 20.0 * x_m(r), 1e-3 + 2.0 * 20e-6 * 100.0);
+  }
+  EXPECT_EQ(taken.readings.front().direction, 1);
+  EXPECT_EQ(taken.readings.back().direction, -1);
+  EXPECT_NE(taken.readings.front().pass, taken.readings.back().pass);
+}
+
+TEST_F(Importing, TakesPlacesOnACircleWithTimesForALogOfAController) {
+  std::string text = "time [s],set x [mm],set y [mm],act x [mm],act y [mm]\n";
+  for (int k = 0; k < 400; ++k)
+    text += fmt::format("{:.2f},{:.6f},{:.6f},{:.6f},{:.6f}\n", 0.01 * k, 50.0 * std::cos(0.02 * k), 50.0 * std::sin(0.02 * k), 50.001 * std::cos(0.02 * k), 50.0 * std::sin(0.02 * k));
+  EXPECT_THAT(Take(text).story, HasSubstr("taken as --map xy_log"));
+}
+
 TEST(UnitsOverATime, AreUnitsInNamesAndInBrackets) {
   ASSERT_TRUE(UnitAtEnd("feed_mm_min"));
   EXPECT_EQ(UnitAtEnd("feed_mm_min")->name, "mm_min");

@@ -56,6 +56,15 @@ TEST_F(Importing, RefusesAUnitThatItDoesNotKnow) {
   EXPECT_KEPT(MessageOf([&] { Take(Scaled("reference [furlong],measured [furlong]")); }));
 }
 
+TEST_F(Importing, NamesTheUnitThatIsMeant) {
+  const auto refusal = [&](const std::string& names) { return MessageOf([&] { Take(Scaled(names)); }); };
+  EXPECT_THAT(refusal("reference [dge],measured [deg]"), HasSubstr("inch; the nearest is deg; or a formula"));
+  EXPECT_THAT(refusal("reference [deg],measured [arcsce]"), HasSubstr("; the nearest is arcsec;"));
+  EXPECT_THAT(refusal("reference [furlong],measured [deg]"), Not(HasSubstr("nearest")));
+  EXPECT_THAT(MessageOf([&] { Take(Scaled("reference [deg],measured [deg]"), "[time]\ncolumn = \"reference\"\nunit = \"sce\"\n"); }), HasSubstr("filetime; the nearest is s"));
+  EXPECT_THAT(MessageOf([&] { MapWith("", {"time_sce=t"}); }), HasSubstr("the nearest is time_s"));
+}
+
 TEST_F(Importing, FindsANameOfTheMapWithoutItsUnitAndOneOfTheFileWithIt) {
   const std::string map = "[file]\nnames = [\"time [ms]\", \"target [mm]\", \"actual [mm]\"]\n[columns]\nreference_mm = \"target\"\n"
                           "measured_mm = \"actual [mm]\"\n";

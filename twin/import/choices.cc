@@ -28,12 +28,13 @@ std::string UsualUnit(const Choice& from, const std::string& target, const Map& 
 }
 
 [[noreturn]] void RefuseUnit(const Choice& from, const std::string& target) {
+  const std::vector<Dimension> wanted = {Dimension::kAngle, Dimension::kLength};
   std::string known;
-  for (const Dimension dimension : {Dimension::kAngle, Dimension::kLength}) {
+  for (const Dimension dimension : wanted) {
     for (const NamedUnit& unit : UnitsOf(dimension)) known += (known.empty() ? "" : ", ") + std::string(unit.name);
   }
   throw InputError(from.recording->file, fmt::format("\"{}\" is in \"{}\", which is no unit of an angle or a length", from.name, from.column->unit),
-                   fmt::format("{}; or a formula, as in --column '{}=[{}] * 360 / 4096' of 4096 counts per turn", known, target, from.name));
+                   fmt::format("{}{}; or a formula, as in --column '{}=[{}] * 360 / 4096' of 4096 counts per turn", known, NearestUnit(from.column->unit, wanted), target, from.name));
 }
 
 }  // namespace

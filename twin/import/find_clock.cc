@@ -106,7 +106,7 @@ void FindClock(const ClockSettings& settings, const std::string& where, Track& t
   if (!clock)
     throw InputError(where,
                      fmt::format("{} is given in \"{}\", which is no unit of time", column.name, unit),
-                     "[time] unit = s, ms, us, ns, min, h, epoch or filetime");
+                     "[time] unit = s, ms, us, ns, min, h, epoch or filetime" + NearestUnit(unit, {Dimension::kTime}));
   for (double& t : track.time_s) t = (t - clock->origin) * clock->to_s;
   track.absolute = clock->absolute;
   const bool is_said = !unit.empty() || clock->absolute;

@@ -110,6 +110,7 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
       "quantities that are looked for by their names");
   Table guess(keys, "guess");
   guess.Add("by", kPure, {}, &map.guess_by, "lists of quantities sought, \"angle_deg, deviation_um\": a file with such columns is of this kind");
+  guess.Text("clock", &map.guess_clock, {"any", "none"}, "none: only if it has no time");
   Table scenario(keys, "scenario");
   scenario.Add("set", kPure, {}, &map.set, "keys of the scenario, as --set has them: \"device.teeth=144\"");
   Table columns_table(keys, "columns");
@@ -219,7 +220,7 @@ void SetColumn(const std::string& assignment, Map& map) {
   const auto found =
       std::ranges::find_if(columns.entries, [&key](const MappedColumn& e) { return ColumnKeys::Key(e) == key; });
   if (found == columns.entries.end()) {
-    std::vector<std::string> known;
+    std::vector<std::string> known = {"time_s"};
     for (const MappedColumn& entry : columns.entries) known.push_back(ColumnKeys::Key(entry));
     throw InputError(where, "no bench has a quantity " + key,
                      fmt::format("another; the nearest is {}", Nearest(key, known)));

@@ -52,6 +52,7 @@ struct Map {
   AverageSettings average;
   std::vector<Sought> sought;
   std::vector<std::string> guess_by;  // lists of names that are sought: a file that has the columns of one is of this kind
+  std::string guess_clock = "any";    // any | none
   std::vector<std::string> set;       // keys of the scenario, as in --set; {name}: what was found of a quantity that is sought
 };
 

@@ -203,6 +203,7 @@ std::vector<std::string> NamesIn(const std::string& list) {
 
 bool IsOfKind(const Recording& recording, const Map& map) {
   return std::ranges::all_of(recording.tracks, [&map](const Track& own) {
+    if (map.guess_clock == "none" && own.HasClock()) return false;
     Track track = own;
     StackTurns(map, track);
     Seeker seeker(map.sought, track);

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <utility>
 
+#include "twin/core/nearest_key.h"
 #include "twin/core/units.h"
 #include "twin/import/common.h"
 #include "twin/import/text.h"
@@ -183,6 +184,21 @@ std::vector<NamedUnit> UnitsOf(Dimension dimension) {
   std::ranges::copy_if(kUnits, std::back_inserter(units),
                        [dimension](const NamedUnit& unit) { return unit.dimension == dimension; });
   return units;
+}
+
+std::string NearestUnit(std::string_view misspelt, const std::vector<Dimension>& dimensions) {
+  const std::string small = SmallLetters(Trimmed(misspelt));
+  std::string_view nearest;
+  int least = small.size() > 3 ? 3 : 2;
+  const auto look = [&](std::string_view spelling, std::string_view name) {
+    const int distance = EditDistance(small, spelling);
+    if (distance >= least || std::ranges::find(dimensions, PlainUnit(name)->dimension) == dimensions.end()) return;
+    least = distance;
+    nearest = name;
+  };
+  for (const NamedUnit& unit : kUnits) look(unit.name, unit.name);
+  for (const Spelling& other : kSpellings) look(other.spelling, other.name);
+  return nearest.empty() ? "" : "; the nearest is " + std::string(nearest);
 }
 
 NameAndUnit SplitHeader(std::string_view field) {

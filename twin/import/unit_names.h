@@ -26,6 +26,9 @@ std::optional<NamedUnit> UnitAtEnd(std::string_view name);
 /// Every plain name of a unit of that dimension, for keys: "deg", "rad", "arcsec", ...
 std::vector<NamedUnit> UnitsOf(Dimension dimension);
 
+/// "; the nearest is deg" of "dge": what a refusal adds where a unit of these dimensions is misspelt by a letter or two; else nothing.
+std::string NearestUnit(std::string_view misspelt, const std::vector<Dimension>& dimensions);
+
 /// A header's field taken apart: "Angle [deg]", "angle (deg)", "angle / deg", "angle, deg", "angle_deg", "angleDeg",
 /// "angle".
 struct NameAndUnit {
