@@ -62,5 +62,10 @@ TEST(CampaignSections, TheSummaryIsThatOfTheCampaign) {
   EXPECT_THAT(table.rows.at(0), ElementsAre("mean", "arcsec", "6", "12.5", "1.871", "2", "0", "66.7 %"));
 }
 
+TEST(ResultSummary, AMeanOfNumbersThatCancelIsNone) {
+  EXPECT_EQ((ResultSummary{.mean = -3.553e-16, .sd = 0.2}).ShownMean(), 0.0);
+  EXPECT_EQ((ResultSummary{.mean = -3.553e-16, .sd = 1e-15}).ShownMean(), -3.553e-16);
+}
+
 }  // namespace
 }  // namespace twinbench::campaign

@@ -86,6 +86,7 @@ TEST(DiagnosisSections, ShowTheLoudestResidualFirstAndAllOthersToo) {
 }
 
 const json kPlan = json::parse(R"({
+  "title": "Turntable",
   "runs": [
     {"run": "as is", "readings": 100, "minutes": 12, "dof": 80, "not_separable": ["dx: nobody reads it"],
      "shifts": {"mean_variance_factor": 1.5, "worst_variance_factor": 2.5, "least_possible_mean_factor": 1.25},
@@ -96,7 +97,7 @@ const json kPlan = json::parse(R"({
      "harmonics": [{"name": "separation.target.ez_arcsec", "order": [1, 2], "u": [0.03, 0.04]}]}],
   "next": "best", "advice": [{"name": "best", "words": "two more mountings", "bit_per_minute": 0.5, "minutes": 30, "readings": 90,
                               "of_causes_bit": 10, "of_results_bit": 5, "sets": ["procedure.shifts=[0, 5]"]}],
-  "ties": [{"present": {"effect": "a", "where": "x"}, "blamed": {"effect": "b", "where": ""}, "told_from": 0.002, "unit": "1"}],
+  "ties": [{"present": {"effect": "a", "where": "x"}, "blamed": {"effect": "b", "where": ""}, "told_from": 0.002, "unit": "um_per_K"}],
   "never_told_apart": [[{"effect": "c", "where": ""}, {"effect": "d", "where": "y"}]], "detectable": [], "invisible": []})");
 
 TEST(PlanPage, ComparesTheRunsOrderByOrder) {
@@ -111,10 +112,11 @@ TEST(PlanPage, ComparesTheRunsOrderByOrder) {
 
 TEST(PlanPage, SaysWhichRunToMakeAndWhatMayBeMistaken) {
   const Page page = PlanPage({}, kPlan);
+  EXPECT_EQ(page.title, "Turntable");
   EXPECT_EQ(page.verdict, "Most information per minute: two more mountings.");
   std::vector<std::vector<std::string>> rows;
   for (const PageTable& table : test::BlocksOf<PageTable>(page.sections)) rows.insert(rows.end(), table.rows.begin(), table.rows.end());
-  EXPECT_THAT(rows, Contains(ElementsAre("a at x", "b", "0.002", "1")));
+  EXPECT_THAT(rows, Contains(ElementsAre("a at x", "b", "0.002", "µm/K")));
   EXPECT_THAT(rows, Contains(ElementsAre("c, d at y")));
   EXPECT_THAT(rows, Contains(ElementsAre("target ez", "arcsec", "0.05", "0.1")));
 }

@@ -56,15 +56,38 @@ TEST(ObjectTables, HaveARowAnObjectWithItsMeasuredValues) {
   EXPECT_THAT(tables[0].rows[0], ElementsAre("0", "4.772 ± 0.018"));
 }
 
-TEST(ObjectTables, ShowValuesInGroupsWithTheUnitsOfTheirKeys) {
+TEST(ObjectTables, ShowValuesInGroupsWithTheUnitsOfTheirKeysInOneColumn) {
   const nlohmann::json results = nlohmann::json::parse(R"({"iso230_7": [
-    {"motion": "tilt_fixed_x", "values": {"total": {"value_arcsec": 9.5123, "u_arcsec": 0.12}, "synchronous": {"value_arcsec": 8.0, "u_arcsec": null}}},
+    {"motion": "tilt_fixed_x", "asynchronous_motions": 2, "values": {"total": {"value_arcsec": 9.5123, "u_arcsec": 0.12}, "synchronous": {"value_arcsec": 8.0, "u_arcsec": null}}},
     {"motion": "radial_fixed_y", "values": {"total": {"value_um": 3.0, "u_um": 0.5}}}]})");
   const std::vector<PageTable> tables = ObjectTables(results);
   ASSERT_EQ(tables.size(), 1u);
-  EXPECT_THAT(tables[0].columns, ElementsAre("motion", "synchronous [arcsec]", "total [arcsec]", "total [µm]"));
-  EXPECT_THAT(tables[0].rows[0], ElementsAre("tilt_fixed_x", "8", "9.51 ± 0.12", ""));
-  EXPECT_THAT(tables[0].rows[1], ElementsAre("radial_fixed_y", "", "", "3.00 ± 0.50"));
+  EXPECT_THAT(tables[0].columns, ElementsAre("motion", "asynchronous motions", "synchronous", "total"));
+  EXPECT_THAT(tables[0].rows[0], ElementsAre("tilt_fixed_x", "2", "8 arcsec", "9.51 ± 0.12 arcsec"));
+  EXPECT_THAT(tables[0].rows[1], ElementsAre("radial_fixed_y", "", "", "3.00 ± 0.50 µm"));
+}
+
+TEST(ObjectTables, ShowAnObjectThatIsAValueByItsWordsAndRounded) {
+  const json results = {{"ranked", {{{"setup", 0}, {"error", "cubic"}, {"key", "bar.cubic_per_mm2"}, {"value", 2.0712}, {"u", 0.34}, {"unit", "per_mm2"}}}}};
+  const std::vector<PageTable> tables = ObjectTables(results);
+  ASSERT_EQ(tables.size(), 1u);
+  EXPECT_THAT(tables[0].columns, ElementsAre("setup", "error", "value"));
+  EXPECT_THAT(tables[0].rows[0], ElementsAre("0", "cubic", "2.07 ± 0.34 mm⁻²"));
+}
+
+TEST(ObjectTables, BeginWithWhatARowIsOf) {
+  const json results = {{"targets", {{{"mean_arcsec", 1.0}, {"position_deg", 0.0}, {"setup", 0}}}}};
+  EXPECT_THAT(ObjectTables(results).at(0).columns, ElementsAre("setup", "position [deg]", "mean [arcsec]"));
+}
+
+TEST(ObjectTables, LieOnTheirSideWhereFewRowsHaveMoreColumnsThanAPageHolds) {
+  json row = {{"setup", 1}};
+  for (char key = 'a'; key < 'k'; ++key) row[std::string(1, key)] = key - 'a';
+  const PageTable table = ObjectTables({{"vdi3441", {row}}}).at(0);
+  EXPECT_EQ(table.title, "VDI/DGQ 3441");
+  EXPECT_THAT(table.columns, ElementsAre("setup", "1"));
+  ASSERT_EQ(table.rows.size(), 10u);
+  EXPECT_THAT(table.rows.back(), ElementsAre("j", "9"));
 }
 
 TEST(NumberText, HasTwoDigitsOfItsUncertainty) {

@@ -170,8 +170,9 @@ void WriteNext(const std::string& output, const std::vector<plan::NextRun>& runs
     WriteFileAtOnce(FileOf(output, k, runs.size(), runs[k]), WriteScenario(next[k]));
 }
 
-nlohmann::json JsonOf(const Planned& planned, const std::vector<plan::NextRun>& next) {
+nlohmann::json JsonOf(const std::string& title, const Planned& planned, const std::vector<plan::NextRun>& next) {
   nlohmann::json json = report::PlanJson(planned.runs, planned.effects);
+  json["title"] = title;
   json["mendings"] = report::MendingJson(planned.mendings);
   json["advice"] = report::PlanAdviceJson(planned.advice);
   if (!planned.programme.empty()) json["programme"] = report::ProgrammeJson(planned.programme.front());
@@ -208,7 +209,7 @@ void Plan(const PlanOptions& options, JsonAnswer& answer) {
   const std::vector<plan::NextRun> next = NextOf(options, planned);
   RequireFreeNext(options, next);
   if (!options.next.empty()) WriteNext(options.next, next, scenario);
-  answer.Write(JsonOf(planned, next));
+  answer.Write(JsonOf(scenario.title, planned, next));
   if (!answer.IsOnStdout()) fmt::print("{}", report::WithoutNoNumbers(TextOf(planned)));
 }
 
@@ -217,7 +218,7 @@ void Plan(const PlanOptions& options, JsonAnswer& answer) {
 PlanMade MakePlan(const Scenario& scenario, const PlanWish& wish) {
   const Planned planned = PlanOf(wish, scenario);
   const std::vector<plan::NextRun> next = NextOf(wish, planned);
-  return {JsonOf(planned, next), ScenariosOf(next, scenario)};
+  return {JsonOf(scenario.title, planned, next), ScenariosOf(next, scenario)};
 }
 
 void AddPlan(CLI::App& app) {

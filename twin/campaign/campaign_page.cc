@@ -122,7 +122,7 @@ PageTable SummaryTable(const Summary& summary) {
   for (const auto& [name, result] : summary.Results()) {
     const auto [words, unit] = report::NameAndUnit(name);
     const auto text = [](double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : std::string(); };
-    table.rows.push_back({report::PathInWords(words), unit, fmt::format("{}", result.count), text(result.mean), text(result.sd), text(result.rms_u),
+    table.rows.push_back({report::PathInWords(words), unit, fmt::format("{}", result.count), text(result.ShownMean()), text(result.sd), text(result.rms_u),
                           result.scored > 0 ? text(result.bias) : "", result.scored > 0 ? fmt::format("{:.1f} %", 100.0 * result.coverage95) : ""});
   }
   return table;

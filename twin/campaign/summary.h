@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -19,6 +20,9 @@ struct ResultSummary {
   std::int64_t scored = 0;  // those whose error is known
   double bias = 0.0;        // mean error; of a list, root mean square of those of its numbers
   double coverage95 = 0.0;  // share of errors within their k u
+
+  /// Numbers of a list that cancel each other leave what rounding makes of them: that is none.
+  double ShownMean() const { return std::abs(mean) < 1e-12 * sd ? 0.0 : mean; }
 };
 
 struct WorstTrial {

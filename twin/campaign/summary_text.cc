@@ -15,7 +15,7 @@ std::string Cell(double value, const char* form) {
 }
 
 std::string ResultLine(const std::string& name, const ResultSummary& r) {
-  return fmt::format("{:<44} {:>8} {:>12} {:>10} {:>10} {:>11} {:>9}\n", name, r.count, Cell(r.mean, "{:.5g}"),
+  return fmt::format("{:<44} {:>8} {:>12} {:>10} {:>10} {:>11} {:>9}\n", name, r.count, Cell(r.ShownMean(), "{:.5g}"),
                      Cell(r.sd, "{:.3g}"), Cell(r.rms_u, "{:.3g}"), Cell(r.bias, "{:.3g}"),
                      Cell(100.0 * r.coverage95, "{:.1f} %"));
 }

@@ -51,7 +51,7 @@ class Card {
 
   size() {
     this.plot.classList.toggle("square", Boolean(this.view.square));
-    if (this.view.height) this.plot.style.height = `${this.view.height(this.figure)}px`;
+    if (this.view.height) this.plot.style.height = `${this.view.height(this.figure, this.plot.clientWidth || innerWidth - 80)}px`;
   }
 
   head() {

@@ -4,7 +4,14 @@ import { number, withUnit } from "./format.js";
 import { tipElement } from "./tip.js";
 import { palette } from "./theme.js";
 
-export const sharesHeight = (figure) => 76 + 26 * figure.categories.length;
+const kLetter = 6, kLine = 12; // px of a label
+const labelWidth = (width) => Math.min(260, 0.46 * width);
+
+/** Each bar as high as the longest label that is broken to the width. */
+export function sharesHeight(figure, width) {
+  const lines = Math.ceil((1.2 * kLetter * Math.max(...figure.categories.map((name) => name.length))) / labelWidth(width));
+  return 76 + Math.max(26, kLine * lines + 2) * figure.categories.length;
+}
 
 const percent = (share) => `${(100 * share).toPrecision(3)} %`;
 const isShare = (figure) => figure.form === "shares";
@@ -21,7 +28,7 @@ export function sharesOption(figure, shown, looks, box) {
     xAxis: axis(figure.y, { scale: false, ...(isShare(figure) ? { max: 1, axisLabel: { color: colours.soft, hideOverlap: true, formatter: (x) => `${Math.round(100 * x)} %` } } : {}) }),
     yAxis: axis({ name: "", unit: "" }, {
       type: "category", data: figure.categories, inverse: true, splitLine: { show: false },
-      axisLabel: { color: colours.ink, fontSize: 11, lineHeight: 12, width: Math.min(260, 0.46 * box.width), overflow: "break", interval: 0 },
+      axisLabel: { color: colours.ink, fontSize: 11, lineHeight: kLine, width: labelWidth(box.width), overflow: "break", interval: 0 },
     }),
     tooltip: {
       ...base().tooltip, trigger: "axis", axisPointer: { type: "shadow" },

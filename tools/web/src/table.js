@@ -2,7 +2,7 @@
 import { element, slug } from "./dom.js";
 import { axisTitle, number } from "./format.js";
 
-const isNumber = (text) => text !== "" && /^[-\u2212+<]? ?[\d.]/.test(text) && !/[a-z]{3}/i.test(text);
+const isNumber = (text) => /^[-\u2212+<]? ?[\d.]+(e[-+\u2212]?\d+)?(?!\w)/.test(text) && !/[a-z]{3}/i.test(text);
 const kMostRows = 2000;
 
 function rowsOf(columns, rows, links = []) {
@@ -10,7 +10,7 @@ function rowsOf(columns, rows, links = []) {
   const cell = (tag, text, c, more = {}) => element(tag, { class: numeric[c] ? "number" : undefined, ...more }, text);
   return [
     element("thead", {}, element("tr", {}, ...columns.map((name, c) => cell("th", name, c, { scope: "col" })))),
-    element("tbody", {}, ...rows.map((row, r) => element("tr", {}, ...row.map((text, c) => (c === 0 ? cell("th", links[r] ? element("a", { href: encodeURI(links[r]) }, text) : text, c, { scope: "row" }) : cell("td", text.replace(/^-/, "\u2212"), c)))))),
+    element("tbody", {}, ...rows.map((row, r) => element("tr", {}, ...row.map((text, c) => (c === 0 ? cell("th", links[r] ? element("a", { href: encodeURI(links[r]) }, text) : text, c, { scope: "row" }) : cell("td", text.replace(/(^|e)-(?=\d)/g, "$1\u2212"), c)))))),
   ];
 }
 

@@ -56,7 +56,7 @@ PageTable DetectableTable(const nlohmann::json& seen) {
   for (const nlohmann::json& one : ListAt(seen, "detectable")) {
     const std::string unit = TextAt(one, "unit");
     table.rows.push_back({NameOfCause(one), NameAndUnit(TextAt(one, "parameter")).name,
-                          fmt::format("{:.3g}", NumberAt(one, "smallest")), unit == "1" ? "" : InPrint(unit)});
+                          fmt::format("{:.3g}", NumberAt(one, "smallest")), unit == "1" ? "" : UnitText(unit)});
   }
   return table;
 }

@@ -25,7 +25,7 @@ constexpr auto kUnits = std::to_array<std::string_view>({"um_m_K", "um_m", "um_K
 constexpr auto kNames = std::to_array<std::pair<std::string_view, std::string_view>>(
     {{"target", "table under test"}, {"reference", "reference table"}, {"multitooth", "multi-tooth table"}, {"device", "device under test"},
      {"ez", "index error EZ"}, {"ex", "tilt error EX"}, {"ey", "tilt error EY"}, {"dx", "radial error DX"}, {"dy", "radial error DY"},
-     {"dz", "axial error DZ"}, {"setups", "mountings"}, {"iso230", "ISO 230, part"}});
+     {"dz", "axial error DZ"}, {"setups", "mountings"}, {"iso230", "ISO 230, part"}, {"vdi3441", "VDI/DGQ 3441"}});
 constexpr std::array kPlaces = {"separation.", "results.", "values."};
 
 /// "terms[]" are the terms.
@@ -101,8 +101,12 @@ std::string CurveTitle(const std::string& path, const std::string& name) {
   return title;
 }
 
+std::string UnitText(const std::string& unit) {
+  return InPrint(UnitInPrint(unit));  // "per_m2", and "um/m"
+}
+
 std::string ShownUnit(const std::string& unit) {
-  return unit == "deg" ? "°" : InPrint(UnitInPrint(unit));  // "per_m2", and "um/m"
+  return unit == "deg" ? "°" : UnitText(unit);
 }
 
 std::string AfterNumber(const std::string& shown_unit) {

@@ -29,6 +29,9 @@ std::string PathInWords(const std::string& path);
 std::string CurveTitle(const std::string& path, const std::string& name);
 
 /// "um" as people read it: "µm".
+std::string UnitText(const std::string& unit);
+
+/// Likewise; degrees as their sign.
 std::string ShownUnit(const std::string& unit);
 
 /// A unit as it stands behind a number: all but the degree of an angle keep their distance.

@@ -8,7 +8,6 @@
 
 #include "twin/report/page/causes.h"
 #include "twin/report/page/named_numbers.h"
-#include "twin/report/sound.h"
 
 namespace twinbench::report {
 namespace {
@@ -115,7 +114,7 @@ PageTable AdviceTable(const json& plan) {
 PageTable PlannedTies(const json& plan) {
   PageTable table{"What may be mistaken for another cause", {"present", "may be identified instead", "distinguished above", "unit"}, {}};
   for (const json& tie : ListAt(plan, "ties"))
-    table.rows.push_back({NameOfCause(tie.value("present", json())), NameOfCause(tie.value("blamed", json())), Short(NumberAt(tie, "told_from")), InPrint(TextAt(tie, "unit"))});
+    table.rows.push_back({NameOfCause(tie.value("present", json())), NameOfCause(tie.value("blamed", json())), Short(NumberAt(tie, "told_from")), UnitText(TextAt(tie, "unit"))});
   return table;
 }
 
@@ -141,7 +140,8 @@ PageTable PlannedLosses(const json& plan) {
 }  // namespace
 
 Page PlanPage(const PageSource& source, const json& plan) {
-  Page page{source.name, "plan: nothing has been measured, this is what runs would give", "", VerdictTone::kPlain, {}};
+  const std::string title = TextAt(plan, "title");
+  Page page{title.empty() ? source.name : title, "plan: nothing has been measured, this is what runs would give", "", VerdictTone::kPlain, {}};
   for (const json& run : ListAt(plan, "advice")) {
     if (TextAt(run, "name") == TextAt(plan, "next")) page.verdict = "Most information per minute: " + TextAt(run, "words") + ".";
   }

@@ -11,7 +11,6 @@
 #include <string_view>
 
 #include "twin/report/page/named_numbers.h"
-#include "twin/report/sound.h"
 #include "twin/report/page/scored.h"
 #include "twin/report/page/walk.h"
 
@@ -56,7 +55,7 @@ Value MeasuredValue(const std::string& path, const json& object) {
   NamedUnit named = NameAndUnit(dot == std::string::npos ? path : path.substr(dot + 1));
   const std::string parent = dot == std::string::npos ? "" : path.substr(0, dot);
   const NamedUnit above = NameAndUnit(parent);
-  std::string unit = InPrint(object.value("unit", named.unit.empty() ? above.unit : named.unit));
+  std::string unit = UnitText(object.value("unit", named.unit.empty() ? above.unit : named.unit));
   const std::string before = PathInWords(named.unit.empty() && !above.unit.empty() ? above.name : parent);
   return {path, (before.empty() ? "" : before + " ") + named.name, unit, NumberAt(object, "value"),
           NumberAt(object, "u")};
@@ -122,14 +121,15 @@ std::optional<std::string> UnitOfValue(const json& node) {
   return {};
 }
 
-/// The members of a group whose values have their unit in their keys: {"total": {"value_um", "u_um"}, ...}.
+/// The members of a group whose values have their unit in their keys: {"total": {"value_um", "u_um"}, ...}. One column each, whatever
+/// the unit: a row of tilts stands beside one of displacements.
 void AddGroup(const json& group, std::map<std::string, std::string>& cells) {
   if (!group.is_object()) return;
   for (const auto& [key, member] : group.items()) {
     const std::optional<std::string> unit = UnitOfValue(member);
     if (!unit) continue;
     const double value = NumberAt(member, "value_" + *unit), u = NumberAt(member, "u_" + *unit);
-    cells[key + "_" + *unit] = CellText(value, u);
+    cells[key] = MeasuredText(value, u, *unit);
   }
 }
 
@@ -144,6 +144,9 @@ std::map<std::string, std::string> CellsOf(const json& object) {
       cells[key] = CellText(value.at("value"), NumberAt(value, "u"));
     }
   }
+  if (!IsMeasured(object)) return cells;
+  cells["value"] = MeasuredText(NumberAt(object, "value"), NumberAt(object, "u"), TextAt(object, "unit"));
+  for (const char* said : {"u", "unit", "key"}) cells.erase(said);  // with the value, and in words
   return cells;
 }
 
@@ -164,8 +167,19 @@ std::string ColumnTitle(const std::string& key) {
 
 /// What a row is of stands before what was found.
 std::ptrdiff_t PlaceOf(const std::string& key) {
-  constexpr auto kFirst = std::to_array<std::string_view>({"setup", "pass", "order", "instrument", "direction", "feed_mm_min", "radius_mm", "head_deg"});
+  constexpr auto kFirst = std::to_array<std::string_view>({"setup", "pass", "order", "table", "motion", "position_deg", "instrument", "direction", "feed_mm_min", "radius_mm", "head_deg", "error", "value"});
   return std::ranges::find(kFirst, key) - kFirst.begin();
+}
+
+/// A few rows of many columns are no wider than a page when they lie on their side.
+PageTable OnItsSide(const PageTable& table) {
+  PageTable turned{table.title, {table.columns.front()}, {}};
+  for (const auto& row : table.rows) turned.columns.push_back(row.front());
+  for (std::size_t c = 1; c < table.columns.size(); ++c) {
+    std::vector<std::string>& line = turned.rows.emplace_back(1, table.columns[c]);
+    for (const auto& row : table.rows) line.push_back(row[c]);
+  }
+  return turned;
 }
 
 std::optional<PageTable> TableOfObjects(const std::string& title, const json& list) {
@@ -184,7 +198,8 @@ std::optional<PageTable> TableOfObjects(const std::string& title, const json& li
     std::vector<std::string>& row = table.rows.emplace_back();
     for (const std::string& key : columns) row.push_back(cells[key]);
   }
-  return table;
+  constexpr std::size_t kMostColumns = 10;
+  return columns.size() > std::max(kMostColumns, all.size()) ? OnItsSide(table) : table;
 }
 
 }  // namespace
