@@ -347,6 +347,22 @@ test("pages of plans and investigations are drawn and pass the same checks", asy
   }
 });
 
+test("on a phone the broken labels of lying bars keep apart", async () => {
+  const words = ["first", "second", "third", "fourth"].map((which) => `the ${which} circle with the multi-tooth table a millimetre off the axis while the temperature rises`);
+  write("wordy.json", JSON.stringify({ runs: [], next: "", advice: words.map((text, k) => ({ name: text, words: text, bit_per_minute: k, sets: [] })) }));
+  twinbench("report", "wordy.json");
+  const page = await open("wordy.html");
+  await page.setViewportSize({ width: 390, height: 900 });
+  await page.reload();
+  const labels = page.locator("#figure-information-rate-of-each-next-run svg text");
+  await labels.nth(8).waitFor();
+  const boxes = await labels.evaluateAll((all) => all.map((label) => label.getBoundingClientRect()).map(({ left, right, top, bottom }) => ({ left, right, top, bottom })));
+  const kLetters = 4; // px: less is the room about a letter
+  const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > kLetters && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > kLetters;
+  assert.deepEqual(boxes.filter((a, k) => boxes.some((b, l) => l > k && meet(a, b))), []);
+  await page.close();
+});
+
 test("the page of an investigation leads to the pages of its runs, which are made with it", async () => {
   mkdirSync(join(folder, "asked"));
   makeRun("asked/01-first", scenario("turntable_shifts"));
