@@ -96,6 +96,16 @@ TEST(ReadingsCsv, KeepTimesToTheNanosecond) {
   }
 }
 
+TEST(ReadingsCsv, HaveNoTimeWhereNobodyMeasuredOne) {
+  const std::string first = "\n0,,0,0,1,0,full_circle,0,0,1,1,1,1", next = "\n7,,0,0,1,1,full_circle,10,-10,1,1,1,1";
+  const std::vector<Reading> readings = ParseReadings(std::string(kHeader) + ",clock" + first + ",none" + next + ",none\n");
+  EXPECT_LT(readings[0].time, readings[1].time) << "their order is known";
+  const std::string text = Write(readings);
+  EXPECT_THAT(text, HasSubstr("\n0,,0,"));
+  EXPECT_EQ(Write(ParseReadings(text)), text);
+  EXPECT_THAT(RowError("0,,0,0,1,0,full_circle,0,0,1,1,1,1"), HasSubstr("time_s is \"\"")) << "with a clock there is a time";
+}
+
 TEST(ReadingsCsv, OfTheOracleHaveNoOptionalColumns) {
   const auto readings = ReadReadingsCsv(TWINBENCH_TEST_DATA "/oracle/full_circle_reseat.csv");
   ASSERT_EQ(readings.size(), 144u);     // 36 positions, 4 set-ups

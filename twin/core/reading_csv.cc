@@ -11,6 +11,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/input_text.h"
 #include "twin/core/reading.h"
+#include "twin/core/reading_clock.h"
 #include "twin/core/reading_column.h"
 #include "twin/core/whole_file.h"
 
@@ -27,9 +28,18 @@ void RequireColumns(const CsvTable& table, const BenchFormat& bench) {
                      "readings of the bench " + bench.name + NearestColumn(missing.front(), others));
 }
 
+/// Nobody measured the time of a reading without a clock: the file has none, and in memory its rows are counted.
+bool IsTimeWithoutClock(const ReadingColumn& column, const Reading& reading) {
+  return column.name == "time_s" && !HasClock({&reading, 1});
+}
+
 void ParseField(const CsvTable& table, const CsvTable::Row& row, const ReadingColumn& column, Reading& reading) {
   const std::string& field = row.fields[*table.Column(column.name)];
   if (field.empty() && column.MayBeEmpty()) return;
+  if (field.empty() && IsTimeWithoutClock(column, reading)) {
+    reading.time = Time(std::chrono::seconds(reading.reading));
+    return;
+  }
   if (column.parse(reading, field)) return;
   throw InputError(table.Where(row), fmt::format("{} is \"{}\"", column.name, field), column.expected);
 }
@@ -52,14 +62,12 @@ void Harmonise(Reading& reading, const std::vector<ReadingColumn>& columns) {
 
 Reading ParseRow(const CsvTable& table, const CsvTable::Row& row, const std::vector<ReadingColumn>& columns) {
   Reading reading;
-  std::set<std::string> known;
-  for (const ReadingColumn& column : columns) {
-    known.insert(column.name);
-    if (table.Column(column.name)) ParseField(table, row, column, reading);
-  }
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    if (!known.contains(table.columns[i])) reading.extra[table.columns[i]] = row.fields[i];
+    const bool is_known = std::ranges::find(columns, table.columns[i], &ReadingColumn::name) != columns.end();
+    if (!is_known) reading.extra[table.columns[i]] = row.fields[i];
   }
+  for (const ReadingColumn& column : columns)
+    if (table.Column(column.name)) ParseField(table, row, column, reading);
   Harmonise(reading, columns);
   return reading;
 }
@@ -104,7 +112,8 @@ std::set<std::string> ExtraColumns(const std::vector<Reading>& readings) {
 std::string PrintRow(const Reading& reading, const std::vector<ReadingColumn>& columns,
                      const std::set<std::string>& extra) {
   std::string line;
-  for (const ReadingColumn& column : columns) line += column.print(reading) + ',';
+  for (const ReadingColumn& column : columns)
+    line += (IsTimeWithoutClock(column, reading) ? "" : column.print(reading)) + ',';
   for (const std::string& name : extra) {
     const auto found = reading.extra.find(name);
     line += (found == reading.extra.end() ? "" : QuoteCsv(found->second)) + ',';
