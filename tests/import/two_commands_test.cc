@@ -106,5 +106,15 @@ TEST_F(TwoCommands, LookAndFailWhereNothingCanBeImported) {
   EXPECT_EQ(Call({"import", "three.csv", "--look"}).exit_code, 2) << "three readings cannot be trusted";
 }
 
+TEST_F(TwoCommands, TellNoDurationOfARecordingThatNobodyTimed) {
+  std::string text = "reference [deg],encoder [deg]\n";
+  for (int k = 0; k < 144; ++k) text += fmt::format("{},{:.5f}\n", 2.5 * k, 2.5 * k + OncePerTurn(2.5 * k, 1));
+  Write("list.csv", text);
+  Succeed({"import", "list.csv", "-o", "run"});
+  EXPECT_THAT(Succeed({"check", "run/scenario.toml"}), HasSubstr("\nhow long it takes is not known: the recording beside it has no clock\n"));
+  EXPECT_TRUE(Json({"check", "run/scenario.toml", "--json", "-"}).at("expected").at("minutes").is_null());
+  EXPECT_THAT(Succeed({"export", "run"}), HasSubstr("\n1,,0,"));
+}
+
 }  // namespace
 }  // namespace twinbench::test

@@ -1,5 +1,8 @@
 #include <fmt/core.h>
 
+#include <cmath>
+#include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -11,6 +14,8 @@
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
+#include "twin/core/reading_clock.h"
+#include "twin/core/run_record.h"
 #include "twin/report/plan_text.h"
 #include "twin/report/sound.h"
 
@@ -28,9 +33,19 @@ struct Expected {
   std::string why_not;
 };
 
-Expected ExpectedOf(const Scenario& scenario) {
+/// The scenario of a recording that nobody timed states a procedure all the same; its minutes are nobody's.
+bool IsOfRunWithoutClock(const std::string& scenario) {
+  const std::filesystem::path path(scenario);
+  const RunFolder folder{path.has_parent_path() ? path.parent_path().string() : "."};
+  if (path.filename() != kScenarioFile || !std::filesystem::exists(folder.record())) return false;
+  return !HasClock(RunRecord::Open(folder.path)->Readings());
+}
+
+Expected ExpectedOf(const std::string& path, const Scenario& scenario) {
   try {
-    return {OutlookAtOnce(scenario), ""};
+    Expected expected{OutlookAtOnce(scenario), ""};
+    if (IsOfRunWithoutClock(path)) expected.outlook->minutes = std::numeric_limits<double>::quiet_NaN();
+    return expected;
   } catch (const InputError& refusal) {
     return {{}, refusal.what()};
   } catch (const BenchError& failure) {
@@ -58,6 +73,11 @@ std::string Counted(std::size_t count, const std::string& what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
+std::string DurationOf(double minutes, const std::optional<double>& on_real_bench) {
+  if (std::isnan(minutes)) return "how long it takes is not known: the recording beside it has no clock";
+  return fmt::format("{:.0f} minutes by the procedure's clock{}", minutes, WithProofs(minutes, on_real_bench));
+}
+
 /// Loading is the check: whatever is wrong is told with its line. The twin is built as well, for a scenario may name
 /// parts that do not go together.
 void Check(const CheckOptions& options, JsonAnswer& answer) {
@@ -66,7 +86,7 @@ void Check(const CheckOptions& options, JsonAnswer& answer) {
   const Bench& bench = BenchOf(scenario);
   static_cast<void>(bench.make_twin(scenario));
   const int readings = bench.planned_readings(scenario);
-  const Expected expected = ExpectedOf(scenario);
+  const Expected expected = ExpectedOf(options.scenario, scenario);
   const std::optional<double> on_real_bench = MinutesOnRealBench(scenario);
   answer.Write(JsonOf(options, scenario, readings, expected, on_real_bench));
   if (answer.IsOnStdout()) return;
@@ -74,8 +94,8 @@ void Check(const CheckOptions& options, JsonAnswer& answer) {
              Counted(static_cast<std::size_t>(readings), "reading"), Counted(scenario.effects.size(), "effect"),
              Counted(scenario.uncertainties.size(), "constant"));
   if (!expected.outlook) return fmt::print("It would come to no result: {}\n", expected.why_not);
-  fmt::print("{:.0f} minutes by the procedure's clock{}\n\n{}", expected.outlook->minutes,
-             WithProofs(expected.outlook->minutes, on_real_bench), report::WithoutNoNumbers(report::OutlookText(*expected.outlook)));
+  fmt::print("{}\n\n{}", DurationOf(expected.outlook->minutes, on_real_bench),
+             report::WithoutNoNumbers(report::OutlookText(*expected.outlook)));
 }
 
 }  // namespace
