@@ -35,8 +35,8 @@ static_assert(sizeof(Column) == sizeof(StackPropagator::State));
 
 /// A third of a driven stack's time goes here. Column after column on every processor: equal bits.
 [[gnu::target_clones("avx512f", "avx2", "default")]] void StepArrays(const double* transition, const double* from,
-                                                                     const double* drive, const double* acceleration,
-                                                                     double* to) {
+                                                                     const double* drive,
+                                                                     const double* acceleration, double* to) {
   const Column carried = SumOfColumns(transition, from, 2 * kCoordinates);
   const Column driven = SumOfColumns(drive, acceleration, kCoordinates);
   const Column sum{carried.top + driven.top, carried.middle + driven.middle, carried.bottom + driven.bottom};
