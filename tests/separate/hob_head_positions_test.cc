@@ -31,32 +31,6 @@ TEST(NoiseFactor, IsTheClosedFormOfTwoHeadsAndInfiniteAtEveryEvenOrderOf180Degre
   EXPECT_NEAR(NoiseFactor(2, Radians({0.0, 170.0})), 4.07, 0.005);  // sqrt(2) / (2 sin 170 deg)
 }
 
-std::vector<int> InvisibleOrders(const std::vector<double>& head_deg) {
-  std::vector<int> orders;
-  for (const VisibleOrder& v : FindVisibleOrders(Radians(head_deg), 12, 0.0)) {
-    if (v.status == OrderStatus::kSumOnly) orders.push_back(v.order);
-  }
-  return orders;
-}
-
-TEST(FindVisibleOrders, LosesWhatAllHeadsSeeAlike) {
-  EXPECT_THAT(InvisibleOrders({0, 180}), testing::ElementsAre(2, 4, 6, 8, 10, 12));
-  EXPECT_THAT(InvisibleOrders({20, 140, 260}), testing::ElementsAre(3, 6, 9, 12));
-  EXPECT_THAT(InvisibleOrders({0, 120}), testing::ElementsAre(3, 6, 9, 12));
-  EXPECT_THAT(InvisibleOrders({0, 90, 180}), testing::ElementsAre(4, 8, 12));
-  EXPECT_THAT(InvisibleOrders({0}), testing::SizeIs(12));
-  EXPECT_THAT(InvisibleOrders(kGoodHeads_deg), testing::IsEmpty());
-}
-
-TEST(FindVisibleOrders, JudgesByUncertaintyNotByAnExactZero) {
-  // At 177 deg order 2 costs 13.5 times the noise: fine at 0.01 arcsec, more than 0.5 arcsec at 0.1 arcsec.
-  const auto status = [](double u_arcsec) {
-    return FindVisibleOrders(Radians({0.0, 177.0}), 2, u_arcsec * kArcsec)[1].status;
-  };
-  EXPECT_EQ(status(0.01), OrderStatus::kSeparated);
-  EXPECT_EQ(status(0.1), OrderStatus::kSumOnly);
-}
-
 TEST(SecondOrder, IsTheRootMeanSquareOfAnErrorTimesThatOfItsSlope) {
   const auto error_rad = [](double at_rad) { return 3e-5 * std::cos(at_rad) + 2e-6 * std::sin(7.0 * at_rad); };
   const auto slope = [](double at_rad) { return -3e-5 * std::sin(at_rad) + 14e-6 * std::cos(7.0 * at_rad); };

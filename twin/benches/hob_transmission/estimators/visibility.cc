@@ -20,15 +20,4 @@ OrderStatus Judge(double noise_factor, double u_rad, const SeparationLimits& lim
   return told_apart ? OrderStatus::kSeparated : OrderStatus::kSumOnly;
 }
 
-std::vector<VisibleOrder> FindVisibleOrders(const std::vector<double>& head_rad, int max_order,
-                                            double u_position_rad, const SeparationLimits& limits) {
-  std::vector<VisibleOrder> orders;
-  for (int k = 1; k <= max_order; ++k) {
-    const double factor = NoiseFactor(k, head_rad);
-    const double u_rad = factor * u_position_rad;
-    orders.push_back({k, Judge(factor, u_rad, limits), factor, u_rad});
-  }
-  return orders;
-}
-
 }  // namespace twinbench::separate::hob

@@ -23,24 +23,12 @@ enum class OrderStatus {
 /// with one head every order.
 double NoiseFactor(int order, const std::vector<double>& head_rad);
 
-struct VisibleOrder {
-  int order = 0;
-  OrderStatus status = OrderStatus::kSumOnly;
-  double noise_factor = kNaN;
-  double u_rad = kNaN;  // of the separated coefficient
-};
-
 /// When is an order told apart? Uncertainty decides, not an exact zero: 177 deg is nearly blind at order 2.
 struct SeparationLimits {
   double max_u_rad = 0.5 * units::arcsec;  // twice the published agreement with an interferometer
   /// However quiet the readings: what the model leaves out, about 1 milliarcsec, is multiplied as well.
   double max_noise_factor = 100.0;
 };
-
-/// What head angles can see before anything is measured.
-/// @param u_position_rad  Standard uncertainty of one position's coefficient, cos or sin.
-std::vector<VisibleOrder> FindVisibleOrders(const std::vector<double>& head_rad, int max_order,
-                                            double u_position_rad, const SeparationLimits& limits = {});
 
 OrderStatus Judge(double noise_factor, double u_rad, const SeparationLimits& limits);
 
