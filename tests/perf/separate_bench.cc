@@ -64,7 +64,7 @@ void SeparateTwoCurves(benchmark::State& state, double missing, double spread) {
   const ShiftedReadings r = FiveShifts(static_cast<int>(state.range(0)), missing, spread);
   shifts::ShiftSolution solution;
   for (auto _ : state) {
-    const shifts::ShiftSeparation separation(r.shifts, shifts::Free::kConstant, r.weight);
+    const shifts::ShiftSeparation separation(r.shifts, r.weight);
     solution = separation.Solve(r.value);
   }
   const double n = static_cast<double>(state.range(0));

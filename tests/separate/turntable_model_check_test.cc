@@ -2,10 +2,127 @@
 
 #include "tests/separate/turntable_run.h"
 #include "tests/support/angle_benches.h"
+#include "twin/benches/turntable_autocollimator/estimators/harmonic_model.h"
 #include "twin/benches/turntable_autocollimator/estimators/model_check.h"
+#include "twin/core/errors.h"
 
 namespace twinbench::separate::turntable {
 namespace {
+
+/// Independent noise of standard deviation u.
+AngleSeries Sampled(const TrueCurve& curve, int n, double u_rad, Stream& noise) {
+  AngleSeries series;
+  series.value_rad.resize(n);
+  series.cov_rad2 = CurveCovariance::Dense(u_rad * u_rad * Eigen::MatrixXd::Identity(n, n));
+  for (int i = 0; i < n; ++i) {
+    series.position_rad.push_back(i * 2.0 * units::kPi / n);
+    series.value_rad[i] = curve.At(series.position_rad.back()) + u_rad * noise.Normal();
+  }
+  return series;
+}
+
+TEST(FitHarmonics, FindsAmplitudesAndPhasesExactly) {
+  Stream stream(1, "test.harmonics");
+  const TrueCurve curve = OrderRichCurve(35, 17.82 * arcsec, stream);
+  const HarmonicModel model = FitHarmonics(Sampled(curve, 72, 0.0, stream), 35);
+  ASSERT_EQ(model.terms.size(), 35u);
+  for (std::size_t k = 0; k < 35; ++k) {
+    EXPECT_EQ(model.terms[k].order, static_cast<int>(k) + 1);
+    EXPECT_NEAR(model.terms[k].amplitude_rad, curve.amplitude_rad[k], 1e-17);  // rounding
+    EXPECT_NEAR(std::remainder(model.terms[k].phase_rad - curve.phase_rad[k], 2 * units::kPi), 0.0, 1e-9);
+  }
+  for (const double angle : {0.01, 1.234, 6.0}) EXPECT_NEAR(model.At(angle).value_rad, curve.At(angle), 1e-16);
+}
+
+TEST(FitHarmonics, HasTheUncertaintiesOfTheFourierSum) {
+  Stream stream(2, "test.harmonics");
+  const TrueCurve curve = OrderRichCurve(5, 17.82 * arcsec, stream);
+  const HarmonicModel model = FitHarmonics(Sampled(curve, 72, 0.2 * arcsec, stream), 5);
+  for (const HarmonicTerm& term : model.terms) {
+    EXPECT_NEAR(term.u_amplitude_rad, 0.2 * arcsec * std::sqrt(2.0 / 72), 1e-18);
+    EXPECT_NEAR(term.u_phase_rad, term.u_amplitude_rad / term.amplitude_rad, 1e-12);
+  }
+  // 11 coefficients of 72 readings, the same at every angle; with what the residuals exceed the noise, if they do.
+  EXPECT_NEAR(std::pow(model.At(0.7).u_rad, 2) - std::pow(model.u_unmodelled_rad, 2),
+              std::pow(0.2 * arcsec, 2) * 11.0 / 72, 1e-18);
+}
+
+TEST(FitHarmonics, StatesAnUncertaintyThatMatchesItsScatterBetweenThePositions) {
+  constexpr int kRuns = 200;
+  double stated = 0.0, from_residuals = 0.0;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    Stream stream(seed, "test.harmonics");
+    const TrueCurve curve = OrderRichCurve(8, 17.82 * arcsec, stream);
+    AngleSeries series = Sampled(curve, 72, 0.3 * arcsec, stream);
+    const CurvePoint point = FitHarmonics(series, 8).At(2.5 * deg);
+    stated += std::pow((point.value_rad - curve.At(2.5 * deg)) / point.u_rad, 2) / kRuns;
+    series.cov_rad2 = CurveCovariance::Dense(Eigen::MatrixXd::Constant(series.value_rad.size(), series.value_rad.size(), kNaN));
+    const CurvePoint blind = FitHarmonics(series, 8).At(2.5 * deg);
+    from_residuals += std::pow((blind.value_rad - curve.At(2.5 * deg)) / blind.u_rad, 2) / kRuns;
+  }
+  // Mean 1, standard deviation 0.1; u_unmodelled makes it a little smaller where the residuals happen to be large.
+  EXPECT_NEAR(stated, 0.9, 0.3);
+  EXPECT_NEAR(from_residuals, 1.0, 0.3);
+}
+
+TEST(FitHarmonics, CountsWhatItDoesNotModel) {
+  Stream stream(3, "test.harmonics");
+  TrueCurve curve;
+  curve.amplitude_rad = {5 * arcsec, 0.0, 2 * arcsec};
+  curve.phase_rad = {0.3, 0.0, 1.0};
+  const HarmonicModel model = FitHarmonics(Sampled(curve, 72, 0.0, stream), 2);
+  EXPECT_NEAR(model.residual_rms_rad / arcsec, 2.0 / std::sqrt(2.0), 1e-9);
+  EXPECT_NEAR(model.u_unmodelled_rad / arcsec, std::sqrt(4.0 / 2 * 72 / (72 - 5)), 1e-9);
+  EXPECT_NEAR(model.At(0.1).u_rad, model.u_unmodelled_rad, 1e-18);  // no noise
+}
+
+TEST(FitHarmonics, TakesAnOrderAboveHalfThePositionsForItsMirrorImage) {
+  Stream stream(4, "test.harmonics");
+  TrueCurve curve{std::vector<double>(40, 0.0), std::vector<double>(40, 0.0)};
+  curve.amplitude_rad[39] = arcsec;  // order 40 of 72
+  const HarmonicModel model = FitHarmonics(Sampled(curve, 72, 0.0, stream), 35);
+  EXPECT_NEAR(model.terms[31].amplitude_rad, arcsec, 1e-17);  // order 32
+}
+
+TEST(FitHarmonics, RefusesMoreOrdersThanThePositionsDetermine) {
+  Stream stream(5, "test.harmonics");
+  const AngleSeries series = Sampled({}, 72, arcsec, stream);
+  EXPECT_EQ(MostHarmonics(72), 35);
+  EXPECT_NO_THROW(FitHarmonics(series, 35));
+  EXPECT_THROW(FitHarmonics(series, 36), InputError);
+  EXPECT_THROW(FitHarmonics(series, -1), InputError);
+}
+
+TEST(FitHarmonics, BearsPositionsThatAreMissing) {
+  Stream stream(6, "test.harmonics");
+  const TrueCurve curve = OrderRichCurve(6, 17.82 * arcsec, stream);
+  AngleSeries series = Sampled(curve, 72, 0.0, stream);
+  series.position_rad.erase(series.position_rad.begin() + 20, series.position_rad.begin() + 23);
+  Eigen::VectorXd left(69);
+  left << series.value_rad.head(20), series.value_rad.tail(49);
+  series.value_rad = left;
+  series.cov_rad2 = CurveCovariance::Dense(Eigen::MatrixXd::Zero(69, 69));
+  EXPECT_NEAR(FitHarmonics(series, 6).At(105 * deg).value_rad, curve.At(105 * deg), 1e-15);
+}
+
+TEST(ChooseHighestOrder, FindsTheHighestOrderThatIsThere) {
+  int right = 0, below = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Stream stream(seed, "test.harmonics");
+    TrueCurve curve = OrderRichCurve(12, 17.82 * arcsec, stream);
+    const int chosen = ChooseHighestOrder(Sampled(curve, 72, 0.1 * arcsec, stream));
+    right += chosen == 12;
+    below += chosen < 12;
+  }
+  EXPECT_EQ(below, 0);  // the least amplitude is about 0.3 arcsec, its noise 0.017
+  EXPECT_GE(right,
+            180);  // order 13 costs 10.6 in AICc: chi2 of its two coefficients exceeds that by chance in 0.5 %
+}
+
+TEST(ChooseHighestOrder, DoesNotUseUpAllPositions) {
+  Stream stream(7, "test.harmonics");
+  for (const int n : {9, 12, 36, 72}) EXPECT_LT(ChooseHighestOrder(Sampled({}, n, arcsec, stream)), n / 4);
+}
 
 TEST(DescribeErrors, GivesTheUsualSizes) {
   const ErrorSize size = DescribeErrors(Eigen::Vector4d(1.0, 4.0, -2.0, 1.0));

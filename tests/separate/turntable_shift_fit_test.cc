@@ -104,6 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
     Cases, ShiftFitAgainstDense,
     testing::Values(FitCase{"complete", 12, {0, 1, 5}, {0, 0, 0}}, FitCase{"lost_orders", 12, {0, 4, 6}, {0, 0, 0}, 2},
                     FitCase{"missing", 15, {0, 1, 5, 8}, {0, 0, 0, 0}, 2, 0.1},
+                    FitCase{"prime", 67, {3, -1, 75, 75}, {0, 0, 0, 0}, 2, 0.05},
                     FitCase{"unread_position", 14, {0, 1, 5, 9}, {0, 0, 0, 0}, 1, 0.0, {3, 4}},
                     FitCase{"one_shift_and_unread", 9, {2, 2}, {0, 0}, 1, 0.0, {4}},
                     FitCase{"rows", 12, {0, 1, 3, 8}, {0, 0, 1, 1}, 2, 0.05},
@@ -149,6 +150,16 @@ TEST(ShiftFit, IsUndeterminedWhereAGapTearsTwoShiftsApart) {
   EXPECT_FALSE(torn.determined());
   EXPECT_TRUE(torn.Solve(Values(std::ssize(grid.stops))).array().isNaN().all());
   EXPECT_FALSE(DenseFit(grid).determined);
+}
+
+TEST(ShiftFit, HearsNothingFromASetUpThatWasReadOnce) {
+  StopGrid with = GridOf({"four", 12, {0, 1, 5, 7}, {0, 0, 0, 0}});
+  with.stops.resize(37);
+  StopGrid without = with;
+  without.stops.pop_back();
+  without.setups.pop_back();
+  const VectorXd values = Values(37);
+  EXPECT_LT((ShiftFit(with).Solve(values) - ShiftFit(without).Solve(values.head(36))).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST(ShiftFit, BearsAStopThatWasReadOnceMoreThanThousandsOfOthers) {

@@ -9,7 +9,7 @@
 namespace twinbench::separate::shifts {
 namespace {
 
-constexpr double kNoWeightLeft = 1e-10;  // of the largest weight: direction of the free unknowns that is lost
+constexpr double kNoWeightLeft = 1e-10;  // of the largest weight: direction of the constants that is lost
 constexpr double kRounding = 4e-15;      // of a curve's harmonic, times its variance factor
 constexpr double kSameDirection = 1e-6;  // of a unit column
 
@@ -53,21 +53,10 @@ Eigen::MatrixXd Directions(const Eigen::MatrixXd& columns) {
 
 }  // namespace
 
-int TermsOf(Free free) {
-  return static_cast<int>(free);
-}
-
-Eigen::MatrixXd TermsAtStops(int n, Free free) {
-  Eigen::MatrixXd terms(n, TermsOf(free));
-  if (free != Free::kNothing) terms.col(0).setOnes();
-  if (free == Free::kAffine) terms.col(1) = Eigen::VectorXd::LinSpaced(n, -1.0, 1.0);
-  return terms;
-}
-
-EvenInverse::EvenInverse(ShiftSet set, Free free) : set_(std::move(set)), fourier_(set_.n) {
+EvenInverse::EvenInverse(ShiftSet set) : set_(std::move(set)), fourier_(set_.n) {
   for (int row = 0; row < set_.Rows(); ++row) rows_.push_back(Transfers(set_.OfRow(row)));
   weight_of_a_ = WeightsOfA(rows_);
-  EliminateFree(TermsAtStops(set_.n, free));
+  EliminateConstants();
 }
 
 /// Two real curves go through one transform as x + j y.
@@ -114,32 +103,23 @@ void EvenInverse::SolveHarmonic(int order, std::vector<Complex>& wave) const {
   wave[0] = a;
 }
 
-void EvenInverse::EliminateFree(const Eigen::MatrixXd& terms) {
-  const Eigen::Index n = set_.n, count = terms.cols(), setups = std::ssize(set_.shifts);
-  free_columns_ = Eigen::MatrixXd::Zero(curves() * n, count * setups);
-  eliminated_.resize(curves() * n, count * setups);
-  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(count * setups, count * setups);
+void EvenInverse::EliminateConstants() {
+  const Eigen::Index n = set_.n, setups = std::ssize(set_.shifts);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(curves() * n, setups), own = Eigen::MatrixXd::Zero(setups, setups);
+  eliminated_.resize(curves() * n, setups);
   for (Eigen::Index j = 0; j < setups; ++j) {
     const double weight = set_.weights[static_cast<std::size_t>(j)];
     const Eigen::Index row = set_.rows.empty() ? 0 : set_.rows[static_cast<std::size_t>(j)];
-    own.block(j * count, j * count, count, count) = weight * terms.transpose() * terms;
-    for (Eigen::Index q = 0; q < count; ++q) {
-      auto column = free_columns_.col(j * count + q);
-      column.head(n) = weight * terms.col(q);
-      column.segment((1 + row) * n, n) = weight * Turned(terms.col(q), -set_.shifts[static_cast<std::size_t>(j)]);
-      eliminated_.col(j * count + q) = InvertCurves(column);
-    }
+    own(j, j) = weight * static_cast<double>(n);
+    columns.col(j).head(n).setConstant(weight);
+    columns.col(j).segment((1 + row) * n, n).setConstant(weight);
+    eliminated_.col(j) = InvertCurves(columns.col(j));
   }
-  Eigen::MatrixXd null(curves() * n, 0);
-  free_inverse_.resize(own.rows(), own.cols());
-  if (own.rows() > 0) {
-    const auto [values, vectors] = EigenOfSymmetric(own - free_columns_.transpose() * eliminated_);
-    const Eigen::Index none = (values.array() <= NoWeight(rows_, weight_of_a_) * own.diagonal().maxCoeff()).count();
-    const auto kept = vectors.rightCols(values.size() - none);
-    free_inverse_ = kept * values.tail(values.size() - none).cwiseInverse().asDiagonal() * kept.transpose();
-    null = eliminated_ * vectors.leftCols(none);
-  }
-  FindLostCurves(null);
+  const auto [values, vectors] = EigenOfSymmetric(own - columns.transpose() * eliminated_);
+  const Eigen::Index none = (values.array() <= NoWeight(rows_, weight_of_a_) * own.diagonal().maxCoeff()).count();
+  const auto kept = vectors.rightCols(values.size() - none);
+  constant_inverse_ = kept * values.tail(values.size() - none).cwiseInverse().asDiagonal() * kept.transpose();
+  FindLostCurves(eliminated_ * vectors.leftCols(none));
 }
 
 void EvenInverse::FindLostCurves(const Eigen::MatrixXd& null) {
@@ -157,16 +137,9 @@ Eigen::VectorXd EvenInverse::Apply(const Eigen::VectorXd& right) const {
   const int values = curves() * set_.n;
   Eigen::VectorXd x(right.size());
   x.tail(right.size() - values) =
-      free_inverse_ * (right.tail(right.size() - values) - eliminated_.transpose() * right.head(values));
+      constant_inverse_ * (right.tail(right.size() - values) - eliminated_.transpose() * right.head(values));
   x.head(values) = InvertCurves(right.head(values)) - eliminated_ * x.tail(right.size() - values);
   return x;
-}
-
-Eigen::VectorXd Turned(const Eigen::VectorXd& values, int shift) {
-  const Eigen::Index n = values.size(), by = ((shift % n) + n) % n;
-  Eigen::VectorXd turned(n);
-  turned << values.tail(n - by), values.head(by);
-  return turned;
 }
 
 void RemoveClassMeans(int classes, const std::vector<bool>& used, Eigen::Ref<Eigen::VectorXd> values) {

@@ -9,31 +9,16 @@
 
 namespace twinbench::separate::shifts {
 
-/// What may differ from set-up to set-up besides the curves.
-enum class Free {
-  kNothing,
-  kConstant,  // the adjustment
-  kAffine     // and a drift that is proportional to the stop's number
-};
-
-/// Unknowns of one set-up: 0, 1 or 2.
-int TermsOf(Free free);
-
-/// Values of the free unknowns' terms at the n stops, one column a term: 1, and a ramp from -1 to 1 of zero mean.
-Eigen::MatrixXd TermsAtStops(int n, Free free);
-
 /// A generalised inverse of the normal matrix of complete circles in which all readings of a set-up weigh the same,
 /// harmonic by harmonic: n log n to apply.
 ///
-/// Unknowns stand in one vector: a (n values), b (n values a row), then the terms of the first set-up, of the second
-/// and so on. Each harmonic is a block of its own, of a and the rows' b: with b eliminated, a has the weight
-/// sum over the rows of (W^2 - |S|^2) / W (HarmonicTransfer); of a lost one a stays 0. What is free in the set-ups is
-/// eliminated (Schur complement of set-ups x terms unknowns). Directions whose weight in
-/// it is below 1e-10 of the largest, or below what rounding leaves of it, count as lost: with kAffine a ramp of a
-/// looks like the same drift in all set-ups, and two set-ups leave a parabola open as well.
+/// Unknowns stand in one vector: a (n values), b (n values a row), then the constants of the set-ups. Each harmonic is
+/// a block of its own, of a and the rows' b: with b eliminated, a has the weight sum over the rows of (W^2 - |S|^2) / W
+/// (HarmonicTransfer); of a lost one a stays 0. The constants are eliminated (Schur complement). Directions whose
+/// weight in it is below 1e-10 of the largest, or below what rounding leaves of it, count as lost.
 class EvenInverse {
  public:
-  EvenInverse(ShiftSet set, Free free);
+  explicit EvenInverse(ShiftSet set);
 
   Eigen::VectorXd Apply(const Eigen::VectorXd& right) const;
 
@@ -45,27 +30,23 @@ class EvenInverse {
   int null_directions() const { return null_directions_; }
   const ShiftSet& set() const { return set_; }
   int curves() const { return 1 + static_cast<int>(rows_.size()); }
-  int unknowns() const { return curves() * set_.n + static_cast<int>(free_columns_.cols()); }
+  int unknowns() const { return curves() * set_.n + static_cast<int>(set_.shifts.size()); }
 
  private:
   Eigen::VectorXd InvertCurves(const Eigen::VectorXd& right) const;
   void SolveHarmonic(int order, std::vector<std::complex<double>>& wave) const;
-  void EliminateFree(const Eigen::MatrixXd& terms);
+  void EliminateConstants();
   void FindLostCurves(const Eigen::MatrixXd& null);
 
   ShiftSet set_;
   Fourier fourier_;
   std::vector<std::vector<HarmonicTransfer>> rows_;  // of each row
   std::vector<double> weight_of_a_;                  // each harmonic's, b eliminated; 0 if it is lost
-  Eigen::MatrixXd free_columns_;  // of the normal matrix, in the rows of the curves
-  Eigen::MatrixXd eliminated_;    // InvertCurves of them
-  Eigen::MatrixXd free_inverse_;  // of the Schur complement
+  Eigen::MatrixXd eliminated_;        // InvertCurves of the constants' columns of the normal matrix
+  Eigen::MatrixXd constant_inverse_;  // of the Schur complement
   Eigen::MatrixXd lost_of_a_, lost_of_b_;
   int null_directions_ = 0;
 };
-
-/// values[(i + shift) mod n] at i.
-Eigen::VectorXd Turned(const Eigen::VectorXd& values, int shift);
 
 /// Takes the means of the classes i mod `classes` off the values that are to be used; the others become zero.
 void RemoveClassMeans(int classes, const std::vector<bool>& used, Eigen::Ref<Eigen::VectorXd> values);

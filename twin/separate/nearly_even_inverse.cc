@@ -74,8 +74,8 @@ void FillUnread(const Cells& cells, const std::vector<double>& common, Eigen::In
 }
 
 /// What stops have more (+1) or less (-1) than is common, as columns in the rows of the unknowns.
-std::optional<Eigen::MatrixXd> Differing(const Cells& cells, const EvenInverse& even, const Eigen::MatrixXd& terms,
-                                         const Eigen::MatrixXd& weight, double sign) {
+std::optional<Eigen::MatrixXd> Differing(const Cells& cells, const EvenInverse& even, const Eigen::MatrixXd& weight,
+                                         double sign) {
   const Eigen::Index values = even.curves() * weight.rows();
   std::vector<Eigen::VectorXd> columns;
   for (Eigen::Index j = 0; j < weight.cols(); ++j) {
@@ -84,8 +84,7 @@ std::optional<Eigen::MatrixXd> Differing(const Cells& cells, const EvenInverse& 
       if (!(differs > 0.0)) continue;
       if (columns.size() == kMostDiffering) return std::nullopt;
       Eigen::VectorXd column = Eigen::VectorXd::Zero(even.unknowns());
-      column[i] = column[cells.B(i, j)] = 1.0;
-      column.segment(values + j * terms.cols(), terms.cols()) = terms.row(i).transpose();
+      column[i] = column[cells.B(i, j)] = column[values + j] = 1.0;
       columns.push_back(std::sqrt(differs) * column);
     }
   }
@@ -106,14 +105,13 @@ std::optional<Eigen::MatrixXd> Factor(const Eigen::MatrixXd& columns, const Eige
 }  // namespace
 
 std::optional<NearlyEvenInverse> NearlyEvenInverse::Of(const std::vector<int>& shifts, const std::vector<int>& rows,
-                                                       Free free, const Eigen::MatrixXd& weight) {
+                                                       const Eigen::MatrixXd& weight) {
   const Cells cells(shifts, rows, weight.rows());
-  NearlyEvenInverse inverse(EvenInverse(CommonWeights(shifts, rows, weight), free));
+  NearlyEvenInverse inverse(EvenInverse(CommonWeights(shifts, rows, weight)));
   Eigen::MatrixXd filled = weight;
   FillUnread(cells, inverse.even_.set().weights, inverse.even_.curves() * weight.rows(), filled);
-  const Eigen::MatrixXd terms = TermsAtStops(static_cast<int>(weight.rows()), free);
-  const auto more = Differing(cells, inverse.even_, terms, filled, 1.0);
-  const auto less = Differing(cells, inverse.even_, terms, filled, -1.0);
+  const auto more = Differing(cells, inverse.even_, filled, 1.0);
+  const auto less = Differing(cells, inverse.even_, filled, -1.0);
   if (!more || !less) return std::nullopt;
   for (const auto& [columns, sign, factor] :
        {std::tuple(&*more, 1.0, &inverse.added_), std::tuple(&*less, -1.0, &inverse.lacking_)}) {

@@ -20,7 +20,7 @@ class NearlyEvenInverse {
  public:
   /// @param weight  n x set-ups, 0 where nothing was read.
   /// @return nothing if more than some four thousand stops differ, or if what is missing leaves something open.
-  static std::optional<NearlyEvenInverse> Of(const std::vector<int>& shifts, const std::vector<int>& rows, Free free,
+  static std::optional<NearlyEvenInverse> Of(const std::vector<int>& shifts, const std::vector<int>& rows,
                                              const Eigen::MatrixXd& weight);
 
   /// Unknowns as EvenInverse has them.

@@ -9,8 +9,6 @@
 /// Front door of what separates curves that were read against each other at several shifts.
 namespace twinbench::separate::shifts {
 
-enum class Curve { kA, kB };
-
 /// How the conjugate gradients ended.
 struct Convergence {
   bool converged = false;
@@ -21,27 +19,15 @@ struct Convergence {
 };
 
 struct ShiftSolution {
-  /// Values at the stops: means and what no reading tells are taken out; NaN where nothing is determined. b has n
-  /// values a row.
-  Eigen::VectorXd a, b;
-  /// a, b and what is free, in the order of EvenInverse, as the steps left them: they fit the readings, and have
+  /// a, b and the constants, in the order of EvenInverse, as the steps left them: they fit the readings, and have
   /// something in the directions that no reading tells.
   Eigen::VectorXd unknowns;
-  Eigen::MatrixXd free;       // terms x set-ups; the curves' constants, and what else is lost, are in them too
   Eigen::MatrixXd residuals;  // n x set-ups; NaN where nothing was read
-  double chi2 = kNaN;         // weighted sum of their squares
   Convergence convergence;
 };
 
-/// Covariance of the curves of complete, evenly weighted circles: it depends on how many stops lie between two
-/// values only, for all but what is free with a ramp.
-struct LagCovariance {
-  Eigen::VectorXd aa;  // cov(a(i), a(i + lag)); b has the same
-  Eigen::VectorXd ab;  // cov(a(i), b(i + lag))
-};
-
-/// Least squares of r_j(i) = a(i) + b(i + s_j) + free terms of set-up j, for any shifts, missing readings and
-/// unequal weights; b is another curve in every row of set-ups.
+/// Least squares of r_j(i) = a(i) + b(i + s_j) + constant of set-up j, for any shifts, missing readings and unequal
+/// weights; b is another curve in every row of set-ups.
 ///
 /// Solved by conjugate gradients on the normal equations (CGLS; Hestenes & Stiefel, J. Res. NBS 49 (1952) 409),
 /// with the inverse of the evenly weighted, complete problem as preconditioner (EvenInverse). Where that is the
@@ -50,14 +36,12 @@ struct LagCovariance {
 /// weights within a factor of ten: some sixty). A step costs two Fourier transforms of n and some passes through the
 /// readings.
 ///
-/// What is lost. Harmonics by the shifts (LostHarmonics), named without any arithmetic in doubles; of several rows what
-/// those of two rows differ by is taken out as well. By missing
-/// readings, or by weights so far apart that doubles see nothing of the small ones: unknowns drawn at random are
-/// read and solved for again; a value that does not come back is not determined. A set-up with no more readings
-/// than free terms tells nothing and counts as not read.
+/// What is lost. Harmonics by the shifts (LostHarmonics), and of several rows what those of two rows differ by. By
+/// missing readings: unknowns drawn at random are read and solved for again; a direction that does not come back is
+/// lost. A set-up with a single reading tells nothing and counts as not read.
 ///
-/// Limits. With gaps or unequal weights the variance of one value is a solution (CovarianceWith), all of them n. Two
-/// shifts see the lowest harmonic with n / 4 times the noise of the best, and rounding errors are noise too.
+/// Limits. Two shifts see the lowest harmonic with n / 4 times the noise of the best, and rounding errors are noise
+/// too.
 class ShiftSeparation {
  public:
   /// @param shifts  Of each set-up, in stops.
@@ -67,30 +51,17 @@ class ShiftSeparation {
   /// @param rows  Of each set-up, from 0 on; empty: all the same.
   /// @throws std::logic_error if sizes contradict each other, a weight is negative or not finite, or nothing was
   /// read, or nothing of a row.
-  ShiftSeparation(std::vector<int> shifts, Free free, Eigen::MatrixXd weight, int most_steps = 2000,
-                  std::vector<int> rows = {});
+  ShiftSeparation(const std::vector<int>& shifts, Eigen::MatrixXd weight, int most_steps = 2000,
+                  const std::vector<int>& rows = {});
 
   /// @param values  n x set-ups; what stands where the weight is 0 is not looked at.
   ShiftSolution Solve(const Eigen::MatrixXd& values) const;
-
-  /// Covariance of the value of one curve at one stop with all values of a (first n) and b (behind); NaN where they
-  /// are not determined. One solution.
-  /// @param stop  Of b: row n + stop.
-  Eigen::VectorXd CovarianceWith(Curve curve, int stop) const;
-  /// The same for all stops at once; only if IsEven(), of one row.
-  LagCovariance Lags() const;
 
   /// x of N x = right for a right-hand side in the range of the normal matrix N; the unknowns are EvenInverse's.
   Eigen::VectorXd SolveNormalEquations(const Eigen::VectorXd& right) const;
 
   /// Complete circles, each evenly weighted.
   bool IsEven() const { return even_; }
-  bool IsDetermined(Curve curve, int stop) const;
-  /// Whether the search for values that are not determined has converged: else too many may be taken for them.
-  bool search_converged() const { return search_converged_; }
-  std::vector<int> lost_harmonics() const { return LostHarmonics(inverse_.set()); }
-  /// Directions of a and of b that are lost beside those: see EvenInverse.
-  Eigen::Index LostDirections(Curve curve) const;
   /// Readings minus rank; NaN if more than eight directions are lost by missing readings.
   double dof() const { return dof_; }
 
@@ -98,23 +69,16 @@ class ShiftSeparation {
   Eigen::MatrixXd Predict(const Eigen::VectorXd& x) const;
   Eigen::VectorXd Gather(const Eigen::MatrixXd& weighted) const;
   Eigen::VectorXd Minimise(const Eigen::MatrixXd& values, Convergence& convergence) const;
-  Eigen::VectorXd Estimable(const Eigen::VectorXd& curves) const;
-  void FindUndetermined();
-  void MarkUndetermined(Eigen::VectorXd& curves) const;
+  void CountDegreesOfFreedom();
   Eigen::Index RowAt(Eigen::Index column) const;
   Eigen::Index CurveValues() const { return inverse_.curves() * n_; }
 
   Eigen::Index n_;
-  std::vector<int> shifts_, rows_;
   int most_steps_;
   Eigen::MatrixXd weight_;
-  Eigen::MatrixXd terms_;
   std::vector<Eigen::Index> read_;  // set-ups that tell something
   EvenInverse inverse_;             // of these
   bool even_ = true;
-  bool search_converged_ = true;
-  std::vector<bool> determined_a_, determined_b_;
-  Eigen::MatrixXd lost_of_a_, lost_of_b_;  // orthonormal over the values that are determined
   double dof_ = kNaN;
 };
 

@@ -105,14 +105,4 @@ std::vector<HarmonicTransfer> Transfers(const ShiftSet& set) {
   return transfers;
 }
 
-double ValueVariance(const ShiftSet& set) {
-  double sum = 0.0;
-  for (const HarmonicTransfer& t : Transfers(set)) {
-    if (t.lost) continue;
-    const bool twice = t.order != 0 && 2 * t.order != set.n;  // k and n - k
-    sum += (twice ? 2.0 : 1.0) * t.total / t.determinant;
-  }
-  return sum / set.n;
-}
-
 }  // namespace twinbench::separate::shifts

@@ -49,8 +49,4 @@ std::vector<int> LostHarmonics(const ShiftSet& set);
 /// @throws std::logic_error if there is no set-up, more than one row, or a weight is not positive.
 std::vector<HarmonicTransfer> Transfers(const ShiftSet& set);
 
-/// Variance of a value of either curve at any stop, mean and lost harmonics removed: (1 / n) sum_k W / (W^2 -
-/// |S_k|^2).
-double ValueVariance(const ShiftSet& set);
-
 }  // namespace twinbench::separate::shifts

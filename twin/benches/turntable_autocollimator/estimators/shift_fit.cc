@@ -81,11 +81,10 @@ ShiftFit::ShiftFit(const StopGrid& grid) : grid_(grid), common_steps_(CommonStep
   }
   const shifts::ShiftSet& set = telling.set;
   convention_.emplace(set, read);
-  separation_.emplace(set.shifts, shifts::Free::kConstant, readings_, 2000, set.rows);
+  separation_.emplace(set.shifts, readings_, 2000, set.rows);
   dof_ = separation_->dof() + used - static_cast<double>((readings_.array() > 0.0).count());
   determined_ = ComesBack();
-  if (determined_)
-    inverse_ = shifts::NearlyEvenInverse::Of(set.shifts, set.rows, shifts::Free::kConstant, readings_);
+  if (determined_) inverse_ = shifts::NearlyEvenInverse::Of(set.shifts, set.rows, readings_);
 }
 
 /// Whether unknowns drawn at random are found from readings of them, but for what the convention chooses.
