@@ -6,7 +6,6 @@
 #include "tests/sim/encoder_run.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/encoder_comparison/settings.h"
-#include "twin/benches/names.h"
 
 // Each effect of the bench encoder_comparison against its closed form.
 namespace twinbench {

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 #include "tests/core/input_error.h"
 #include "tests/support/angle_benches.h"
