@@ -5,7 +5,6 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <random>
 
 #include "tests/uncertainty/bench_budget.h"
 #include "tests/uncertainty/stated.h"

@@ -1,11 +1,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "tests/uncertainty/bench_budget.h"
-#include "twin/benches/rotary_4dof/settings.h"
 
 /// What the readings leave, by source: on every bench, and against what the scenario says of its instruments.
 namespace twinbench::uncertainty {
