@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "tests/core/input_error.h"
 #include "tests/hidden/unlisted.h"
