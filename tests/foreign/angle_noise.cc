@@ -1,5 +1,4 @@
 #include <cmath>
-#include <memory>
 
 #include "tests/foreign/angle_fault.h"
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "tests/foreign/angle_machine.h"
 #include "tests/foreign/stand_machine.h"

@@ -6,7 +6,6 @@
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/freeform_five_axis/columns.h"
-#include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"

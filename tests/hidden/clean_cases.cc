@@ -1,6 +1,5 @@
 #include "tests/hidden/clean_cases.h"
 
-#include <array>
 #include <cmath>
 #include <utility>
 

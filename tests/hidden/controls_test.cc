@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "tests/hidden/clean_cases.h"
 #include "tests/hidden/reduced.h"
 #include "tests/hidden/twin_cases.h"
 #include "twin/benches/names.h"

@@ -1,9 +1,7 @@
 #include <cmath>
 
 #include "tests/hidden/effect_size.h"
-#include "twin/benches/circular_motion/settings.h"
 #include "twin/benches/encoder_comparison/settings.h"
-#include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"
 #include "twin/benches/turntable_autocollimator/settings.h"

@@ -1,10 +1,13 @@
 #include <cmath>
 
 #include "tests/hidden/unlisted_cause.h"
+#include "twin/benches/freeform_five_axis/columns.h"
 
-// Causes that the catalogues of the encoder bench and of the hobbing machine lack.
+// Causes that catalogues lack; those of the rotary bench are in unlisted_rotary.cc.
 namespace twinbench::hidden {
 namespace {
+
+// Causes that the catalogues of the encoder bench and of the hobbing machine lack.
 
 UnlistedSignal EncoderNonIntegerLine(const Draw& draw) {
   return OnAngle({"per turn"}, draw.Series(draw.LineBetween(&Reading::reference_rad, 2, 12)));
@@ -41,6 +44,108 @@ UnlistedSignal Switching(const Draw& draw) {
   return OnAngle({"time"}, draw.Series(on_off));
 }
 
+// Causes of the turntable bench that the catalogue lacks. What follows the turntable's position alone is its error.
+
+std::string AnyAxis(const Draw& draw) {
+  return draw.Whole(0, 1) == 0 ? "x" : "y";
+}
+
+UnlistedSignal TurntableDirectionMap(const Draw& draw) {
+  const std::string axis = AnyAxis(draw);
+  return OnAxis(axis, {"direction"}, draw.FullCircleSeries(draw.DirectionMap(&Reading::target_rad, 2, 5)));
+}
+
+/// Draughts that come and go.
+UnlistedSignal SlowWander(const Draw& draw) {
+  const std::string axis = AnyAxis(draw);
+  return OnAxis(axis, {"time"}, draw.Series(draw.Wander(3.0, 8.0)));
+}
+
+/// Something that was leant against the stand for one pass.
+UnlistedSignal OnePassAside(const Draw& draw) {
+  const std::string axis = AnyAxis(draw);
+  const int pass = draw.Whole(2, 6), order = draw.Whole(1, 3);
+  const double phase = draw.Phase();
+  const auto aside = [&](std::size_t i) {
+    return draw.readings[i].pass == pass ? std::cos(order * draw.readings[i].target_rad + phase) : 0.0;
+  };
+  return OnAxis(axis, {"pass", "time", "mounting"}, draw.FullCircleSeries(aside));
+}
+
+// Causes of circles under bar and grid that the catalogue lacks.
+
+UnlistedSignal OnEither(const Draw& draw, const std::vector<std::string>& locks, const Eigen::VectorXd& series) {
+  return OnColumn(draw.Whole(0, 1), 2, locks, series);
+}
+
+/// A bearing at the foot of the bar: it goes on turning from pass to pass, so that its angle is the one travelled.
+UnlistedSignal TravelledLine(const Draw& draw) {
+  const double order = UniformIn(draw.stream, 2.3, 5.7), phase = draw.Phase();
+  double travelled_rad = 0.0;
+  Eigen::VectorXd series(static_cast<Eigen::Index>(draw.readings.size()));
+  for (std::size_t i = 0; i < draw.readings.size(); ++i) {
+    if (i > 0 && draw.readings[i].pass == draw.readings[i - 1].pass)
+      travelled_rad += draw.readings[i].target_rad - draw.readings[i - 1].target_rad;
+    series[static_cast<Eigen::Index>(i)] = std::cos(order * travelled_rad + phase);
+  }
+  return OnEither(draw, {"angle", "per turn"}, series);
+}
+
+/// A seat that is a little elsewhere every time a pass begins.
+UnlistedSignal SeatOfEachPass(const Draw& draw) {
+  std::vector<double> seats;
+  for (int k = 0; k < 200; ++k) seats.push_back(draw.of_run.Normal());
+  const auto seat = [&](std::size_t i) {
+    return seats[static_cast<std::size_t>(10 * draw.readings[i].setup + draw.readings[i].pass)];
+  };
+  return OnEither(draw, {"pass", "time"}, draw.Series(seat));
+}
+
+UnlistedSignal CircleDirectionMap(const Draw& draw) {
+  const Draw::Value map = draw.DirectionMap(&Reading::target_rad, 4, 8);
+  return OnEither(draw, {"direction"}, draw.Series(map));
+}
+
+/// Something that is warm while a set-up lasts.
+UnlistedSignal CircleWander(const Draw& draw) {
+  const Draw::Value wander = draw.Wander(4.0, 9.0);
+  return OnEither(draw, {"time", "pass"}, draw.Series(wander));
+}
+
+// Causes of five axes on paraboloids that the catalogue lacks.
+
+using namespace benches::freeform;
+
+constexpr Eigen::Index kProbe = 3;  // channels
+constexpr Eigen::Index kCamera = 2;
+
+/// An amplifier whose gain goes with the temperature.
+UnlistedSignal WarmGain(const Draw& draw) {
+  const bool x = draw.Whole(0, 1) == 0;
+  const auto gain = [&](std::size_t i) {
+    const Reading& r = draw.readings[i];
+    return (x ? kQpdX_V(r) : kQpdY_V(r)) * (r.temperature_degC - 20.0);
+  };
+  return OnColumn(x ? 0 : 1, kProbe, {"temperature", "reading", "qpd"}, draw.Series(gain));
+}
+
+/// Interference in the window of the camera: a wave of what it shows.
+UnlistedSignal Etalon(const Draw& draw) {
+  const double period_px = UniformIn(draw.stream, 60.0, 160.0), phase = draw.Phase();
+  const auto wave = [&](std::size_t i) {
+    return std::cos(units::turn * kCcd_px(draw.readings[i]) / period_px + phase);
+  };
+  return OnColumn(kCamera, kProbe, {"reading", "ccd"}, draw.Series(wave));
+}
+
+/// A holder that gives way with both swivels at once.
+UnlistedSignal BothSwivels(const Draw& draw) {
+  const auto both = [&](std::size_t i) {
+    return kCommanded[3](draw.readings[i]) * kCommanded[4](draw.readings[i]);
+  };
+  return OnColumn(kCamera, kProbe, {"angle", "a ", "b "}, draw.Series(both));
+}
+
 }  // namespace
 
 const std::vector<UnlistedCause>& EncoderUnlistedCauses() {
@@ -55,6 +160,27 @@ const std::vector<UnlistedCause>& HobUnlistedCauses() {
                                                     {"direction times order", HobDirectionMap},
                                                     {"switching pump", Switching}};
   return causes;
+}
+
+const std::vector<UnlistedCause>& TurntableUnlistedCauses() {
+  static const std::vector<UnlistedCause> causes = {{"direction times order", TurntableDirectionMap},
+                                                    {"slow wander", SlowWander},
+                                                    {"one pass aside", OnePassAside}};
+  return causes;
+}
+
+const std::vector<UnlistedCause>& CircularUnlistedCauses() {
+  static const std::vector<UnlistedCause> causes = {{"line of the travelled angle", TravelledLine},
+                                                    {"seat of each pass", SeatOfEachPass},
+                                                    {"direction times order", CircleDirectionMap},
+                                                    {"slow wander", CircleWander}};
+  return causes;  // constant
+}
+
+const std::vector<UnlistedCause>& FreeformUnlistedCauses() {
+  static const std::vector<UnlistedCause> causes = {
+      {"gain with the temperature", WarmGain}, {"etalon", Etalon}, {"product of both swivels", BothSwivels}};
+  return causes;  // constant
 }
 
 }  // namespace twinbench::hidden

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 
 #include "tests/hidden/unlisted.h"
 #include "tests/investigate/hidden_investigation.h"

@@ -1,11 +1,14 @@
 #include "tests/foreign/answer.h"
 #include "tests/foreign/plans.h"
 #include "tests/scores/sets.h"
+#include "tests/shelf/examine.h"
 #include "twin/benches/names.h"
 
-// Cases of tests/foreign: machines that can be run again.
+// Cases of machines that can be run again (tests/foreign), and recordings (tests/data/shelf).
 namespace twinbench::scores {
 namespace {
+
+// Cases of tests/foreign: machines that can be run again.
 
 /// What a diagnosis with the written file said, where it should have been silent.
 std::string Spoken(const std::string& when, const std::optional<std::string>& words) {
@@ -32,6 +35,19 @@ void AppendMachines(const std::string& set, const std::string& bench, const std:
   }
 }
 
+// Recordings of tests/data/shelf.
+
+void Fill(const shelf::Answer& answer, Row& row) {
+  row.hidden = answer.truth;
+  row.answer = (answer.judged.why.empty() || answer.judged.why == answer.words ? "" : answer.judged.why + " <- ") +
+               answer.words;
+  row.marks[kRight] = answer.judged.is_right;
+  row.marks[kSureWrong] = answer.judged.is_sure_wrong;
+  if (!answer.second) return;
+  row.marks[kSecondSilent] = answer.second->empty();
+  if (!answer.second->empty()) row.answer += "; again: " + *answer.second;
+}
+
 }  // namespace
 
 Plans ForeignSet(const std::string& bench, const Amount& amount) {
@@ -50,6 +66,17 @@ Plans TwoRunsSet(const std::string& bench, const Amount& amount) {
   AppendMachines("two_runs", bench, "",
                  foreign::TwinPlans(bench, amount.is_long ? 32 : 8, amount.first_seed),
                  amount.cache_folder, plans);
+  return plans;
+}
+
+Plans ShelfSet(const std::string& bench, const Amount& amount) {
+  Plans plans;
+  if (bench != kEncoderBench) return plans;
+  for (const std::string& name : shelf::CaseNames()) {
+    plans.push_back({"shelf", bench, name, [name, cache = amount.cache_folder](Row& row) {
+                       Fill(shelf::Examine(name, cache, true), row);
+                     }});
+  }
   return plans;
 }
 
