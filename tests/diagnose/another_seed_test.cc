@@ -41,30 +41,30 @@ double LeftOf(const std::vector<Reading>& readings, const Scenario& believed) {
 }
 
 /// Fewer simulated runs than a user's: nothing here is near the threshold.
-DiagnosisRun Found(const std::vector<Reading>& readings, const Scenario& believed) {
+DiagnosisRun FoundIn(const std::vector<Reading>& readings, const Scenario& believed) {
   DiagnoseOptions options;
   options.null_runs = 100;
-  options.cache_folder = test::ThresholdsFolder();
+  options.cache_folder = twinbench::test::ThresholdsFolder();
   return Diagnose(readings, believed, options);
 }
 
 class AnotherSeed : public testing::TestWithParam<Case> {};
 
 TEST_P(AnotherSeed, IsPredictedByWhatWasFound) {
-  Scenario stated = LoadScenario(test::ScenarioPath(GetParam().scenario));
+  Scenario stated = LoadScenario(twinbench::test::ScenarioPath(GetParam().scenario));
   stated.environment.swing_K = 0.5;
   Scenario actual = With(stated, GetParam().signal);
   actual.seed = 11;
-  const DiagnosisRun found = Found(test::ReadingsOf(actual), stated);
+  const DiagnosisRun found = FoundIn(twinbench::test::ReadingsOf(actual), stated);
   ASSERT_EQ(found.diagnosis.verdict, Verdict::kUnknown) << found.diagnosis.unknown.signature;
   const Scenario extended = Extend(stated, found, "test");
   ASSERT_TRUE(extended.empiricals.empty()) << found.diagnosis.unknown.signature;
   actual.seed = 12;
-  const std::vector<Reading> another = test::ReadingsOf(actual);
+  const std::vector<Reading> another = twinbench::test::ReadingsOf(actual);
   const double before = LeftOf(another, stated), with_truth = LeftOf(another, With(stated, GetParam().signal));
   const double removed = (before - LeftOf(another, extended)) / (before - with_truth);
   EXPECT_GT(removed, 0.9) << found.diagnosis.unknown.signature;
-  EXPECT_EQ(Found(another, extended).diagnosis.verdict, Verdict::kNone);
+  EXPECT_EQ(FoundIn(another, extended).diagnosis.verdict, Verdict::kNone);
 }
 
 std::vector<Case> Cases() {

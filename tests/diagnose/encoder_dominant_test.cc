@@ -73,7 +73,7 @@ TEST(EncoderDominant, OrdersThatRepeatThereAndBackAreNoWander) {
       EXPECT_FALSE(HasUnmodelled(answer.run.diagnosis));
       for (const Wave& wave : waves)
         EXPECT_NEAR(SizeOfOrder(answer, wave.order), wave.size_deg, 4.0 * noise_deg / std::sqrt(stops)) << wave.order;
-      EXPECT_EQ(answer.again.verdict, Verdict::kNone);
+      EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
     }
   }
 }
@@ -96,7 +96,7 @@ TEST(EncoderDominant, CoggingThatShiftsWithTheDirectionIsAnOrderAndItsProductWit
   }));
   EXPECT_NEAR(SizeOfOrder(answer, 72), 0.1 / std::sqrt(2.0), 0.003) << answer.Words();
   EXPECT_NE(answer.run.diagnosis.unknown.signature.find("direction times order 72"), std::string::npos) << answer.Words();
-  EXPECT_EQ(answer.again.verdict, Verdict::kNone) << answer.Words();
+  EXPECT_EQ(answer.Again().verdict, Verdict::kNone) << answer.Words();
 }
 
 TEST(EncoderDominant, AServoIsLateAndErrsByItsAcceleration) {
@@ -147,7 +147,7 @@ TEST(EncoderDominant, AServoThatIsCommandedFasterThanItCanGoHasASpeedLimit) {
     EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kUnknown);
     EXPECT_EQ(answer.run.diagnosis.unknown.signature.rfind(words, 0), 0U);
     EXPECT_TRUE(answer.run.diagnosis.causes.empty()) << "the rest is no news";
-    EXPECT_EQ(answer.again.unknown.signature.find("speed limit"), std::string::npos) << "the file that was written has it";
+    EXPECT_EQ(answer.Again().unknown.signature.find("speed limit"), std::string::npos) << "the file that was written has it";
   }
   const Answer fast = FollowedWithin(1000.0, 0.06, 10);
   EXPECT_TRUE(fast.Names("latency")) << fast.Words();
@@ -163,7 +163,7 @@ TEST(EncoderDominant, OnePlacePushedFromBothSidesShowsThePlay) {
   const Answer answer = Ask(record);
   EXPECT_TRUE(answer.Names("backlash", 0.5)) << answer.Words();
   EXPECT_NEAR(answer.Value("backlash", "width"), 0.01, 4.0 * answer.Uncertainty("backlash", "width"));
-  EXPECT_EQ(answer.again.verdict, Verdict::kNone) << answer.Words();
+  EXPECT_EQ(answer.Again().verdict, Verdict::kNone) << answer.Words();
 }
 
 TEST(EncoderDominant, WithoutAClockAScaleThatBendsIsNoDrift) {

@@ -42,7 +42,7 @@ TEST(EncoderInstruments, PlayIsPlayHoweverManyReadingsTheGapIsCrossedIn) {
     EXPECT_TRUE(answer.Names("backlash")) << readings << ": " << answer.Words();
     EXPECT_NEAR(answer.Value("backlash", "width"), 0.07, 0.002) << readings;
     EXPECT_FALSE(answer.Names("hysteresis", 0.1) || answer.Names("slip", 0.1)) << readings;
-    EXPECT_EQ(answer.again.verdict, Verdict::kNone) << readings << ": " << answer.Words();
+    EXPECT_EQ(answer.Again().verdict, Verdict::kNone) << readings << ": " << answer.Words();
   }
 }
 
@@ -53,7 +53,7 @@ TEST(EncoderInstruments, AWarmUpIsADriftThatSettlesAndNoHysteresis) {
     EXPECT_TRUE(answer.Names("drift")) << tau_s << ": " << answer.Words();
     EXPECT_NEAR(answer.Value("drift", "warm_up"), tau_s, 0.15 * tau_s);
     EXPECT_FALSE(answer.Names("hysteresis", 0.1)) << answer.Words();
-    EXPECT_EQ(answer.again.verdict, Verdict::kNone) << answer.Words();
+    EXPECT_EQ(answer.Again().verdict, Verdict::kNone) << answer.Words();
   }
 }
 
@@ -105,7 +105,7 @@ TEST(EncoderInstruments, AMagneticEncoderMayHaveManyOrdersAndNoLineBetweenThem) 
   }
   for (const double order : {3.0, 4.0, 50.0}) EXPECT_EQ(std::ranges::count(orders, order), 1) << answer.Words();
   EXPECT_TRUE(answer.Find("eccentricity") && answer.Find("ellipticity")) << answer.Words();
-  EXPECT_EQ(answer.again.verdict, Verdict::kNone) << answer.Words();
+  EXPECT_EQ(answer.Again().verdict, Verdict::kNone) << answer.Words();
 }
 
 TEST(EncoderInstruments, OrdersThatTheReadingsDoNotTellApartGetNoSizes) {

@@ -29,7 +29,7 @@ TEST(EncoderClock, ThatRunsFastIsFoundWithItsRate) {
     EXPECT_NEAR(answer.Value("clock_rate", "ratio"), ratio,
                 4.0 * answer.Uncertainty("clock_rate", "ratio") + ratio * ratio);
     EXPECT_EQ(answer.run.diagnosis.causes.size(), 1U) << ratio << ": " << answer.Words();
-    EXPECT_EQ(answer.again.verdict, Verdict::kNone) << ratio << ": " << answer.Words();
+    EXPECT_EQ(answer.Again().verdict, Verdict::kNone) << ratio << ": " << answer.Words();
   }
 }
 
@@ -77,7 +77,7 @@ void ExpectOneUnknown(const Answer& answer, const std::string& words) {
   EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kUnknown) << answer.Words();
   EXPECT_THAT(answer.run.diagnosis.unknown.signature, testing::HasSubstr(words)) << answer.Words();
   EXPECT_FALSE(answer.Names("slip", 0.01) || answer.Names("scale", 0.5)) << answer.Words();
-  EXPECT_EQ(answer.again.verdict, Verdict::kNone) << answer.Words();
+  EXPECT_EQ(answer.Again().verdict, Verdict::kNone) << answer.Words();
 }
 
 double Whole(double angle_deg, double spot_deg) {
@@ -123,7 +123,7 @@ TEST(EncoderCounts, TwoStepsThatAreNotAlikeAreTwoSlips) {
   });
   const auto& causes = answer.run.diagnosis.causes;
   EXPECT_EQ(std::ranges::count(causes, "slip", &Cause::effect), 2) << answer.Words();
-  EXPECT_EQ(answer.again.verdict, Verdict::kNone) << answer.Words();
+  EXPECT_EQ(answer.Again().verdict, Verdict::kNone) << answer.Words();
 }
 
 // Devices that come to rest after their reference, in time, beside what goes by the way.
@@ -237,7 +237,7 @@ TEST(EncoderTargets, FewOrdersKeepTheirNames) {
   const Answer answer = Ask(record);
   EXPECT_TRUE(answer.Find("eccentricity") && answer.Names("periodic") && answer.Names("backlash"))
       << answer.Words();
-  EXPECT_EQ(answer.again.verdict, Verdict::kNone) << answer.Words();
+  EXPECT_EQ(answer.Again().verdict, Verdict::kNone) << answer.Words();
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -44,10 +45,23 @@ struct Record {
   }
 };
 
-struct Answer {
-  DiagnosisRun run;
-  Diagnosis again;  // of the same readings, with the file that was written
+inline DiagnosisRun Diagnosed(const Record& record, const Scenario& believed) {
+  DiagnoseOptions options;
+  options.null_runs = 100;  // of what is far beyond any threshold
+  options.cache_folder = twinbench::test::ThresholdsFolder();
+  return Diagnose(record.readings, believed, options);
+}
 
+struct Answer {
+  Record record;
+  DiagnosisRun run = Diagnosed(record, record.Believed());
+  mutable std::optional<Diagnosis> again = {};
+
+  /// Of the same readings, with the file that was written.
+  const Diagnosis& Again() const {
+    if (!again) again = Diagnosed(record, Extend(record.Believed(), run, "test")).diagnosis;
+    return *again;
+  }
   const Cause* Find(const std::string& effect) const {
     const auto found = std::ranges::find(run.diagnosis.causes, effect, &Cause::effect);
     return found == run.diagnosis.causes.end() ? nullptr : &*found;
@@ -74,22 +88,13 @@ struct Answer {
   std::string Words() const {
     std::string words = VerdictName(run.diagnosis.verdict);
     for (const Cause& c : run.diagnosis.causes) words += fmt::format(" [{} {:.2f}]", c.effect, c.probability);
-    return words + " " + run.diagnosis.unknown.signature + " | again: " + VerdictName(again.verdict) + " " +
-           again.unknown.signature;
+    words += " " + run.diagnosis.unknown.signature;
+    return again ? words + " | again: " + VerdictName(again->verdict) + " " + again->unknown.signature : words;
   }
 };
 
-inline DiagnosisRun Diagnosed(const Record& record, const Scenario& believed) {
-  DiagnoseOptions options;
-  options.null_runs = 100;  // of what is far beyond any threshold
-  options.cache_folder = twinbench::test::ThresholdsFolder();
-  return Diagnose(record.readings, believed, options);
-}
-
 inline Answer Ask(const Record& record) {
-  Answer answer{Diagnosed(record, record.Believed()), {}};
-  answer.again = Diagnosed(record, Extend(record.Believed(), answer.run, "test")).diagnosis;
-  return answer;
+  return {record};
 }
 
 /// What must be found, and how sharply for it to be worth something.
@@ -107,7 +112,7 @@ inline void ExpectFound(const Answer& answer, const std::vector<Expected>& all) 
     EXPECT_NEAR(answer.Value(e.effect, e.parameter), e.value, 4.0 * u) << e.effect;
     EXPECT_LT(u, e.sharp) << e.effect;
   }
-  EXPECT_EQ(answer.again.verdict, Verdict::kNone);
+  EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
 }
 
 /// To and fro, as a hand wheel is turned: there and back over `range_deg` in `period_s`.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 #include "tests/diagnose/hob_chain.h"
 #include "tests/diagnose/told.h"
+#include "tests/support/thresholds.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/diagnose.h"
@@ -28,7 +28,7 @@ std::string NameOf(const std::string& effect, const std::string& where) {
 DiagnoseOptions Options() {
   DiagnoseOptions options;
   options.null_runs = 200;
-  options.cache_folder = (std::filesystem::path(::testing::TempDir()) / "twinbench-hob-thresholds").string();
+  options.cache_folder = twinbench::test::ThresholdsFolder();
   return options;
 }
 

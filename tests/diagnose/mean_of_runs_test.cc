@@ -1,15 +1,79 @@
-#include "twin/diagnose/mean_of_runs.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "twin/benches/registry.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/grouping.h"
+#include "twin/diagnose/mean_of_runs.h"
+#include "twin/diagnose/single_outliers.h"
 
 namespace twinbench::diagnose {
 namespace {
+
+using units::deg;
+
+/// Two passes of so many readings, there and back.
+Schedule ThereAndBack(int readings) {
+  Schedule s;
+  for (int i = 0; i < 2 * readings; ++i) {
+    s.reading.push_back(100 + i);
+    s.setup.push_back(0);
+    s.pass.push_back(i / readings);
+    s.direction.push_back(i < readings ? 1 : -1);
+    s.position.push_back(i % readings);
+    s.phase.push_back(Phase{});
+  }
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(2 * readings);
+  s.dwell_s = s.temperature_degC = s.reference_rad = s.velocity_rad_s = none;
+  s.time_s = Eigen::VectorXd::LinSpaced(2 * readings, 0.0, 2.0 * readings - 1.0);
+  s.target_rad = deg * s.time_s;
+  return s;
+}
+
+TEST(Grouping, KeepsPassesApartAndLeavesTheirLastGroupSmaller) {
+  const Grouping groups = GroupsOf(ThereAndBack(7), 3);
+  EXPECT_EQ(groups.start, (std::vector<int>{0, 3, 6, 7, 10, 13, 14}));
+  const Schedule rows = Grouped(ThereAndBack(7), groups);
+  EXPECT_EQ(rows.reading, (std::vector<int>{100, 103, 106, 107, 110, 113}));
+  EXPECT_EQ(rows.time_s[1], 4.0);
+}
+
+TEST(Grouping, TakesTheMeanOfEveryChannelByItself) {
+  const Grouping groups = GroupsOf(ThereAndBack(2), 2);
+  Eigen::VectorXd rows(8);  // of two channels
+  rows << 1.0, 10.0, 3.0, 30.0, 5.0, 50.0, 9.0, 90.0;
+  EXPECT_EQ(groups.MeanOfRows(rows).col(0), (Eigen::Vector4d(2.0, 20.0, 7.0, 70.0)));
+}
+
+// A mean over k readings that are 2 x of phase apart leaves sin(k x) / (k sin x) of a wave.
+TEST(Grouping, LeavesOfAWaveWhatTheMeanDoes) {
+  const Schedule s = ThereAndBack(360);
+  const Grouping groups = GroupsOf(s, 4);
+  EXPECT_NEAR(KeptByMean(30.0 * s.target_rad, groups), std::sin(60.0 * deg) / (4.0 * std::sin(15.0 * deg)), 1e-9);
+}
+
+TEST(Grouping, IsAsLargeAsLeavesTheLineFourFifths) {
+  const Schedule s = ThereAndBack(360);
+  // x = 15 deg: 0.911 of three, 0.837 of four, 0.746 of five.
+  EXPECT_EQ(LargestGroups(s, 30.0 * s.target_rad, {}).Size(0), 4);
+  // A wave that is folded to half a turn from one reading to the next does not survive a mean of two or four; of
+  // three a third is left: they stay alone.
+  EXPECT_EQ(LargestGroups(s, 30.0 * s.target_rad, 180.0 * s.target_rad).Size(0), 1);
+}
+
+TEST(SingleOutliers, AreFarFromBothSidesAndNoStep) {
+  const Schedule s = ThereAndBack(500);
+  Stream stream(5, "test.single_outliers");
+  Eigen::VectorXd left(s.Readings());
+  for (double& value : left) value = stream.Normal();
+  left.tail(300).array() += 50.0;  // a step, at reading 800
+  for (const int i : {120, 640}) left[i] += 20.0;
+  const SingleOutliers found = FindSingleOutliers(s, "a", left);
+  EXPECT_EQ(found.readings, (std::vector<int>{220, 740}));
+  EXPECT_NEAR(found.size, 20.0, 2.0);  // the noise of two, and of the medians beside them
+  EXPECT_EQ(found.of, 1000);
+}
 
 using Readings = std::vector<Reading>;
 

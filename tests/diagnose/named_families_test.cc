@@ -3,21 +3,18 @@
 
 #include <cmath>
 #include <map>
-#include <memory>
 #include <set>
 
 #include "tests/diagnose/twin_runs.h"
 #include "tests/sim/encoder_run.h"
-#include "tests/support/angle_benches.h"
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
-#include "twin/benches/rotary_4dof/diagnose.h"
 #include "twin/core/linear_algebra.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
-#include "twin/diagnose/twin_candidates.h"
 
 // Each named family, where a cause shows times its course, against what the twin shows when the cause is at work:
-// two implementations that share no code. Benches whose candidates the twin makes itself are not here.
+// two implementations that share no code. Benches whose candidates the twin makes itself are not here: what their twins
+// follow, tests/sim has.
 namespace twinbench::diagnose::slopes {
 namespace {
 
@@ -25,10 +22,9 @@ using Strings = std::vector<std::string>;
 using Values = std::map<std::string, double>;
 
 struct Design {
-  std::string name, bench;
+  std::string name;
   Strings changes;
   std::set<std::string> without;  // effects that such a run does not show, or that are no signature
-  double close = 0.01;            // share of a signature that second orders and rows of the run may leave
 };
 
 const std::vector<Design>& Designs() {
@@ -42,18 +38,14 @@ const std::vector<Design>& Designs() {
                                 "device.signal_zero_known=true"};
   static const std::set<std::string> not_at_stops = {"outliers", "interpolation", "gear_mesh", "reference_fault",
                                                      "latency",  "clock_rate",    "settling"};
-  static const std::vector<Design> designs = {
-      // Its stops are whole periods of the tables' encoders apart: there they err by nothing.
-      {"rotary", "rotary_4dof", {"mechanics.fidelity=kinematic"},
-       {"outliers", "convention", "reclamp_frame", "encoder_subdivision"}},
-      {"stops", "encoder_comparison", {}, not_at_stops, 1e-5},
-      {"sweep", "encoder_comparison", sweep, {"outliers", "settling"}, 1e-5}};
+  static const std::vector<Design> designs = {{"stops", {}, not_at_stops},
+                                              {"sweep", sweep, {"outliers", "settling"}}};
   return designs;
 }
 
 /// Without noise and in a room that swings.
 Scenario ScenarioOf(const Design& design) {
-  Scenario scenario = LoadScenario(twinbench::test::ScenarioPath(design.bench + ".toml"), design.changes);
+  Scenario scenario = LoadScenario(twinbench::test::ScenarioPath("encoder_comparison.toml"), design.changes);
   scenario.noise_free = true;
   scenario.environment.swing_K = 0.4;
   scenario.environment.swing_period_s = 4000.0;
@@ -68,34 +60,30 @@ struct Candidates {
 
 Candidates CandidatesOf(const Scenario& scenario, const std::vector<Reading>& readings,
                         const Strings& struck = {}) {
-  const auto in = [&](const auto& bench_run) { return Candidates{bench_run.run, Families(bench_run, struck)}; };
-  if (scenario.bench == kEncoderBench) return in(encoder::RunOf(readings, scenario));
-  const TwinComparison comparison = benches::rotary::ComparisonWith(readings, scenario, Estimator::kRigorous,
-                                                                    benches::rotary::FollowOnPsds(false));
-  const Compared compared = Compare(readings, scenario, comparison);
-  DiagnoseOptions options;
-  options.excluded = struck;
-  return {compared.run, diagnose::CandidatesOf(compared, readings, scenario, options, comparison).families};
+  const encoder::EncoderRun encoder = encoder::RunOf(readings, scenario);
+  return {encoder.run, Families(encoder, struck)};
+}
+
+std::vector<Reading> ReadingsOf(const Scenario& scenario) {
+  return twinbench::test::RunEncoderTwin(scenario).readings;
 }
 
 const Candidates& CleanOf(const Design& design) {
   static std::map<std::string, Candidates> clean;
   const Scenario scenario = ScenarioOf(design);
-  if (!clean.contains(design.name))
-    clean[design.name] = CandidatesOf(scenario, twinbench::test::ReadingsOf(scenario));
+  if (!clean.contains(design.name)) clean[design.name] = CandidatesOf(scenario, ReadingsOf(scenario));
   return clean.at(design.name);
 }
 
 /// Sizes a tenth of the plausible ones, so that second orders are small, and other shapes than the catalogue's
 /// zeros.
 EffectSettings EffectAt(const EffectEntry& entry, const std::string& where) {
-  const Values set = {{"phase", 0.7}, {"curvature", 0.4}, {"start", 0.4}, {"at_voltage", 0.02}};
+  const Values set = {{"phase", 0.7}, {"curvature", 0.4}, {"start", 0.4}};
   const std::set<std::string> shapes = {"order",     "teeth", "time_constant", "settles_over", "at_reading",
                                         "frequency", "level", "zero",          "period",       "warm_up"};
   EffectSettings effect{entry.name, where, {}, ""};
   for (const EffectParameter& p : entry.parameters) {
-    const bool is_shape = shapes.contains(p.name) || (p.name == "lag" && entry.name == "thermal_tilt");
-    const double value = set.contains(p.name) ? set.at(p.name) : (is_shape ? 1.0 : 0.1) * p.default_SI;
+    const double value = set.contains(p.name) ? set.at(p.name) : (shapes.contains(p.name) ? 1.0 : 0.1) * p.default_SI;
     if (p.BelongsTo(where)) effect.parameters[p.name] = value;
   }
   if (entry.name == "signal_offset") effect.parameters["offset_cos"] = -0.5 * effect.parameters.at("offset_sin");
@@ -111,18 +99,15 @@ void PrintTo(const Slope& slope, std::ostream* out) {
   *out << slope.design->name << " " << slope.effect.name << " " << slope.effect.where;
 }
 
-/// Every effect at every place, but forms of the grating: they are the tables' errors, which are free
-/// (hidden/controls_test.cc).
+/// Every effect at every place.
 std::vector<Slope> Slopes() {
   std::vector<Slope> slopes;
   for (const Design& design : Designs()) {
-    for (const EffectEntry& entry : EffectCatalogue(design.bench)) {
+    for (const EffectEntry& entry : EffectCatalogue(kEncoderBench)) {
       if (design.without.contains(entry.name)) continue;
-      if (entry.name == "grating_form") continue;
       for (const std::string& where : entry.places.empty() ? Strings{""} : entry.places)
         slopes.push_back({&design, EffectAt(entry, where)});
     }
-    if (design.bench != kEncoderBench) continue;
     using twinbench::test::EncoderEffect;
     slopes.push_back({&design, EncoderEffect("drift", {{"rate", 1e-8}, {"warm_up", 300.0}})});
     slopes.push_back({&design, EncoderEffect("backlash", {{"width", 25.0 * units::deg}, {"start", 0.4}})});
@@ -130,35 +115,25 @@ std::vector<Slope> Slopes() {
   return slopes;
 }
 
-/// What a family may leave at the effect's own shape (0: the design's), and at the nearest points of its grid.
+/// What a family may leave at the effect's own shape, and at the nearest points of its grid.
 struct Limit {
-  double own = 0.0, grid = 0.02;
+  double own = 1e-5, grid = 0.02;
 };
 Limit LimitOf(const Slope& slope) {
   static const std::map<std::string, Limit> limits = {
-      {"adc_step", {0.1, 0.75}},  // few readings are near the step
       {"amplitude_mismatch", {3e-4}},
       {"backlash", {1e-9, 0.2}},  // gaps of the grid differ by a factor 1.3
       {"clock_rate", {0.02}},
-      {"drift", {0.0, 0.08}},       // times by 1.36
-      {"hysteresis", {0.0, 0.05}},  // ways by 1.37
-      {"latency", {3e-5}},          // in the ramps the speed changes meanwhile
+      {"drift", {1e-5, 0.08}},       // times by 1.36
+      {"hysteresis", {1e-5, 0.05}},  // ways by 1.37
+      {"latency", {3e-5}},           // in the ramps the speed changes meanwhile
       {"quadrature_error", {3e-4}},
-      {"rotary backlash", {0.01}},
-      {"rotary mount_creep", {0.1, 0.1}},  // when a mounting ended no record says
-      {"settling", {0.02, 0.1}},
-      {"rotary settling", {0.02, 0.2}},     // times by 2.2
-      {"rotary thermal_tilt", {0.0, 0.05}},  // lags by 1.4
       {"signal_clipping", {4e-4, 0.16}},  // depths by 1.65
       {"signal_offset", {3e-4}},
-      {"slip", {0.0, 0.11}},
-      {"tone", {0.0, 0.35}}};  // up to a quarter of a cycle over the run
-  Limit limit;
-  for (const std::string& key : {slope.effect.name, slope.design->name + " " + slope.effect.name}) {
-    if (limits.contains(key)) limit = limits.at(key);
-  }
-  if (limit.own == 0.0) limit.own = slope.design->close;
-  return limit;
+      {"slip", {1e-5, 0.11}},
+      {"tone", {1e-5, 0.35}}};  // up to a quarter of a cycle over the run
+  const auto of_effect = limits.find(slope.effect.name);
+  return of_effect == limits.end() ? Limit{} : of_effect->second;
 }
 
 /// Least squares of a signature on columns, after projection.
@@ -246,13 +221,9 @@ TEST_P(NamedFamily, IsWhatTheTwinShowsOfItsEffectNearlySoOnItsGrid) {
   const Scenario stated = ScenarioOf(*design);
   Scenario actual = stated;
   actual.effects = {effect};
-  const std::vector<Reading> readings = twinbench::test::ReadingsOf(actual);
-  // Where there are two encoders, candidates are made of readings that have the effect in them.
-  const bool is_own = stated.bench == kEncoderBench;
-  const Candidates candidates = is_own ? CandidatesOf(stated, readings) : CleanOf(*design);
-  const LinearRun run =
-      is_own ? candidates.run : BenchOf(stated).linear_run(readings, stated, Estimator::kRigorous);
-  const Against against(candidates.run, is_own ? run.residual : run.observed - candidates.run.observed);
+  // Candidates are made of readings that have the effect in them.
+  const Candidates candidates = CandidatesOf(stated, ReadingsOf(actual));
+  const Against against(candidates.run, candidates.run.residual);
   Match best;
   for (const Family& family : candidates.families) {
     if (family.kind != Kind::kNamed || family.effect != effect.name || family.where != effect.where) continue;
@@ -274,7 +245,7 @@ INSTANTIATE_TEST_SUITE_P(OfEveryBench, NamedFamily, testing::ValuesIn(Slopes()),
 TEST(NamedFamilies, AreAllOfTheCatalogueThatTheRunCanShowWithGroupsOfTheirEffectsAndPriors) {
   for (const Design& design : Designs()) {
     std::set<std::string> named, expected;
-    for (const EffectEntry& entry : EffectCatalogue(design.bench)) {
+    for (const EffectEntry& entry : EffectCatalogue(kEncoderBench)) {
       if (!design.without.contains(entry.name)) expected.insert(entry.name);
     }
     for (const Family& family : CleanOf(design).families) {
@@ -297,10 +268,10 @@ Strings UnknownOf(const Candidates& candidates) {
 }
 
 TEST(UnknownFamilies, AreTheSameWhateverIsStruckWhichIsGone) {
-  const Strings struck = {"backlash", "slip", "drift", "scale", "latency", "tone", "autocollimator_roll"};
+  const Strings struck = {"backlash", "slip", "drift", "scale", "latency", "tone"};
   for (const Design& design : Designs()) {
     const Scenario scenario = ScenarioOf(design);
-    const Candidates left = CandidatesOf(scenario, twinbench::test::ReadingsOf(scenario), struck);
+    const Candidates left = CandidatesOf(scenario, ReadingsOf(scenario), struck);
     EXPECT_EQ(UnknownOf(left), UnknownOf(CleanOf(design))) << design.name;
     EXPECT_GT(UnknownOf(left).size(), 5u) << design.name;
     for (const Family& family : left.families)

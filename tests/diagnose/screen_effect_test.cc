@@ -112,13 +112,11 @@ TEST_P(ResidualTestOf, IsSeenByItsOwnTestAtItsOwnSize) {
   }
 }
 
-std::string NameOf(const testing::TestParamInfo<EffectCase>& of) {
+INSTANTIATE_TEST_SUITE_P(Cases, ResidualTestOf, testing::ValuesIn(EffectCases()), [](const auto& of) {
   std::string name = of.param.name;
   std::ranges::replace(name, ' ', '_');
   return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Cases, ResidualTestOf, testing::ValuesIn(EffectCases()), NameOf);
+});
 
 TEST(Periodogram, FindsATurnAndAHalfOfAnAngleBenchInMotion) {
   LinearRun run = SyntheticSweep(2400);

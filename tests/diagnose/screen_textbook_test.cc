@@ -5,7 +5,6 @@
 
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/distributions.h"
-#include "twin/core/units.h"
 #include "twin/diagnose/screen/tests.h"
 #include "twin/diagnose/screen/textbook.h"
 #include "twin/model/signals.h"

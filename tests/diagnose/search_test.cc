@@ -8,7 +8,6 @@
 #include "tests/diagnose/ring_run.h"
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/engine/naming.h"
 #include "twin/diagnose/engine/prior.h"
 

@@ -8,7 +8,6 @@
 #include "tests/diagnose/twin_runs.h"
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
-#include "twin/core/stream.h"
 #include "twin/diagnose/engine/noise_model.h"
 
 // Sums of series that are never written out, against those of the series.

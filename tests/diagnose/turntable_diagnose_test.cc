@@ -12,6 +12,7 @@
 #include "tests/diagnose/told.h"
 #include "tests/diagnose/turntable_bench.h"
 #include "tests/support/angle_benches.h"
+#include "tests/support/thresholds.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/diagnose/diagnose.h"
@@ -25,10 +26,15 @@ using test::BenchReadings, test::CarefulScenario, test::PublishedScenario, test:
 using testing::AnyOf, testing::HasSubstr;
 using units::arcsec;
 
-DiagnosisRun DiagnosisOf(const Scenario& scenario, const Wrong& wrong, std::uint64_t seed = 21) {
+DiagnosisRun Diagnosed(const std::vector<Reading>& readings, const Scenario& scenario) {
   DiagnoseOptions options;
-  options.cache_folder = testing::TempDir() + "turntable_null";  // one calibration a design
-  return Diagnose(BenchReadings(scenario, wrong, seed), scenario, options);
+  options.null_runs = 200;
+  options.cache_folder = twinbench::test::ThresholdsFolder();
+  return Diagnose(readings, scenario, options);
+}
+
+DiagnosisRun DiagnosisOf(const Scenario& scenario, const Wrong& wrong, std::uint64_t seed = 21) {
+  return Diagnosed(BenchReadings(scenario, wrong, seed), scenario);
 }
 
 /// The only cause, if there is one and it is this.
@@ -70,9 +76,7 @@ TEST(TurntableDiagnosis, TakesASingleDisturbedReadingForNoSlips) {
   for (const std::size_t disturbed : {2u, 20u, 38u}) {
     std::vector<Reading> readings = twinbench::test::RunTurntable(sweep).readings;
     readings[disturbed].autocollimator_tilt_rad += 17.0 * TurntableOf(sweep).autocollimator.noise_rad;
-    DiagnoseOptions options;
-    options.cache_folder = testing::TempDir() + "turntable_null";
-    const DiagnosisRun run = Diagnose(readings, sweep, options);
+    const DiagnosisRun run = Diagnosed(readings, sweep);
     EXPECT_TRUE(OnlyCause(run, "outliers")) << disturbed << ": " << test::Told(run);
   }
 }
@@ -165,7 +169,7 @@ TEST(TurntableDiagnosis, NamesAFaintToneRatherThanAWander) {
 TEST(TurntableDiagnosis, TakesALouderAutocollimatorForNoSeating) {
   Scenario louder = CarefulScenario();
   TurntableOf(louder).autocollimator.noise_rad = 0.13 * arcsec;
-  const DiagnosisRun run = Diagnose(BenchReadings(louder, {}, 21), CarefulScenario());
+  const DiagnosisRun run = Diagnosed(BenchReadings(louder, {}, 21), CarefulScenario());
   EXPECT_EQ(run.diagnosis.verdict, Verdict::kNone) << test::Told(run);
 }
 
@@ -236,9 +240,9 @@ TEST(TurntableDiagnosis, FindsStructureWithoutAName) {
 Scenario ExtendedFor(const Wrong& wrong) {
   const Scenario scenario = CarefulScenario();
   const std::vector<Reading> readings = BenchReadings(scenario, wrong, 21);
-  const DiagnosisRun found = Diagnose(readings, scenario);
+  const DiagnosisRun found = Diagnosed(readings, scenario);
   const Scenario extended = ParseScenario(ExtendedToml(scenario, found, "a test"), "extended.toml", "/elsewhere");
-  EXPECT_EQ(Diagnose(readings, extended).diagnosis.verdict, Verdict::kNone) << test::Told(found);
+  EXPECT_EQ(Diagnosed(readings, extended).diagnosis.verdict, Verdict::kNone) << test::Told(found);
   return extended;
 }
 
@@ -262,7 +266,7 @@ TEST(TurntableDiagnosis, SaysWhatMissingColumnsCost) {
   const Scenario scenario = PublishedScenario();
   std::vector<Reading> readings = BenchReadings(scenario, {}, 21);
   for (Reading& r : readings) r.temperature_degC = kNaN;
-  EXPECT_THAT(Diagnose(readings, scenario).diagnosis.notes,
+  EXPECT_THAT(Diagnosed(readings, scenario).diagnosis.notes,
               testing::ElementsAre(HasSubstr("autocollimator_temperature cannot be named"),
                                    HasSubstr("there are no calibration readings: autocollimator_scale")));
 }
