@@ -15,6 +15,7 @@ struct AllowedMotion {
 };
 
 /// @throws DeviceFault kMoved if a controller allows an axis something else than when limits were agreed on.
-void RequireAsAgreed(const DeviceLine& line, const MachineAxis& axis, const AllowedMotion& agreed, const AllowedMotion& now);
+void RequireAsAgreed(const DeviceLine& line, const MachineAxis& axis, const AllowedMotion& agreed,
+                     const AllowedMotion& now);
 
 }  // namespace twinbench::hw

@@ -78,8 +78,8 @@ std::string DurationOf(double minutes, const std::optional<double>& on_real_benc
   return fmt::format("{:.0f} minutes by the procedure's clock{}", minutes, WithProofs(minutes, on_real_bench));
 }
 
-/// Loading is the check: whatever is wrong is told with its line. The twin is built as well, for a scenario may name
-/// parts that do not go together.
+/// Loading is the check: whatever is wrong is told with its line. The twin is built as well, for a scenario may
+/// name parts that do not go together.
 void Check(const CheckOptions& options, JsonAnswer& answer) {
   RequireOutput(answer.to(), {options.scenario});
   const Scenario scenario = LoadScenario(options.scenario, options.overrides);
@@ -101,7 +101,9 @@ void Check(const CheckOptions& options, JsonAnswer& answer) {
 }  // namespace
 
 void AddCheck(CLI::App& app) {
-  auto* command = app.add_subcommand("check", "Say whether a scenario can be simulated, how long it takes, which u to expect and what is not separable");
+  auto* command = app.add_subcommand(
+      "check",
+      "Say whether a scenario can be simulated, how long it takes, which u to expect and what is not separable");
   auto options = std::make_shared<CheckOptions>();
   command->add_option("scenario", options->scenario, "scenario file (TOML)")->required();
   AddSet(*command, options->overrides);

@@ -1,3 +1,5 @@
+#include "tools/twinbench/measure.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 #include "tools/twinbench/common_options.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/live_page.h"
-#include "tools/twinbench/measure.h"
 #include "tools/twinbench/measure_machine.h"
 #include "tools/twinbench/measure_program.h"
 #include "tools/twinbench/measured_bench.h"
@@ -40,7 +41,8 @@ namespace {
 
 constexpr double kColdest_degC = -20.0, kHottest_degC = 60.0;  // beyond: no room that a bench stands in
 
-/// Whether a person said when the mountings of a recorded run were done, so that nobody waited for them by the clock.
+/// Whether a person said when the mountings of a recorded run were done, so that nobody waited for them by the
+/// clock.
 bool HandEndedMounting(const std::string& record_folder) {
   return std::ranges::any_of(RunRecord::Open(record_folder)->Events(), [](const RecordedEvent& event) {
     return event.device == "fixture" && event.text.find(procedure::kMountedByHand) != std::string::npos;
@@ -77,7 +79,8 @@ Asked WithAgreedLimits(const procedure::Options& options, const hw::BenchFile& f
   const hw::BenchLock lock(hw::AddressesOf(file), "rehearse");
   const auto bench = OpenAnyBench(file, scenario, {});
   asked.is_real = IsRealBench(file.kind, bench->Bench().simulation);
-  if (const auto limits = bench->Limits()) asked.options.target = limits->target, asked.options.reference = limits->reference;
+  if (const auto limits = bench->Limits())
+    asked.options.target = limits->target, asked.options.reference = limits->reference;
   return asked;
 }
 
@@ -96,9 +99,15 @@ void CarryOutOn(RotaryBench devices, const Scenario& scenario, RunRecord& record
                 const std::string& kind, LivePage& page) {
   const bool is_real = IsRealBench(kind, devices.simulation);
   procedure::WatchedTables watched(devices, options.target, options.reference);
-  RotaryBench bench = {devices.clock,     is_real ? watched.target() : devices.target, is_real ? watched.reference() : devices.reference,
-                       devices.adc,       devices.autocollimator, devices.thermometer,
-                       devices.goniometer, devices.fixture, devices.simulation};
+  RotaryBench bench = {devices.clock,
+                       is_real ? watched.target() : devices.target,
+                       is_real ? watched.reference() : devices.reference,
+                       devices.adc,
+                       devices.autocollimator,
+                       devices.thermometer,
+                       devices.goniometer,
+                       devices.fixture,
+                       devices.simulation};
   ProgressLine line;
   options.log = &record;
   if (is_real) options.prove = ProofBySteps(bench, scenario, options);
@@ -131,7 +140,8 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
   }
   const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench->Identity());
   page.Watch(*record, scenario, folder.path);
-  bench->HearClock([&](const std::string& notice) { record->AppendEvent(bench->Bench().clock.Now(), "clock", notice); });
+  bench->HearClock(
+      [&](const std::string& notice) { record->AppendEvent(bench->Bench().clock.Now(), "clock", notice); });
   const auto note = [&](const std::vector<std::string>& lines) {
     for (const std::string& line : lines) record->AppendEvent(bench->Bench().clock.Now(), "adc", line);
   };
@@ -144,12 +154,16 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
 /// A scenario, or the devices of another kind of bench, are told as such before their keys are.
 void RequireBenchFileFor(const Scenario& scenario, const std::string& path) {
   const std::string text = InputText(path, "a bench file in TOML"), of = TextAtTop(text, path, "bench");
-  const std::string wanted = "the file that says where the devices of " + scenario.bench + " are; `twinbench serve SCENARIO --write-bench FILE` writes one";
+  const std::string wanted = "the file that says where the devices of " + scenario.bench +
+                             " are; `twinbench serve SCENARIO --write-bench FILE` writes one";
   if (!of.empty()) throw InputError(path, "a scenario of " + of + ", no bench file", wanted);
   const bool is_driven = BenchOf(scenario).drive != nullptr;
   const std::string table = is_driven ? "adc" : "machine";  // what the other kind has
   if (HasTable(text, path, table))
-    throw InputError(path, fmt::format("a bench file with [{}], so of {}", table, is_driven ? "two tables with an AD converter" : "a machine"), wanted);
+    throw InputError(path,
+                     fmt::format("a bench file with [{}], so of {}", table,
+                                 is_driven ? "two tables with an AD converter" : "a machine"),
+                     wanted);
 }
 
 }  // namespace
@@ -195,8 +209,7 @@ void AddMeasure(CLI::App& app) {
   command->add_flag("--resume", options->resume, "go on behind the last reading that is kept");
   command->add_flag("--allow-homing", options->allow_homing,
                     "a table or machine whose controller has lost its origin may be driven to find it");
-  command->add_flag("--rehearse", options->rehearse,
-                    "simulate it first: travel, spots on the PSDs, duration");
+  command->add_flag("--rehearse", options->rehearse, "simulate it first: travel, spots on the PSDs, duration");
   command->add_flag("--rehearse-only", options->rehearse_only, "simulate it only");
   AddWebOption(*command, options->web);
   AnswerWith(*command, "what came of the run", [options](JsonAnswer& answer) {

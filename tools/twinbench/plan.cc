@@ -63,8 +63,8 @@ int SetupsOf(const PlanWish& options, const Scenario& scenario) {
 }
 
 /// The scenario's own run, and beside it the one at the shifts that tell most.
-std::vector<report::PlannedRun> RunsOf(const Scenario& scenario, const LookedAt& own, int setups, const std::vector<LookedAt>& others,
-                                       Patience& patience) {
+std::vector<report::PlannedRun> RunsOf(const Scenario& scenario, const LookedAt& own, int setups,
+                                       const std::vector<LookedAt>& others, Patience& patience) {
   std::vector<report::PlannedRun> runs = {OwnRun(scenario, own.planned.outlook, patience)};
   const std::optional<plan::ShiftDesign> design = ShiftDesignOf(scenario);
   if (!design) return runs;
@@ -77,7 +77,8 @@ std::vector<report::PlannedRun> RunsOf(const Scenario& scenario, const LookedAt&
 }
 
 report::PlanBudget BudgetOf(const PlanWish& options) {
-  return options.readings > 0.0 ? report::PlanBudget{options.readings, true} : report::PlanBudget{options.minutes, false};
+  return options.readings > 0.0 ? report::PlanBudget{options.readings, true}
+                                : report::PlanBudget{options.minutes, false};
 }
 
 /// @throws InputError if no result of the run is the one that shall count, naming those there are.
@@ -87,8 +88,10 @@ void RequireGoal(const std::string& goal, const LookedAt& own) {
   for (const plan::Gain& gain : plan::GainsOf(own.results, own.results, "")) kinds.push_back(gain.name);
   if (goal.empty()) return;
   std::vector<std::string> ends;  // as goals are written: "target.ez"
-  for (const std::string& kind : kinds) ends.push_back(kind.substr(kind.find('.') + 1, kind.rfind('_') - kind.find('.') - 1));
-  throw InputError("--goal " + goal, "the run gives no such result", fmt::format("one of {}; the nearest is {}", fmt::join(kinds, ", "), Nearest(goal, ends)));
+  for (const std::string& kind : kinds)
+    ends.push_back(kind.substr(kind.find('.') + 1, kind.rfind('_') - kind.find('.') - 1));
+  throw InputError("--goal " + goal, "the run gives no such result",
+                   fmt::format("one of {}; the nearest is {}", fmt::join(kinds, ", "), Nearest(goal, ends)));
 }
 
 Planned PlanOf(const PlanWish& options, const Scenario& scenario) {
@@ -125,11 +128,11 @@ std::vector<plan::NextRun> RunsInOrder(const report::PlannedProgramme& programme
   return runs;
 }
 
-/// Asked for set-ups: these. What cannot be separated is mended first; then comes the programme, or the run that buys
-/// most per minute.
+/// Asked for set-ups: these. What cannot be separated is mended first; then comes the programme, or the run that
+/// buys most per minute.
 std::vector<plan::NextRun> NextOf(const PlanWish& options, const Planned& planned) {
-  const auto named = std::ranges::find_if(planned.advice,
-                                          [](const plan::Advice& one) { return one.run.name == kBestShifts; });
+  const auto named =
+      std::ranges::find_if(planned.advice, [](const plan::Advice& one) { return one.run.name == kBestShifts; });
   if (options.setups > 0 && named != planned.advice.end()) return {named->run};
   if (!planned.mendings.empty()) return {planned.mendings.front().run};
   if (planned.programme.empty()) return {planned.advice.front().run};
@@ -142,8 +145,8 @@ std::string FileOf(const std::string& output, std::size_t at, std::size_t count,
   if (count == 1) return output;
   const std::filesystem::path path(output);
   const std::size_t digits = std::to_string(count).size();
-  const std::string name =
-      fmt::format("{}-{:0{}}-of-{}-{}{}", path.stem().string(), at + 1, digits, count, run.name, path.extension().string());
+  const std::string name = fmt::format("{}-{:0{}}-of-{}-{}{}", path.stem().string(), at + 1, digits, count,
+                                       run.name, path.extension().string());
   return (path.parent_path() / name).string();
 }
 
@@ -185,16 +188,20 @@ nlohmann::json JsonOf(const std::string& title, const Planned& planned, const st
 
 std::string LeftOutText(const std::map<std::string, int>& left_out) {
   std::vector<std::string> parts;
-  for (const auto& [what, times] : left_out) parts.push_back(times == 1 ? what : fmt::format("{} ({} times)", what, times));
+  for (const auto& [what, times] : left_out)
+    parts.push_back(times == 1 ? what : fmt::format("{} ({} times)", what, times));
   if (parts.empty()) return "";
-  return fmt::format("\nNot looked at within --cpu seconds of CPU time: {}. With --cpu 0 all is.\n", fmt::join(parts, "; "));
+  return fmt::format("\nNot looked at within --cpu seconds of CPU time: {}. With --cpu 0 all is.\n",
+                     fmt::join(parts, "; "));
 }
 
 std::string TextOf(const Planned& planned) {
   const double minutes = planned.runs.front().outlook.minutes;
   const std::string with_proofs = WithProofs(minutes, planned.on_real_bench);
-  std::string text = report::PlanText(planned.runs, planned.effects, planned.programme) + "\n" + report::MendingText(planned.mendings);
-  if (!with_proofs.empty()) text += fmt::format("\nAs the scenario says it takes {:.0f} minutes{}.\n", minutes, with_proofs);
+  std::string text = report::PlanText(planned.runs, planned.effects, planned.programme) + "\n" +
+                     report::MendingText(planned.mendings);
+  if (!with_proofs.empty())
+    text += fmt::format("\nAs the scenario says it takes {:.0f} minutes{}.\n", minutes, with_proofs);
   if (!planned.mendings.empty()) text += "\n";
   text += report::PlanAdviceText(planned.advice);
   if (!planned.programme.empty()) text += "\n" + report::ProgrammeText(planned.programme.front());
@@ -223,8 +230,7 @@ PlanMade MakePlan(const Scenario& scenario, const PlanWish& wish) {
 
 void AddPlan(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "plan",
-      "Expected uncertainty of a run, what it cannot resolve, and which run to make next");
+      "plan", "Expected uncertainty of a run, what it cannot resolve, and which run to make next");
   auto options = std::make_shared<PlanOptions>();
   command->add_option("scenario", options->scenario, "TOML file")->required();
   command->add_option("--setups", options->setups, "how many there may be; left out: as many as the scenario has")
@@ -236,11 +242,14 @@ void AddPlan(CLI::App& app) {
       ->check(AboveZero())
       ->excludes(minutes);
   options->cpu_s = 7.0;
-  command->add_option("--cpu", options->cpu_s, "CPU time [s] from which on less is looked at, and what is left out is said; 0: no end")
+  command
+      ->add_option("--cpu", options->cpu_s,
+                   "CPU time [s] from which on less is looked at, and what is left out is said; 0: no end")
       ->check(FromZero())
       ->capture_default_str();
   command->add_option("--goal", options->goal, "the result that counts: target.ez; left out: all");
-  AddOutput(*command, options->next, "the scenario of the run to be made next, or all of a programme as next-1-of-3-NAME.toml,");
+  AddOutput(*command, options->next,
+            "the scenario of the run to be made next, or all of a programme as next-1-of-3-NAME.toml,");
   AddSet(*command, options->overrides);
   AddForce(*command, options->force);
   AnswerWith(*command, "the result", [options](JsonAnswer& answer) { Plan(*options, answer); });

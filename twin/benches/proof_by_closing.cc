@@ -40,7 +40,8 @@ std::vector<ClaimedColumn> ClaimsOfMachine(const Scenario& scenario) {
   for (const Expected& expected : ExpectedOf(scenario, {}))
     if (expected.by_axes) claims.push_back(ClaimOf(expected, scenario));
   if (scenario.bench == kTurntableBench)
-    for (ClaimedColumn& claim : claims) claim.noise = TurntableOf(scenario).ReadingNoise_rad();  // also of x that is nulled
+    for (ClaimedColumn& claim : claims)
+      claim.noise = TurntableOf(scenario).ReadingNoise_rad();  // also of x that is nulled
   return claims;
 }
 
@@ -49,7 +50,8 @@ std::vector<ClaimedColumn> ClaimsOfTables(const Scenario& scenario) {
   std::vector<ClaimedColumn> claims;
   for (const Expected& expected : ExpectedOf(scenario, {})) {
     claims.push_back(ClaimOf(expected, scenario));
-    claims.back().noise = std::hypot(s.amplifier.noise_V / std::sqrt(s.adc.samples), expected.step / std::sqrt(12.0));
+    claims.back().noise =
+        std::hypot(s.amplifier.noise_V / std::sqrt(s.adc.samples), expected.step / std::sqrt(12.0));
     claims.back().repeats = 3.0 * s.amplifier.hum_V + 5e-4 * s.adc.range_V;
   }
   return claims;
@@ -57,12 +59,14 @@ std::vector<ClaimedColumn> ClaimsOfTables(const Scenario& scenario) {
 
 }  // namespace
 
-std::function<void(const Reading&)> ProofByClosing(MachineBench& bench, const Scenario& scenario, const procedure::MachineOptions& options) {
+std::function<void(const Reading&)> ProofByClosing(MachineBench& bench, const Scenario& scenario,
+                                                   const procedure::MachineOptions& options) {
   const double run_up_rad = RunUp_rad(scenario);
   if (!(run_up_rad > 0.0)) return [](const Reading&) {};
   const bool is_table = scenario.bench == kTurntableBench;
   const std::vector<ClaimedColumn> claims = ClaimsOfMachine(scenario);
-  return [&bench, &options, run_up_rad, is_table, claims, closing = procedure::Closing(claims)](Reading reading) mutable {
+  return [&bench, &options, run_up_rad, is_table, claims,
+          closing = procedure::Closing(claims)](Reading reading) mutable {
     if (is_table) reading.target_rad = bench.machine.State()[0].commanded;  // a face is nulled
     closing.Took(reading);
     const Reading* const then = closing.Asks();
@@ -74,13 +78,17 @@ std::function<void(const Reading&)> ProofByClosing(MachineBench& bench, const Sc
   };
 }
 
-std::function<void(const Reading&)> ProofByClosing(RotaryBench& bench, const Scenario& scenario, const procedure::Options& options,
+std::function<void(const Reading&)> ProofByClosing(RotaryBench& bench, const Scenario& scenario,
+                                                   const procedure::Options& options,
                                                    const std::function<Reading(const Reading&)>& show) {
-  const double run_up_rad = RotaryOf(scenario).procedure.run_up_steps * units::turn / RotaryOf(scenario).procedure.positions;
+  const double run_up_rad =
+      RotaryOf(scenario).procedure.run_up_steps * units::turn / RotaryOf(scenario).procedure.positions;
   const std::vector<ClaimedColumn> claims = ClaimsOfTables(scenario);
-  return [&bench, &options, run_up_rad, claims, show, closing = procedure::Closing(claims)](const Reading& reading) mutable {
+  return [&bench, &options, run_up_rad, claims, show,
+          closing = procedure::Closing(claims)](const Reading& reading) mutable {
     closing.Took(reading);
-    for (const auto& [a, b] : {std::pair(0, 2), std::pair(1, 3)}) procedure::RequireNotExchanged(claims[a], claims[b], reading, closing.taken());
+    for (const auto& [a, b] : {std::pair(0, 2), std::pair(1, 3)})
+      procedure::RequireNotExchanged(claims[a], claims[b], reading, closing.taken());
     const Reading* const then = closing.Asks();
     if (!then || !(run_up_rad > 0.0)) return;
     procedure::ComeAgain(bench, -then->direction * run_up_rad, DwellOf(reading), options);

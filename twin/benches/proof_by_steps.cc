@@ -36,7 +36,9 @@ std::vector<Expected> MovedByAxes(const Scenario& scenario) {
       if (!column.is_angle) column.by_axes = column.nominal ? column.nominal : benches::circular::Radius_m;
   std::erase_if(moved, [](const Expected& column) { return !column.by_axes; });
   if (const auto& compared = FormatOf(scenario.bench).compared)
-    moved.push_back({.column = compared->reference, .by_axes = [](const Reading& r) { return r.reference_rad; }, .is_angle = true});
+    moved.push_back({.column = compared->reference,
+                     .by_axes = [](const Reading& r) { return r.reference_rad; },
+                     .is_angle = true});
   return moved;
 }
 
@@ -61,18 +63,21 @@ std::vector<double> StepOf(const Scenario& scenario, const Reading& reading) {
   if (scenario.bench == kEncoderBench) return {kShaftStep_rad};
   if (scenario.bench != kFreeformBench) return {};
   const auto& qpd = FreeformOf(scenario).qpd;
-  const double tilt_rad = InSteps(kShareOfSpot * qpd.spot_radius_m / (2.0 * qpd.lens_m));  // a mirror turns light by twice its angle
+  const double tilt_rad =
+      InSteps(kShareOfSpot * qpd.spot_radius_m / (2.0 * qpd.lens_m));  // a mirror turns light by twice its angle
   return {0.0, 0.0, 0.0, tilt_rad, tilt_rad};
 }
 
 /// A reading filed so far beside another.
-Reading Beside(const Reading& reading, const std::vector<double>& by, const std::vector<MachineAxis>& axes, const Scenario& scenario) {
+Reading Beside(const Reading& reading, const std::vector<double>& by, const std::vector<MachineAxis>& axes,
+               const Scenario& scenario) {
   const auto& compared = FormatOf(scenario.bench).compared;  // its axis is filed where the reference stands
   const std::string commanded = scenario.bench == kCircularBench ? "commanded_" : "";
   Reading beside = reading;
   for (std::size_t k = 0; k < by.size(); ++k)
     if (by[k] != 0.0)
-      NumberIn(beside, scenario, compared ? compared->reference : commanded + axes[k].name + "_" + axes[k].unit()) += by[k];
+      NumberIn(beside, scenario,
+               compared ? compared->reference : commanded + axes[k].name + "_" + axes[k].unit()) += by[k];
   return beside;
 }
 
@@ -84,7 +89,8 @@ bool ShowsAngles(const Reading& reading) {
 Reading ShownNow(RotaryBench& bench, Reading reading, int samples) {
   const Acquisition block = bench.adc.Acquire(samples, false);
   reading.n_samples = block.n_samples;
-  for (std::size_t c = 0; c < kChannels; ++c) reading.mean_V[c] = block.channel[c].mean_V, reading.std_V[c] = block.channel[c].std_V;
+  for (std::size_t c = 0; c < kChannels; ++c)
+    reading.mean_V[c] = block.channel[c].mean_V, reading.std_V[c] = block.channel[c].std_V;
   if (!ShowsAngles(reading)) return reading;
   const AutocollimatorReading angles = bench.autocollimator.Read();
   reading.autocollimator_yaw_rad = angles.yaw_rad, reading.autocollimator_tilt_rad = angles.tilt_rad;
@@ -104,13 +110,15 @@ std::function<void(const Reading&)> WayOf(const std::function<void(const Reading
   };
 }
 
-std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scenario& scenario, const procedure::MachineOptions& options) {
+std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scenario& scenario,
+                                                 const procedure::MachineOptions& options) {
   if (StepOf(scenario, {}).empty()) return {};
   const auto proof = std::make_shared<procedure::StepProof>(false);
   // Of a comparison from reading to reading either device goes with the other.
   const bool is_compared = FormatOf(scenario.bench).compared.has_value();
   return [&bench, &scenario, &options, proof, is_compared, proved = std::optional<int>(),
-          columns = MovedByAxes(scenario), close = ProofByClosing(bench, scenario, options)](const Reading& reading) mutable {
+          columns = MovedByAxes(scenario),
+          close = ProofByClosing(bench, scenario, options)](const Reading& reading) mutable {
     if (is_compared && proved == reading.setup) return close(reading);
     std::vector<double> by = StepOf(scenario, reading);
     if (Reading here = reading; NumberIn(here, scenario, columns[0].column) > 0.0)
@@ -119,12 +127,14 @@ std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scen
     const Reading there = Beside(reading, by, bench.machine.Axes(), scenario);
     std::vector<ColumnInStep> in_step;
     for (const Expected& c : columns) {
-      if (scenario.bench == kCircularBench && !std::isfinite(NumberIn(here, scenario, c.column))) continue;  // of the other instrument
+      if (scenario.bench == kCircularBench && !std::isfinite(NumberIn(here, scenario, c.column)))
+        continue;  // of the other instrument
       const auto since = [&](Reading& later) {
         const double went = NumberIn(later, scenario, c.column) - NumberIn(here, scenario, c.column);
         return c.is_angle ? std::remainder(went, units::turn) : went;
       };
-      in_step.push_back({c.column, c.by_axes(there) - c.by_axes(reading), since(shown), c.noise, !c.is_loose, since(back)});
+      in_step.push_back(
+          {c.column, c.by_axes(there) - c.by_axes(reading), since(shown), c.noise, !c.is_loose, since(back)});
     }
     proof->Require(in_step);
     proved = reading.setup;
@@ -132,8 +142,10 @@ std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scen
   };
 }
 
-std::function<void(const Reading&)> ProofBySteps(RotaryBench& bench, const Scenario& scenario, const procedure::Options& options) {
-  const auto wires = std::make_shared<procedure::StepProof>(true), angles = std::make_shared<procedure::StepProof>(false);
+std::function<void(const Reading&)> ProofBySteps(RotaryBench& bench, const Scenario& scenario,
+                                                 const procedure::Options& options) {
+  const auto wires = std::make_shared<procedure::StepProof>(true),
+             angles = std::make_shared<procedure::StepProof>(false);
   const RotarySettings& own = RotaryOf(scenario);
   const auto show = [&bench, &own](const Reading& at) { return ShownNow(bench, at, own.adc.samples); };
   return [&bench, &options, &own, wires, angles, show, columns = MovedByAxes(scenario),
@@ -151,11 +163,17 @@ std::function<void(const Reading&)> ProofBySteps(RotaryBench& bench, const Scena
     std::vector<ColumnInStep> in_step;
     for (std::size_t c = 0; c < kChannels; ++c)
       in_step.push_back({columns[c].column, V_rad(columns[c]) * yaw_rad, beside.mean_V[c] - here.mean_V[c],
-                         here.std_V[c] / std::sqrt(here.n_samples) + 0.3 * own.amplifier.hum_V, true, back.mean_V[c] - here.mean_V[c]});
+                         here.std_V[c] / std::sqrt(here.n_samples) + 0.3 * own.amplifier.hum_V, true,
+                         back.mean_V[c] - here.mean_V[c]});
     wires->Require(in_step);
     if (!ShowsAngles(here)) return close(here);
     const auto angle = [&](const char* column, double should_rad, double Reading::*shown_rad) {
-      return ColumnInStep{column, should_rad, beside.*shown_rad - here.*shown_rad, own.autocollimator.noise_rad, true, back.*shown_rad - here.*shown_rad};
+      return ColumnInStep{column,
+                          should_rad,
+                          beside.*shown_rad - here.*shown_rad,
+                          own.autocollimator.noise_rad,
+                          true,
+                          back.*shown_rad - here.*shown_rad};
     };
     angles->Require({angle("autocollimator_yaw_arcsec", yaw_rad, &Reading::autocollimator_yaw_rad),
                      angle("autocollimator_tilt_arcsec", 0.0, &Reading::autocollimator_tilt_rad)});

@@ -75,7 +75,8 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
   top.Text("bench", &map.bench, BenchNames(), "whose readings they are; left out: found by the columns");
   Table file(keys, "file");
   file.Text("kind", &map.file.kind, {"auto", "table", "changes", "scope", "array", "cycles", "records"},
-            "rows of fields | one change a line (camonitor) | TwinCAT scope | array in a program | ISO 230-2 runs | JSON");
+            "rows of fields | one change a line (camonitor) | TwinCAT scope | array in a program | ISO 230-2 runs "
+            "| JSON");
   file.Text("separator", &map.file.separator, {"auto", "tab", "semicolon", "comma", "bar", "space"},
             "between fields");
   file.Text("decimal", &map.file.decimal, {"auto", "point", "comma"}, "the decimal mark");
@@ -96,20 +97,24 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
              "the reference starts again here; 0: at 360 if it does");
   course.Add("clock_offset", kSecond, Within(1e10), &map.course.clock_offset_s, "added to the second file's clock");
   Table average(keys, "average");
-  average.Add("most_readings", kPure, {12, 1000000}, &map.average.most_readings,
-              "longer recordings are averaged in blocks (5000 where two quantities are compared, else all rows are kept)");
+  average.Add(
+      "most_readings", kPure, {12, 1000000}, &map.average.most_readings,
+      "longer recordings are averaged in blocks (5000 where two quantities are compared, else all rows are kept)");
   top.Records(
       "sought", map.sought,
       [](Table& t, Sought& s) {
         t.Text("name", &s.name, {}, "of a quantity, with its unit, as formulas have it");
-        t.Text("kind", &s.kind, {"value", "condition", "any", "turn"}, "changes from row to row | holds for many rows | either | a way round");
+        t.Text("kind", &s.kind, {"value", "condition", "any", "turn"},
+               "changes from row to row | holds for many rows | either | a way round");
         t.Add("words", kPure, {}, &s.words, "what it is called in columns and lines of text, the clearest first");
-        t.Add("otherwise", kPure, {}, &s.otherwise, "formulas where it is not found; the first whose names are known");
+        t.Add("otherwise", kPure, {}, &s.otherwise,
+              "formulas where it is not found; the first whose names are known");
         t.Text("note", &s.note, {}, "what is said then");
       },
       "quantities that are looked for by their names");
   Table guess(keys, "guess");
-  guess.Add("by", kPure, {}, &map.guess_by, "lists of quantities sought, \"angle_deg, deviation_um\": a file with such columns is of this kind");
+  guess.Add("by", kPure, {}, &map.guess_by,
+            "lists of quantities sought, \"angle_deg, deviation_um\": a file with such columns is of this kind");
   guess.Text("clock", &map.guess_clock, {"any", "none"}, "none: only if it has no time");
   Table scenario(keys, "scenario");
   scenario.Add("set", kPure, {}, &map.set, "keys of the scenario, as --set has them: \"device.teeth=144\"");
@@ -164,7 +169,8 @@ Map LoadMap(const std::string& name_or_path) {
   if (ready != ReadyMaps().end()) return ParseMap(ready->text, ready->name);
   if (!std::ifstream(name_or_path) || std::filesystem::is_directory(name_or_path))
     throw InputError("--map " + name_or_path, "there is no such file, and no ready map of that name",
-                     fmt::format("a TOML file or one of {}; the nearest is {}", fmt::join(ReadyNames(), ", "), Nearest(name_or_path, ReadyNames())));
+                     fmt::format("a TOML file or one of {}; the nearest is {}", fmt::join(ReadyNames(), ", "),
+                                 Nearest(name_or_path, ReadyNames())));
   return ParseMap(InputText(name_or_path, "a map in TOML"), name_or_path);
 }
 
@@ -189,7 +195,8 @@ bool SetSought(const std::string& key, const std::string& formula, Map& map) {
   const auto unit = UnitAtEnd(key);
   const auto seeks = [&](Sought& s) {
     const auto own = UnitAtEnd(s.name);
-    const bool same = s.name == key || (unit && own && unit->dimension == own->dimension && BaseOf(s.name) == BaseOf(key));
+    const bool same =
+        s.name == key || (unit && own && unit->dimension == own->dimension && BaseOf(s.name) == BaseOf(key));
     if (!same) return false;
     s.words.clear();
     s.note.clear();
@@ -215,7 +222,8 @@ void SetColumn(const std::string& assignment, Map& map) {
   if (equals == std::string::npos)
     throw InputError(where, "there is no =", "QUANTITY=COLUMN, as in reference_deg=angle");
   const std::string key = assignment.substr(0, equals);
-  if (SetClock(key, assignment.substr(equals + 1), map) || SetSought(key, assignment.substr(equals + 1), map)) return;
+  if (SetClock(key, assignment.substr(equals + 1), map) || SetSought(key, assignment.substr(equals + 1), map))
+    return;
   const ColumnKeys columns(map.bench.empty() ? BenchFormats() : std::vector{&FormatOf(map.bench)});
   const auto found =
       std::ranges::find_if(columns.entries, [&key](const MappedColumn& e) { return ColumnKeys::Key(e) == key; });

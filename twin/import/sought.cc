@@ -22,7 +22,8 @@ NamedUnit UnitOf(const Sought& sought) {
   return UnitAtEnd(sought.name).value_or(NamedUnit{});
 }
 
-/// Whether a column can be the quantity by its unit. Without one it may be; with one that is not known it is something else.
+/// Whether a column can be the quantity by its unit. Without one it may be; with one that is not known it is
+/// something else.
 bool UnitFits(const Column& column, const Sought& sought) {
   const auto has = UnitNamed(column.unit);
   return has ? has->dimension == UnitOf(sought).dimension : IsNoUnit(column.unit);
@@ -49,7 +50,8 @@ bool CanBe(const Column& column, const Sought& sought) {
 /// "{}" is the value that was taken.
 std::string NoteWith(std::string note, const std::vector<double>& values) {
   const std::size_t at = note.find("{}");
-  return at == std::string::npos || values.empty() ? note : note.replace(at, 2, fmt::format("{:.6g}", values.front()));
+  return at == std::string::npos || values.empty() ? note
+                                                   : note.replace(at, 2, fmt::format("{:.6g}", values.front()));
 }
 
 /// The quantities of one track, found one after the other.
@@ -124,7 +126,8 @@ class Seeker {
     const Column* best = nullptr;
     int clearness = 0;
     for (const Column& column : track_.columns) {
-      const int own = taken_.contains(column.name) || !CanBe(column, sought) ? 0 : ClearnessBy(column.name, sought.words);
+      const int own =
+          taken_.contains(column.name) || !CanBe(column, sought) ? 0 : ClearnessBy(column.name, sought.words);
       if (own <= clearness) continue;
       clearness = own;
       best = &column;
@@ -143,8 +146,9 @@ class Seeker {
     const NamedUnit to = UnitOf(sought);
     auto has = UnitNamed(column.unit);
     if (!has && to.dimension != Dimension::kPure) {
-      const bool is_rad = to.dimension == Dimension::kAngle && column.value.size() > 20 &&
-                          std::ranges::all_of(column.value, [](double x) { return !(std::abs(x) > kMoreThanATurn_rad); });
+      const bool is_rad =
+          to.dimension == Dimension::kAngle && column.value.size() > 20 &&
+          std::ranges::all_of(column.value, [](double x) { return !(std::abs(x) > kMoreThanATurn_rad); });
       has = is_rad ? UnitNamed("rad") : to;
       assumed_.push_back(fmt::format("the unit of \"{}\" is not said and taken as {}", column.name, has->name));
     }
@@ -174,14 +178,18 @@ class Seeker {
     for (const std::string& formula : sought.otherwise) {
       if (ValuesOf(formula)) return &formula;
       const Expression expression(formula, sought.name);
-      if (std::ranges::all_of(expression.Names(), [this](const std::string& name) { return ValuesOf(name) != nullptr; })) return &formula;
+      if (std::ranges::all_of(expression.Names(),
+                              [this](const std::string& name) { return ValuesOf(name) != nullptr; }))
+        return &formula;
     }
     return nullptr;
   }
 
   std::vector<double> Evaluated(const std::string& formula) const {
     if (const auto* values = ValuesOf(formula)) return *values;
-    return Expression(formula, formula).Evaluate(track_.Rows(), [this](const std::string& name) { return Values{*ValuesOf(name), nullptr}; });
+    return Expression(formula, formula).Evaluate(track_.Rows(), [this](const std::string& name) {
+      return Values{*ValuesOf(name), nullptr};
+    });
   }
 
   const std::vector<Sought>& all_;
@@ -209,7 +217,8 @@ bool IsOfKind(const Recording& recording, const Map& map) {
     Seeker seeker(map.sought, track);
     seeker.Find();
     return std::ranges::any_of(map.guess_by, [&seeker](const std::string& list) {
-      return std::ranges::all_of(NamesIn(list), [&seeker](const std::string& name) { return seeker.HasSurely(name); });
+      return std::ranges::all_of(NamesIn(list),
+                                 [&seeker](const std::string& name) { return seeker.HasSurely(name); });
     });
   });
 }
@@ -217,18 +226,22 @@ bool IsOfKind(const Recording& recording, const Map& map) {
 /// "{radius_mm}" is its first value, "{radius_mm...}" all there are.
 void FillInKey(const Seeker& seeker, const Sought& sought, std::string& key) {
   const auto replace = [&key](const std::string& what, const std::string& by) {
-    for (std::size_t at = 0; (at = key.find(what, at)) != std::string::npos; at += by.size()) key.replace(at, what.size(), by);
+    for (std::size_t at = 0; (at = key.find(what, at)) != std::string::npos; at += by.size())
+      key.replace(at, what.size(), by);
   };
   std::string all;
-  for (const double value : seeker.Distinct(sought.name)) all += fmt::format("{}{}", all.empty() ? "" : ", ", value);
+  for (const double value : seeker.Distinct(sought.name))
+    all += fmt::format("{}{}", all.empty() ? "" : ", ", value);
   replace("{" + sought.name + "...}", all);
   replace("{" + sought.name + "}", fmt::format("{}", seeker.First(sought.name)));
 }
 
 [[noreturn]] void RefuseWithout(const Sought& sought, const Recording& recording) {
   const std::string called = sought.words.empty() ? sought.name : sought.words.front();
-  throw InputError(recording.file, fmt::format("no column is {} by its name and unit; there are {}", called, ColumnNames({recording})),
-                   fmt::format("a name such as \"{}\", or --column '{}=a column'", called, sought.name));
+  throw InputError(
+      recording.file,
+      fmt::format("no column is {} by its name and unit; there are {}", called, ColumnNames({recording})),
+      fmt::format("a name such as \"{}\", or --column '{}=a column'", called, sought.name));
 }
 
 /// What the map makes of a quantity that is not there.

@@ -16,21 +16,23 @@ struct NamedUnit {
   double to_SI = 1.0;
 };
 
-/// Also knows the names that are written otherwise: "°", "degrees", "µm", "revs", "\"", and an angle or a length over a time: "mm/min",
-/// "deg/s", "mm_min".
+/// Also knows the names that are written otherwise: "°", "degrees", "µm", "revs", "\"", and an angle or a length
+/// over a time: "mm/min", "deg/s", "mm_min".
 std::optional<NamedUnit> UnitNamed(std::string_view text);
 
-/// The unit with which a key or a column ends: "deg" of "reference_deg", "mm_min" of "feed_mm_min"; nothing if it ends in none.
+/// The unit with which a key or a column ends: "deg" of "reference_deg", "mm_min" of "feed_mm_min"; nothing if it
+/// ends in none.
 std::optional<NamedUnit> UnitAtEnd(std::string_view name);
 
 /// Every plain name of a unit of that dimension, for keys: "deg", "rad", "arcsec", ...
 std::vector<NamedUnit> UnitsOf(Dimension dimension);
 
-/// "; the nearest is deg" of "dge": what a refusal adds where a unit of these dimensions is misspelt by a letter or two; else nothing.
+/// "; the nearest is deg" of "dge": what a refusal adds where a unit of these dimensions is misspelt by a letter or
+/// two; else nothing.
 std::string NearestUnit(std::string_view misspelt, const std::vector<Dimension>& dimensions);
 
-/// A header's field taken apart: "Angle [deg]", "angle (deg)", "angle / deg", "angle, deg", "angle_deg", "angleDeg",
-/// "angle".
+/// A header's field taken apart: "Angle [deg]", "angle (deg)", "angle / deg", "angle, deg", "angle_deg",
+/// "angleDeg", "angle".
 struct NameAndUnit {
   std::string name, unit;
 };

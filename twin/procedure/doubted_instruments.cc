@@ -10,7 +10,8 @@
 namespace twinbench::procedure {
 namespace {
 
-constexpr int kAgain = 16;  // readings that are all the same: of steps so coarse that noise hides in them, one in many is another
+constexpr int kAgain =
+    16;  // readings that are all the same: of steps so coarse that noise hides in them, one in many is another
 constexpr int kSamplesTheSame = 64;
 constexpr double kAgree = 10.0;                    // times the noise of a difference
 constexpr double kFollows_rad = 1.0 * units::deg;  // more than the steps of any encoder
@@ -32,8 +33,9 @@ bool IsShown(const ClaimedColumn& claim, const Reading& reading) {
 /// All that can be judged.
 bool AreTheSame(const std::vector<ClaimedColumn>& claims, const Reading& a, const Reading& b) {
   const auto is_shown = [&](const ClaimedColumn& claim) { return IsShown(claim, b); };
-  return std::ranges::any_of(claims, is_shown) &&
-         std::ranges::all_of(claims, [&](const ClaimedColumn& claim) { return !is_shown(claim) || IsTheSame(claim, a, b); });
+  return std::ranges::any_of(claims, is_shown) && std::ranges::all_of(claims, [&](const ClaimedColumn& claim) {
+           return !is_shown(claim) || IsTheSame(claim, a, b);
+         });
 }
 
 std::string Text(const ClaimedColumn& claim, const Reading& reading) {
@@ -66,12 +68,15 @@ void RequireGoesAlong(const std::vector<ClaimedColumn>& claims, const Reading& r
     const double way = claim.follows(reading) - claim.follows(before);
     const double went = ValueOf(claim, reading) - ValueOf(claim, before);
     const double off = claim.is_angle ? std::remainder(went - way, units::turn) : went - way;
-    const double allowed = claim.is_angle ? kShareOfAngle * std::abs(std::remainder(way, units::turn)) : kShareOfPlace * std::abs(way);
+    const double allowed =
+        claim.is_angle ? kShareOfAngle * std::abs(std::remainder(way, units::turn)) : kShareOfPlace * std::abs(way);
     if (!(std::abs(off) > std::max(allowed, least))) continue;
-    throw DeviceFault(FaultKind::kMoved, "instruments",
-                      fmt::format("went from {} to {}, which is not the way from the place of reading {} to that of {}: does anything stand "
-                                  "elsewhere than its controller says?",
-                                  Text(claim, before), claim.column.print(reading), before.reading, reading.reading));
+    throw DeviceFault(
+        FaultKind::kMoved, "instruments",
+        fmt::format("went from {} to {}, which is not the way from the place of reading {} to that of {}: does "
+                    "anything stand "
+                    "elsewhere than its controller says?",
+                    Text(claim, before), claim.column.print(reading), before.reading, reading.reading));
   }
 }
 
@@ -79,10 +84,12 @@ void RequireAsBefore(const std::vector<ClaimedColumn>& claims, const Reading& ag
   for (const ClaimedColumn& claim : claims) {
     const double was = ValueOf(claim, before), off = std::abs(ValueOf(claim, again) - was);
     if (!(claim.noise > 0.0) || !std::isfinite(was) || off <= AllowedAtPlace(claim)) continue;
-    throw DeviceFault(FaultKind::kImplausible, "instruments",
-                      fmt::format("showed {} at reading {} and show {} at its place behind the fault: is a zero, a unit or the mounting "
-                                  "another than before?",
-                                  Text(claim, before), before.reading, claim.column.print(again)));
+    throw DeviceFault(
+        FaultKind::kImplausible, "instruments",
+        fmt::format(
+            "showed {} at reading {} and show {} at its place behind the fault: is a zero, a unit or the mounting "
+            "another than before?",
+            Text(claim, before), before.reading, claim.column.print(again)));
   }
 }
 
@@ -91,7 +98,8 @@ Reading DoubtedInstruments::Read() {
   if (first.status != ReadingStatus::kOk) return first;
   const Reading shown = Alive(first);
   RequireInRange(shown);
-  const bool shows_noise = std::ranges::any_of(claims_, [](const ClaimedColumn& claim) { return claim.noise > 0.0; });
+  const bool shows_noise =
+      std::ranges::any_of(claims_, [](const ClaimedColumn& claim) { return claim.noise > 0.0; });
   last_ = shows_noise ? OfThisPlace(shown) : shown;
   return shown;
 }
@@ -117,17 +125,21 @@ Reading DoubtedInstruments::Alive(const Reading& shown) {
         }))
       return inner_.Read();
   }
-  const auto shows = std::ranges::find_if(claims_, [&](const ClaimedColumn& claim) { return IsShown(claim, shown); });
-  Fail(fmt::format("show {} as before, and in {} readings more: they are dead or stuck", Text(*shows, shown), kAgain));
+  const auto shows =
+      std::ranges::find_if(claims_, [&](const ClaimedColumn& claim) { return IsShown(claim, shown); });
+  Fail(fmt::format("show {} as before, and in {} readings more: they are dead or stuck", Text(*shows, shown),
+                   kAgain));
 }
 
 Reading DoubtedInstruments::OfThisPlace(const Reading& shown) {
   const Reading again = inner_.Read();
   for (const ClaimedColumn& claim : claims_) {
-    if (!(claim.noise > 0.0) || !(std::abs(ValueOf(claim, again) - ValueOf(claim, shown)) > kAgree * std::sqrt(2.0) * claim.noise))
+    if (!(claim.noise > 0.0) ||
+        !(std::abs(ValueOf(claim, again) - ValueOf(claim, shown)) > kAgree * std::sqrt(2.0) * claim.noise))
       continue;
-    Fail(fmt::format("show {} and then {} at one place, by more than noise: do they answer late by one, or move still?",
-                     Text(claim, shown), Text(claim, again)));
+    Fail(fmt::format(
+        "show {} and then {} at one place, by more than noise: do they answer late by one, or move still?",
+        Text(claim, shown), Text(claim, again)));
   }
   return again;
 }
@@ -151,7 +163,9 @@ LatchedSamples DoubtedInstruments::Latched() {
 
 void DoubtedInstruments::RequireMoving(const Reading& sample) {
   for (std::size_t k = 0; last_ && k < claims_.size(); ++k) {
-    same_[k] = ValueOf(claims_[k], *last_) == ValueOf(claims_[k], sample) && IsShown(claims_[k], sample) ? same_[k] + 1 : 0;
+    same_[k] = ValueOf(claims_[k], *last_) == ValueOf(claims_[k], sample) && IsShown(claims_[k], sample)
+                   ? same_[k] + 1
+                   : 0;
     if (same_[k] >= kSamplesTheSame)
       Fail(fmt::format("show {} in {} samples: they are dead or stuck", Text(claims_[k], sample), same_[k]));
   }

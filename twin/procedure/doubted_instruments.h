@@ -16,8 +16,9 @@ struct ClaimedColumn {
   /// What it should show, but for a constant of each set-up; empty or NaN: not known.
   std::function<double(const Reading&)> follows = {};
   bool is_angle = false;  // follows: by what is shown with it, whole turns apart
-  bool is_of_place = false;  // at a place it is the same in every pass, but for noise and what is the same everywhere
-  double repeats = 0.0;      // by how much coming to a place again may change it, beyond noise
+  bool is_of_place =
+      false;             // at a place it is the same in every pass, but for noise and what is the same everywhere
+  double repeats = 0.0;  // by how much coming to a place again may change it, beyond noise
 };
 
 /// What it shows in a reading [SI].
@@ -26,18 +27,22 @@ double ValueOf(const ClaimedColumn& claim, const Reading& reading);
 double AllowedAtPlace(const ClaimedColumn& claim);
 
 /// Of a reading and the one before in its set-up.
-/// @throws DeviceFault kMoved where from one to the next a column did not go the way that it should by angles, within half of it, or by
-///         places, within a tenth of it and a hundredth of its range: what should have moved stands elsewhere than its controller says.
+/// @throws DeviceFault kMoved where from one to the next a column did not go the way that it should by angles,
+/// within half of it, or by
+///         places, within a tenth of it and a hundredth of its range: what should have moved stands elsewhere than
+///         its controller says.
 void RequireGoesAlong(const std::vector<ClaimedColumn>& claims, const Reading& reading, const Reading& before);
 
 /// Of a reading that is taken again at its place.
-/// @throws DeviceFault kImplausible where a column shows something else than before, by thirty times the noise, or nothing.
+/// @throws DeviceFault kImplausible where a column shows something else than before, by thirty times the noise, or
+/// nothing.
 void RequireAsBefore(const std::vector<ClaimedColumn>& claims, const Reading& again, const Reading& before);
 
-/// Instruments of a real bench, which are not believed at once. Every reading at rest is taken twice at its place, and both must agree
-/// within ten times the noise: those that answer late by one show the place before, and a spike comes alone. One that is the reading
-/// before to the last digit, or nothing but zeros, is taken again until another comes, and then once more, which counts. In motion: no
-/// column shows the very same for 64 samples. What is read again is in no record: replays need it not.
+/// Instruments of a real bench, which are not believed at once. Every reading at rest is taken twice at its place,
+/// and both must agree within ten times the noise: those that answer late by one show the place before, and a spike
+/// comes alone. One that is the reading before to the last digit, or nothing but zeros, is taken again until
+/// another comes, and then once more, which counts. In motion: no column shows the very same for 64 samples. What
+/// is read again is in no record: replays need it not.
 class DoubtedInstruments : public InstrumentSet {
  public:
   DoubtedInstruments(InstrumentSet& inner, std::vector<ClaimedColumn> claims)
@@ -59,7 +64,7 @@ class DoubtedInstruments : public InstrumentSet {
   InstrumentSet& inner_;
   std::vector<ClaimedColumn> claims_;
   std::optional<Reading> last_;  // of all answers
-  std::vector<int> same_;  // samples in a row, a column
+  std::vector<int> same_;        // samples in a row, a column
 };
 
 }  // namespace twinbench::procedure

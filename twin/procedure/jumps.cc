@@ -23,7 +23,9 @@ struct Repeat {
 
 /// One entry a place that both have, this reading's pass and the one before it, in the order of the later.
 std::vector<Repeat> RepeatsOf(const ValueIn& value, const Reading& reading, const std::vector<Reading>& kept) {
-  const auto is_of = [&](const Reading& r, int pass) { return r.setup == reading.setup && r.phase == reading.phase && r.pass == pass; };
+  const auto is_of = [&](const Reading& r, int pass) {
+    return r.setup == reading.setup && r.phase == reading.phase && r.pass == pass;
+  };
   std::map<int, const Reading*> before;
   std::vector<Repeat> repeats;
   const auto add = [&](const Reading& again) {
@@ -49,7 +51,8 @@ Level LevelOf(const std::vector<Repeat>& repeats, std::size_t first, std::size_t
   return level;
 }
 
-/// Median size about the median, in which a few that have jumped count for nothing; nor does the last, which is asked about.
+/// Median size about the median, in which a few that have jumped count for nothing; nor does the last, which is
+/// asked about.
 double ScatterBefore(const std::vector<Repeat>& repeats) {
   if (repeats.size() < 2) return 0.0;
   std::vector<double> differ;
@@ -69,34 +72,42 @@ double Left(const ClaimedColumn& claim, const Reading& reading) {
 
 }  // namespace
 
-void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& reading, const std::vector<Reading>& kept) {
+void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& reading,
+                   const std::vector<Reading>& kept) {
   constexpr std::size_t kFewest = 2;  // on either side
   constexpr double kTimesScatter = 8.0;
   for (const ClaimedColumn& claim : claims) {
     if (!claim.is_of_place || !(claim.noise > 0.0)) continue;
-    const std::vector<Repeat> repeats = RepeatsOf([&](const Reading& r) { return ValueOf(claim, r); }, reading, kept);
+    const std::vector<Repeat> repeats =
+        RepeatsOf([&](const Reading& r) { return ValueOf(claim, r); }, reading, kept);
     for (std::size_t k = kFewest; k + kFewest <= repeats.size(); ++k) {
       const Level one = LevelOf(repeats, 0, k), other = LevelOf(repeats, k, repeats.size());
       const double jump = std::abs(other.mean - one.mean);
       const double scatter = std::sqrt((one.squares + other.squares) / static_cast<double>(repeats.size() - 2));
       if (!(jump > std::max(AllowedAtPlace(claim), kTimesScatter * scatter))) continue;
-      throw DeviceFault(FaultKind::kImplausible, "instruments",
-                        fmt::format("show {} by {:.4g} (SI) otherwise against the pass before at places up to that of reading {} than at those "
-                                    "from reading {} on: a zero, a mirror or the mounting jumped, in this pass or the one before; measure mounting "
-                                    "{} again",
-                                    claim.column.name, jump, repeats[k - 1].reading, repeats[k].reading, reading.setup));
+      throw DeviceFault(
+          FaultKind::kImplausible, "instruments",
+          fmt::format("show {} by {:.4g} (SI) otherwise against the pass before at places up to that of reading {} "
+                      "than at those "
+                      "from reading {} on: a zero, a mirror or the mounting jumped, in this pass or the one "
+                      "before; measure mounting "
+                      "{} again",
+                      claim.column.name, jump, repeats[k - 1].reading, repeats[k].reading, reading.setup));
     }
   }
 }
 
-void RequireNotExchanged(const ClaimedColumn& a, const ClaimedColumn& b, const Reading& reading, const std::vector<Reading>& kept) {
-  constexpr std::size_t kPlaces = 6;                  // what repeats nowhere is by chance the other way round once in 30 000 times
+void RequireNotExchanged(const ClaimedColumn& a, const ClaimedColumn& b, const Reading& reading,
+                         const std::vector<Reading>& kept) {
+  constexpr std::size_t kPlaces = 6;  // what repeats nowhere is by chance the other way round once in 30 000 times
   constexpr double kTimes = 8.0, kTimesNoise = 10.0;  // root mean squares
-  std::vector<Repeat> last = RepeatsOf([&](const Reading& r) { return ValueOf(a, r) - ValueOf(b, r); }, reading, kept);
+  std::vector<Repeat> last =
+      RepeatsOf([&](const Reading& r) { return ValueOf(a, r) - ValueOf(b, r); }, reading, kept);
   if (last.size() < kPlaces) return;
   last.erase(last.begin(), last.end() - kPlaces);
   double differs = 0.0, adds = 0.0, mean_differs = 0.0, mean_adds = 0.0;
-  for (const Repeat& one : last) mean_differs += one.Differs() / kPlaces, mean_adds += (one.again + one.before) / kPlaces;
+  for (const Repeat& one : last)
+    mean_differs += one.Differs() / kPlaces, mean_adds += (one.again + one.before) / kPlaces;
   for (const Repeat& one : last) {
     differs += std::pow(one.Differs() - mean_differs, 2);
     adds += std::pow(one.again + one.before - mean_adds, 2);
@@ -104,7 +115,8 @@ void RequireNotExchanged(const ClaimedColumn& a, const ClaimedColumn& b, const R
   const double noise = std::sqrt(2.0 * kPlaces) * std::hypot(a.noise, b.noise);
   if (!(std::sqrt(differs) > std::max(kTimes * std::sqrt(adds), kTimesNoise * noise))) return;
   throw DeviceFault(FaultKind::kImplausible, "instruments",
-                    fmt::format("show at the places of the last {} readings that {} and {} differ the other way round than in the pass before: were "
+                    fmt::format("show at the places of the last {} readings that {} and {} differ the other way "
+                                "round than in the pass before: were "
                                 "they exchanged, in this pass or that one? Measure mounting {} again",
                                 kPlaces, a.column.name, b.column.name, reading.setup));
 }
@@ -130,7 +142,8 @@ const Reading* Closing::Asks() const {
   auto turned = own;
   while (turned != taken_.begin() && std::prev(turned)->direction == -last.direction) --turned;
   const auto begun = std::find_if(turned, own, [&](const Reading& r) {
-    return r.position == last.position && !(std::abs(r.target_rad - last.target_rad) > kSamePlace_rad) && CountOf(r.pass) == CountOf(last.pass);
+    return r.position == last.position && !(std::abs(r.target_rad - last.target_rad) > kSamePlace_rad) &&
+           CountOf(r.pass) == CountOf(last.pass);
   });
   return begun == own ? nullptr : &*begun;
 }
@@ -143,10 +156,13 @@ void Closing::Require(const Reading& again) const {
     const double off = std::abs(left(again) - left(then));
     const double scatter = ScatterBefore(RepeatsOf(left, taken_.back(), taken_));
     if (!(claim.noise > 0.0) || !(off > std::max(AllowedAtPlace(claim), kTimesScatter * scatter))) continue;
-    throw DeviceFault(FaultKind::kImplausible, "instruments",
-                      fmt::format("showed {} = {} at reading {} and show {} at its place, come to from the same side, behind the passes: a zero, a "
-                                  "mirror or the mounting jumped, or it had not come to rest; measure mounting {} again",
-                                  claim.column.name, claim.column.print(then), then.reading, claim.column.print(again), then.setup));
+    throw DeviceFault(
+        FaultKind::kImplausible, "instruments",
+        fmt::format("showed {} = {} at reading {} and show {} at its place, come to from the same side, behind the "
+                    "passes: a zero, a "
+                    "mirror or the mounting jumped, or it had not come to rest; measure mounting {} again",
+                    claim.column.name, claim.column.print(then), then.reading, claim.column.print(again),
+                    then.setup));
   }
 }
 

@@ -4,23 +4,29 @@
 
 #include "twin/procedure/doubted_instruments.h"
 
-/// What readings of one place that were taken in two passes of a mounting say of those between them. Only what is claimed is asked.
+/// What readings of one place that were taken in two passes of a mounting say of those between them. Only what is
+/// claimed is asked.
 namespace twinbench::procedure {
 
 /// Of a reading at a place where the pass before in its set-up has one, too, and all between them.
 /// @param kept  All before it.
-/// @throws DeviceFault kImplausible where what a column shows at places that were come to behind some reading, in either pass, differs
-///         from pass to pass by another amount than at those before it: a zero, a mirror or a mounting has jumped. What differs by
-///         the same everywhere may be the reversal of what is measured.
-void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& reading, const std::vector<Reading>& kept);
+/// @throws DeviceFault kImplausible where what a column shows at places that were come to behind some reading, in
+/// either pass, differs
+///         from pass to pass by another amount than at those before it: a zero, a mirror or a mounting has jumped.
+///         What differs by the same everywhere may be the reversal of what is measured.
+void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& reading,
+                   const std::vector<Reading>& kept);
 
 /// Of the same readings and two columns that show nearly the same: two spots of one grating.
-/// @throws DeviceFault kImplausible where at the last six places both differ against each other as they did in the pass before, but the
-///         other way round, by ten times the noise: one was plugged in where the other was. What is the same everywhere counts for nothing.
-void RequireNotExchanged(const ClaimedColumn& a, const ClaimedColumn& b, const Reading& reading, const std::vector<Reading>& kept);
+/// @throws DeviceFault kImplausible where at the last six places both differ against each other as they did in the
+/// pass before, but the
+///         other way round, by ten times the noise: one was plugged in where the other was. What is the same
+///         everywhere counts for nothing.
+void RequireNotExchanged(const ClaimedColumn& a, const ClaimedColumn& b, const Reading& reading,
+                         const std::vector<Reading>& kept);
 
-/// Closes the passes of a mounting: where one has come back to the place where those the other way before it began, the axes come to it
-/// once more as they came then, and what is shown must be what was shown then.
+/// Closes the passes of a mounting: where one has come back to the place where those the other way before it began,
+/// the axes come to it once more as they came then, and what is shown must be what was shown then.
 class Closing {
  public:
   explicit Closing(std::vector<ClaimedColumn> claims) : claims_(std::move(claims)) {}
@@ -31,8 +37,10 @@ class Closing {
   /// The reading that is to be shown again now; none: nullptr.
   const Reading* Asks() const;
   /// @param again  Shown where the last was taken, come to from the side of Asks().
-  /// @throws DeviceFault kImplausible where a column shows something else than then: by more than RequireAsBefore allows and by eight times what
-  ///         the differences from pass to pass scatter (median, about their median), which a steady drift makes, too.
+  /// @throws DeviceFault kImplausible where a column shows something else than then: by more than RequireAsBefore
+  /// allows and by eight times what
+  ///         the differences from pass to pass scatter (median, about their median), which a steady drift makes,
+  ///         too.
   void Require(const Reading& again) const;
 
  private:

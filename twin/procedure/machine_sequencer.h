@@ -24,6 +24,9 @@ struct MachineRunState {
   bool is_doubted = false;     // behind a fault: whether a real bench still shows at a place what it showed
 };
 
+/// Whether the last reading can be taken again.
+bool CanProve(const MachineRunState& state, const MachineOptions& options);
+
 /// The steps that all runs of machines share: mount, go somewhere, go round, take readings.
 ///
 /// On a simulated bench every attempt goes the whole way from the start; readings that are kept already must come

@@ -32,7 +32,8 @@ void GoStraight(MachineBench& bench, const std::vector<double>& to, const Machin
 
 std::vector<double> CommandedOf(MachineBench& bench) {
   std::vector<double> at;
-  for (const AxisState& axis : bench.machine.State()) at.push_back(std::isnan(axis.commanded) ? axis.encoder : axis.commanded);
+  for (const AxisState& axis : bench.machine.State())
+    at.push_back(std::isnan(axis.commanded) ? axis.encoder : axis.commanded);
   return at;
 }
 
@@ -49,7 +50,8 @@ double LargestStep(const std::vector<ColumnInStep>& columns) {
 void StepProof::Learn(const std::vector<ColumnInStep>& columns, double step) {
   const double size = std::abs(step);
   for (const ColumnInStep& column : columns) {
-    const bool goes = std::abs(column.did) * kAnotherGain > std::abs(column.should) && std::abs(column.did) < kAnotherGain * size;
+    const bool goes =
+        std::abs(column.did) * kAnotherGain > std::abs(column.should) && std::abs(column.did) < kAnotherGain * size;
     if (column.should != 0.0 ? !goes : std::abs(column.did) * kAnotherGain > size) return;
   }
   for (const ColumnInStep& column : columns) known_.push_back(column.did / step);
@@ -62,15 +64,20 @@ void StepProof::Require(std::vector<ColumnInStep> columns) {
   const double size = std::abs(LargestStep(columns));
   for (const ColumnInStep& column : columns) {
     const double noise = kTimesOfNoise * column.noise;
-    const bool is_elsewhere = !(std::abs(column.did - column.should) <= kShareOfStep * size + noise);  // or shows nothing
-    const bool is_against = column.did * column.should < 0.0 && std::min(std::abs(column.did), std::abs(column.should)) > noise;
+    const bool is_elsewhere =
+        !(std::abs(column.did - column.should) <= kShareOfStep * size + noise);  // or shows nothing
+    const bool is_against =
+        column.did * column.should < 0.0 && std::min(std::abs(column.did), std::abs(column.should)) > noise;
     if (column.is_of_size && !(std::abs(column.back) <= kShareOfStep * size + noise))
-      throw DeviceFault(FaultKind::kMoved, "instruments",
-                        fmt::format("behind a short way and back {} is by {:.4g} (SI) another than at the reading: did a zero jump?", column.name,
-                                    column.back));
+      throw DeviceFault(
+          FaultKind::kMoved, "instruments",
+          fmt::format(
+              "behind a short way and back {} is by {:.4g} (SI) another than at the reading: did a zero jump?",
+              column.name, column.back));
     if (column.is_of_size ? !is_elsewhere : !is_against) continue;
     throw DeviceFault(FaultKind::kMoved, "instruments",
-                      fmt::format("beside the reading the axes went a short way, in which {} went {:.4g} of the {:.4g} (SI) that it should: is a "
+                      fmt::format("beside the reading the axes went a short way, in which {} went {:.4g} of the "
+                                  "{:.4g} (SI) that it should: is a "
                                   "sign, a unit or a channel another, or does anything stand?",
                                   column.name, column.did, column.should));
   }
@@ -101,7 +108,8 @@ Reading ShownAgain(MachineBench& bench, double away_rad, Duration dwell, const M
 }
 
 void ComeAgain(RotaryBench& bench, double away_rad, Duration dwell, const Options& options) {
-  const std::array<double, 2> here_rad = {bench.target.State().commanded_rad, bench.reference.State().commanded_rad};
+  const std::array<double, 2> here_rad = {bench.target.State().commanded_rad,
+                                          bench.reference.State().commanded_rad};
   const std::array<double, 2> there_rad = {here_rad[0] + away_rad, here_rad[1] - away_rad};
   MoveBoth(bench, there_rad[0], there_rad[1], options, here_rad);
   MoveBoth(bench, here_rad[0], here_rad[1], options, there_rad);
@@ -109,9 +117,12 @@ void ComeAgain(RotaryBench& bench, double away_rad, Duration dwell, const Option
 }
 
 void LookBeside(RotaryBench& bench, double& yaw_rad, const Options& options, const std::function<void()>& look) {
-  const std::array<double, 2> here_rad = {bench.target.State().commanded_rad, bench.reference.State().commanded_rad};
+  const std::array<double, 2> here_rad = {bench.target.State().commanded_rad,
+                                          bench.reference.State().commanded_rad};
   const auto there_rad = [&] { return std::array{here_rad[0] + 2.0 * yaw_rad, here_rad[1] - yaw_rad}; };
-  const auto is_beyond = [](double at_rad, const TableLimits& limits) { return at_rad < limits.lower_rad || at_rad > limits.upper_rad; };
+  const auto is_beyond = [](double at_rad, const TableLimits& limits) {
+    return at_rad < limits.lower_rad || at_rad > limits.upper_rad;
+  };
   if (is_beyond(there_rad()[0], options.target) || is_beyond(there_rad()[1], options.reference)) yaw_rad = -yaw_rad;
   const std::array<double, 2> away_rad = there_rad();
   MoveBoth(bench, away_rad[0], away_rad[1], options, here_rad);

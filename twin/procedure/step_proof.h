@@ -13,19 +13,23 @@ namespace twinbench::procedure {
 struct ColumnInStep {
   std::string name;
   double should = 0.0, did = 0.0;
-  double noise = 0.0;        // of what is shown once
-  bool is_of_size = true;    // false: by the place that nobody knows so well its size may be any, and its sign is sure
-  double back = 0.0;         // what it shows behind coming back, less what it showed before; asked of those of a size
+  double noise = 0.0;  // of what is shown once
+  bool is_of_size =
+      true;           // false: by the place that nobody knows so well its size may be any, and its sign is sure
+  double back = 0.0;  // what it shows behind coming back, less what it showed before; asked of those of a size
 };
 
-/// Proves beside readings at rest that what is shown follows the axes: with their signs, units, zeros and channels, and that no axis
-/// stands. What reaches into a channel for good is proved by each; what none moves - the other coordinate of a spot - is not.
+/// Proves beside readings at rest that what is shown follows the axes: with their signs, units, zeros and channels,
+/// and that no axis stands. What reaches into a channel for good is proved by each; what none moves - the other
+/// coordinate of a spot - is not.
 class StepProof {
  public:
-  /// @param learns  The first step says which sign the columns of a size have and how far they go, within a factor of three of what
+  /// @param learns  The first step says which sign the columns of a size have and how far they go, within a factor
+  /// of three of what
   ///                they should: wiring and gains are the bench's own.
   explicit StepProof(bool learns) : learns_(learns) {}
-  /// @throws DeviceFault kMoved where a column did not what it should, or is not what it was behind coming back: by a quarter of the
+  /// @throws DeviceFault kMoved where a column did not what it should, or is not what it was behind coming back: by
+  /// a quarter of the
   ///         step that shows most, or the other way.
   void Require(std::vector<ColumnInStep> columns);
 
@@ -40,13 +44,14 @@ class StepProof {
 /// @param by  One entry an axis [m or rad]; becomes the way that was gone.
 /// @throws what Watch throws.
 Reading ShownBeside(MachineBench& bench, std::vector<double>& by, const MachineOptions& options);
-/// Goes away by so much of the first axis [rad] and comes back, which is how it shows what it shows when it comes from there.
+/// Goes away by so much of the first axis [rad] and comes back, which is how it shows what it shows when it comes
+/// from there.
 Reading ShownAgain(MachineBench& bench, double away_rad, Duration dwell, const MachineOptions& options);
 /// Two tables on each other do, the reference the other way round.
 void ComeAgain(RotaryBench& bench, double away_rad, Duration dwell, const Options& options);
 
-/// ShownBeside of two tables on each other: the target goes twice as far and the reference back by half of that, so that one which
-/// stands, or goes against its command, changes the yaw by no less than all of it.
+/// ShownBeside of two tables on each other: the target goes twice as far and the reference back by half of that, so
+/// that one which stands, or goes against its command, changes the yaw by no less than all of it.
 /// @param yaw_rad  Of what stands on both.
 /// @param look     Called beside where they stand.
 void LookBeside(RotaryBench& bench, double& yaw_rad, const Options& options, const std::function<void()>& look);

@@ -20,7 +20,8 @@ std::string ParametersOf(const json& cause) {
   for (const auto& [name, p] : cause.at("parameters").items()) {
     const double u = NumberAt(p, "u");
     if (!IsDetermined(u, NumberAt(p, "lower"), NumberAt(p, "upper"))) continue;
-    text += (text.empty() ? "" : ", ") + NameAndUnit(name).name + " " + MeasuredText(NumberAt(p, "value"), u, TextAt(p, "unit"));
+    text += (text.empty() ? "" : ", ") + NameAndUnit(name).name + " " +
+            MeasuredText(NumberAt(p, "value"), u, TextAt(p, "unit"));
   }
   return text;
 }
@@ -31,7 +32,8 @@ double ProbabilityOf(const json& cause) {
 }
 
 bool AreAlike(const json& cause, const json& other) {
-  return std::ranges::any_of(ListAt(cause, "indistinguishable_from"), [&](const json& rival) { return NameOfCause(rival) == NameOfCause(other); });
+  return std::ranges::any_of(ListAt(cause, "indistinguishable_from"),
+                             [&](const json& rival) { return NameOfCause(rival) == NameOfCause(other); });
 }
 
 /// The share of each; empty if the file does not say.
@@ -43,7 +45,8 @@ std::vector<double> SharesOf(const json& diagnosis) {
 }  // namespace
 
 nlohmann::json ListAt(const nlohmann::json& object, const std::string& key) {
-  return object.is_object() && object.contains(key) && object.at(key).is_array() ? object.at(key) : nlohmann::json::array();
+  return object.is_object() && object.contains(key) && object.at(key).is_array() ? object.at(key)
+                                                                                 : nlohmann::json::array();
 }
 
 std::string NameOfCause(const nlohmann::json& cause) {
@@ -63,7 +66,8 @@ PageTable DetectableTable(const nlohmann::json& seen) {
 
 PageTable InvisibleTable(const nlohmann::json& seen) {
   PageTable table{"Not observable in this run", {"effect", "could bias"}, {}};
-  for (const nlohmann::json& lost : ListAt(seen, "invisible")) table.rows.push_back({NameOfCause(lost), TextAt(lost, "could_bias")});
+  for (const nlohmann::json& lost : ListAt(seen, "invisible"))
+    table.rows.push_back({NameOfCause(lost), TextAt(lost, "could_bias")});
   return table;
 }
 
@@ -86,18 +90,22 @@ std::vector<CauseGroup> GroupsOf(const json& diagnosis) {
     const double share = k < shares.size() ? shares[k] : kNaN;
     // Only one of a group is there: together they are no more probable than that.
     const auto is_of = [&](std::size_t f) {
-      const double together = groups[static_cast<std::size_t>(std::ranges::find(first, f) - first.begin())].probability + ProbabilityOf(cause);
+      const double together =
+          groups[static_cast<std::size_t>(std::ranges::find(first, f) - first.begin())].probability +
+          ProbabilityOf(cause);
       return together <= 1.000001 && (AreAlike(causes[f], cause) || AreAlike(cause, causes[f]));
     };
     const auto of = std::ranges::find_if(first, is_of);
     if (of == first.end()) {
       first.push_back(k);
-      groups.push_back({NameOfCause(cause), ParametersOf(cause), TextAt(cause, "next_measurement"), ProbabilityOf(cause), share});
+      groups.push_back({NameOfCause(cause), ParametersOf(cause), TextAt(cause, "next_measurement"),
+                        ProbabilityOf(cause), share});
       continue;
     }
     CauseGroup& group = groups[static_cast<std::size_t>(of - first.begin())];
     group.name += " or " + NameOfCause(cause);
-    if (const std::string size = ParametersOf(cause); !size.empty()) group.size += (group.size.empty() ? "" : "; or ") + size;
+    if (const std::string size = ParametersOf(cause); !size.empty())
+      group.size += (group.size.empty() ? "" : "; or ") + size;
     if (group.next.empty()) group.next = TextAt(cause, "next_measurement");
     group.probability += ProbabilityOf(cause);
     if (!std::isfinite(group.share)) group.share = share;

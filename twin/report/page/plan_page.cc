@@ -19,11 +19,15 @@ std::string Short(double value) {
 }
 
 PageTable RunsTable(const json& plan) {
-  PageTable table{"Runs", {"run", "readings", "minutes", "degrees of freedom", "mean variance factor", "worst", "lower bound"}, {}};
+  PageTable table{
+      "Runs",
+      {"run", "readings", "minutes", "degrees of freedom", "mean variance factor", "worst", "lower bound"},
+      {}};
   for (const json& run : ListAt(plan, "runs")) {
     const json shifts = run.value("shifts", json::object());
-    table.rows.push_back({TextAt(run, "run"), Short(NumberAt(run, "readings")), Short(NumberAt(run, "minutes")), NumberText(NumberAt(run, "dof")),
-                          Short(NumberAt(shifts, "mean_variance_factor")), Short(NumberAt(shifts, "worst_variance_factor")),
+    table.rows.push_back({TextAt(run, "run"), Short(NumberAt(run, "readings")), Short(NumberAt(run, "minutes")),
+                          NumberText(NumberAt(run, "dof")), Short(NumberAt(shifts, "mean_variance_factor")),
+                          Short(NumberAt(shifts, "worst_variance_factor")),
                           Short(NumberAt(shifts, "least_possible_mean_factor"))});
   }
   return table;
@@ -82,7 +86,8 @@ std::vector<Figure> OrderFigures(const json& plan) {
       const std::string title = "u of " + PathInWords(name);
       auto figure = std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.title == title; });
       if (figure == figures.end())
-        figure = figures.insert(figure, {FigureForm::kBars, title, "", {"order", ""}, {"standard uncertainty", unit}, {}});
+        figure = figures.insert(figure,
+                                {FigureForm::kBars, title, "", {"order", ""}, {"standard uncertainty", unit}, {}});
       figure->series.push_back({TextAt(run, "run"), SeriesRole::kEstimate, *order, *u, {}});
     }
   }
@@ -90,7 +95,8 @@ std::vector<Figure> OrderFigures(const json& plan) {
 }
 
 Figure AdviceFigure(const json& plan) {
-  Figure figure{FigureForm::kRanks, "Information rate of each next run", "about causes and results together", {"", ""}, {"information", "bit/minute"}, {}};
+  Figure figure{FigureForm::kRanks, "Information rate of each next run", "about causes and results together",
+                {"", ""},           {"information", "bit/minute"},       {}};
   FigureSeries bars{"information", SeriesRole::kEstimate, {}, {}, {}};
   for (const json& run : ListAt(plan, "advice")) {
     figure.categories.push_back(TextAt(run, "words"));
@@ -101,10 +107,13 @@ Figure AdviceFigure(const json& plan) {
 }
 
 PageTable AdviceTable(const json& plan) {
-  PageTable table{"Runs that could be made next", {"run", "minutes", "readings", "information about causes [bit]", "about results [bit]", "keys"}, {}};
+  PageTable table{"Runs that could be made next",
+                  {"run", "minutes", "readings", "information about causes [bit]", "about results [bit]", "keys"},
+                  {}};
   for (const json& run : ListAt(plan, "advice")) {
     std::string keys;
-    for (const json& key : ListAt(run, "sets")) keys += (keys.empty() ? "" : "  ") + (key.is_string() ? key.get<std::string>() : "");
+    for (const json& key : ListAt(run, "sets"))
+      keys += (keys.empty() ? "" : "  ") + (key.is_string() ? key.get<std::string>() : "");
     table.rows.push_back({TextAt(run, "words"), Short(NumberAt(run, "minutes")), Short(NumberAt(run, "readings")),
                           Short(NumberAt(run, "of_causes_bit")), Short(NumberAt(run, "of_results_bit")), keys});
   }
@@ -112,9 +121,12 @@ PageTable AdviceTable(const json& plan) {
 }
 
 PageTable PlannedTies(const json& plan) {
-  PageTable table{"What may be mistaken for another cause", {"present", "may be identified instead", "distinguished above", "unit"}, {}};
+  PageTable table{"What may be mistaken for another cause",
+                  {"present", "may be identified instead", "distinguished above", "unit"},
+                  {}};
   for (const json& tie : ListAt(plan, "ties"))
-    table.rows.push_back({NameOfCause(tie.value("present", json())), NameOfCause(tie.value("blamed", json())), Short(NumberAt(tie, "told_from")), UnitText(TextAt(tie, "unit"))});
+    table.rows.push_back({NameOfCause(tie.value("present", json())), NameOfCause(tie.value("blamed", json())),
+                          Short(NumberAt(tie, "told_from")), UnitText(TextAt(tie, "unit"))});
   return table;
 }
 
@@ -141,11 +153,17 @@ PageTable PlannedLosses(const json& plan) {
 
 Page PlanPage(const PageSource& source, const json& plan) {
   const std::string title = TextAt(plan, "title");
-  Page page{title.empty() ? source.name : title, "plan: nothing has been measured, this is what runs would give", "", VerdictTone::kPlain, {}};
+  Page page{title.empty() ? source.name : title,
+            "plan: nothing has been measured, this is what runs would give",
+            "",
+            VerdictTone::kPlain,
+            {}};
   for (const json& run : ListAt(plan, "advice")) {
-    if (TextAt(run, "name") == TextAt(plan, "next")) page.verdict = "Most information per minute: " + TextAt(run, "words") + ".";
+    if (TextAt(run, "name") == TextAt(plan, "next"))
+      page.verdict = "Most information per minute: " + TextAt(run, "words") + ".";
   }
-  if (const std::string programme = ProgrammeInWords(plan); !programme.empty()) page.verdict = "Best runs to add: " + programme + ". " + page.verdict;
+  if (const std::string programme = ProgrammeInWords(plan); !programme.empty())
+    page.verdict = "Best runs to add: " + programme + ". " + page.verdict;
   PageSection runs{"Runs", "", {}}, next{"Next run", "", {}}, sight{"Detectability", "", {}};
   AddFilled(PlannedResults(plan), runs);
   AddFilled(RunsTable(plan), runs);

@@ -85,7 +85,8 @@ void EnterNumbers(const json& results, const json& score, const std::string& pat
   if (IsMeasured(node)) return AddRow(results, score, MeasuredValue(path, node), table);
   AddNumbers(results, score, path, node, table);
   for (const auto& [key, value] : node.items()) {
-    if (!(path.empty() && key == "diagnosis") && key != "u_parts") EnterNumbers(results, score, Joined(path, key), value, table);
+    if (!(path.empty() && key == "diagnosis") && key != "u_parts")
+      EnterNumbers(results, score, Joined(path, key), value, table);
   }
 }
 
@@ -121,8 +122,8 @@ std::optional<std::string> UnitOfValue(const json& node) {
   return {};
 }
 
-/// The members of a group whose values have their unit in their keys: {"total": {"value_um", "u_um"}, ...}. One column each, whatever
-/// the unit: a row of tilts stands beside one of displacements.
+/// The members of a group whose values have their unit in their keys: {"total": {"value_um", "u_um"}, ...}. One
+/// column each, whatever the unit: a row of tilts stands beside one of displacements.
 void AddGroup(const json& group, std::map<std::string, std::string>& cells) {
   if (!group.is_object()) return;
   for (const auto& [key, member] : group.items()) {
@@ -157,7 +158,8 @@ bool IsListOfObjects(const json& node) {
 
 /// Orders with their amplitudes are a spectrum, points of a pass are a curve.
 bool HasFigure(const json& list) {
-  return (list.front().contains("order") && list.size() > kMostRowsOfASpectrum) || list.front().contains("commanded_deg");
+  return (list.front().contains("order") && list.size() > kMostRowsOfASpectrum) ||
+         list.front().contains("commanded_deg");
 }
 
 std::string ColumnTitle(const std::string& key) {
@@ -167,7 +169,9 @@ std::string ColumnTitle(const std::string& key) {
 
 /// What a row is of stands before what was found.
 std::ptrdiff_t PlaceOf(const std::string& key) {
-  constexpr auto kFirst = std::to_array<std::string_view>({"setup", "pass", "order", "table", "motion", "position_deg", "instrument", "direction", "feed_mm_min", "radius_mm", "head_deg", "error", "value"});
+  constexpr auto kFirst =
+      std::to_array<std::string_view>({"setup", "pass", "order", "table", "motion", "position_deg", "instrument",
+                                       "direction", "feed_mm_min", "radius_mm", "head_deg", "error", "value"});
   return std::ranges::find(kFirst, key) - kFirst.begin();
 }
 
@@ -217,13 +221,15 @@ PageTable ListTable(const json& results) {
     const auto [name, unit] = NameAndUnit(budget.value("name", ""));
     const double u = NumberAt(budget, "u");
     table.rows.push_back({PathInWords(name), unit, NumberText(NumberAt(budget, "values")), NumberText(u, u),
-                          NumberText(NumberAt(budget, "k"), 0.01), NumberText(NumberAt(budget, "U"), NumberAt(budget, "U"))});
+                          NumberText(NumberAt(budget, "k"), 0.01),
+                          NumberText(NumberAt(budget, "U"), NumberAt(budget, "U"))});
   }
   return WithoutEmptyColumns(table);
 }
 
 Figure BudgetFigure(const json& results) {
-  Figure figure{FigureForm::kShares, "Where the uncertainty comes from", "", {"", ""}, {"share of the variance", ""}, {}};
+  Figure figure{
+      FigureForm::kShares, "Where the uncertainty comes from", "", {"", ""}, {"share of the variance", ""}, {}};
   if (!results.contains("uncertainty_budget")) return figure;
   const json& budgets = results.at("uncertainty_budget");
   std::map<std::string, std::vector<double>> shares;
@@ -261,9 +267,11 @@ std::vector<PageTable> ObjectTables(const json& results) {
   std::vector<PageTable> tables;
   ForEachObject(results, [&](const std::string& path, const json& object) {
     for (const auto& [key, value] : object.items()) {
-      if (key == "not_separable" || key == "uncertainty_budget" || key == "diagnosis" || !IsListOfObjects(value) || HasFigure(value))
+      if (key == "not_separable" || key == "uncertainty_budget" || key == "diagnosis" || !IsListOfObjects(value) ||
+          HasFigure(value))
         continue;
-      if (auto table = TableOfObjects(CurveTitle(Joined(path, key), ""), value)) tables.push_back(std::move(*table));
+      if (auto table = TableOfObjects(CurveTitle(Joined(path, key), ""), value))
+        tables.push_back(std::move(*table));
     }
   });
   return tables;

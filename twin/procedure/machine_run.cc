@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <utility>
+
+#include "twin/core/bench_format.h"
+#include "twin/core/device_fault.h"
+#include "twin/procedure/attempts.h"
+#include "twin/procedure/machine_journal.h"
+#include "twin/procedure/machine_sequencer.h"
+#include "twin/procedure/machine_watch.h"
+
+namespace twinbench::procedure {
+namespace {
+
+/// Somebody else had the axes, and nothing that was read at rest tells whether their zeros and units are still the
+/// same.
+bool IsBeyondProof(const DeviceFault& fault, const MachineRunState& state, const MachineOptions& options) {
+  const bool reads_at_rest = state.kept.empty() || WasAtRest(state.kept.back());
+  return fault.kind() == FaultKind::kMoved && options.require_as_before && reads_at_rest &&
+         !CanProve(state, options);
+}
+
+/// How a resumed run finds a real bench: as the last reading left it.
+MachineRunState StateBehind(const MachineBench& bench, const MachineOptions& options) {
+  MachineRunState state{options.kept, {}};
+  if (!bench.simulation && !options.kept.empty()) state.mounted = options.kept.back().setup;
+  return state;
+}
+
+/// The time of a fault; where the clock is what has failed, of the last reading.
+Time TimeOf(MachineBench& bench, const MachineRunState& state) {
+  try {
+    return bench.clock.Now();
+  } catch (const BenchError&) {
+    return state.kept.empty() ? Time{} : state.kept.back().time;
+  }
+}
+
+/// A simulation starts again; what was taken before passes without taking any time.
+void StartAgain(MachineBench& bench, const MachineRunState& state) {
+  if (!bench.simulation) return;
+  bench.simulation->Restart();
+  bench.simulation->SetPaced(state.kept.empty());
+}
+
+/// Finding origins drives axes through ways that no procedure planned, and what is mounted goes with them.
+void HomeAgain(MachineBench& bench, const MachineRunState& state, const MachineOptions& options) {
+  const bool turns_alone = std::ranges::all_of(bench.machine.Axes(), &MachineAxis::is_rotary);
+  if (!turns_alone && state.mounted)
+    throw DeviceFault(
+        FaultKind::kRefused, "machine",
+        "has lost its origin with an instrument mounted: take it off, find the origins, put it back and go on with "
+        "--resume");
+  if (!options.may_home)
+    throw DeviceFault(FaultKind::kRefused, "machine",
+                      "has lost its origin, and finding it moves the machine: look whether it may, then agree with "
+                      "--allow-homing");
+  bench.machine.Home();
+  if (options.log) options.log->AppendEvent(bench.clock.Now(), "machine", "has found its origin again");
+}
+
+}  // namespace
+
+void RequireOneRotaryAxis(const std::vector<MachineAxis>& axes, const std::string& axis) {
+  if (axes.size() != 1 || !axes[0].is_rotary)
+    throw DeviceFault(FaultKind::kRefused, "machine", "this bench has one axis, " + axis);
+}
+
+void CarryOutPlan(MachineBench& bench, const MachinePlan& plan, const MachineWay& way, ReadingSink& sink,
+                  const ProgressCallback& progress, const MachineOptions& options) {
+  MachineJournal journal(bench, InstrumentColumns(FormatOf(plan.bench).columns), options.log);
+  MachineRunState state = StateBehind(bench, options);
+  Attempts attempts(options.attempts);
+  for (bool anew = !state.kept.empty();; anew = true) {
+    MachineSequencer sequencer(journal.Bench(), plan, sink, options, progress, state);
+    try {
+      if (anew) StartAgain(bench, state);
+      if (std::exchange(state.lost_origin, false)) HomeAgain(bench, state, options);
+      journal.BeginAttempt();
+      if (bench.simulation) state.mounted.reset();
+      way(sequencer);
+      return sequencer.Flush();
+    } catch (const DeviceFault& fault) {
+      if (options.hear_fault) options.hear_fault(fault);
+      const Standstill stands = StopMachine(bench, options);
+      sequencer.Flush();
+      if (options.log) options.log->ForgetCalls();
+      const int next = static_cast<int>(state.kept.size());
+      NoteFailure(options.log, next, TimeOf(bench, state), fault);
+      if (!options.log || !stands.is_sure || !IsWorthAnotherAttempt(fault.kind()) ||
+          IsBeyondProof(fault, state, options) || !attempts.AnotherAt(next))
+        throw StoppedRun(fault, stands);
+      state.lost_origin = fault.kind() == FaultKind::kRestarted && !bench.simulation;
+      state.is_doubted = true;
+    } catch (...) {  // whatever it is, nothing goes on moving
+      StopMachine(bench, options);
+      throw;
+    }
+  }
+}
+
+}  // namespace twinbench::procedure
