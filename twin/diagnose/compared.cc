@@ -96,28 +96,29 @@ void EstimateNoise(const TwinComparison& comparison, LinearRun& run) {
   }
 }
 
-/// What one draw a reading adds to the variances of rows that count as independent: readings x channels. All channels
-/// show the same draw, s s' in covariance, which is below any diagonal s_c^2 / a_c with a_c that sum to 1 (Cauchy and
-/// Schwarz). The more of a channel's scatter the draw is, the larger its a_c, so that others lose little.
-Eigen::ArrayXXd VarianceOfDraw(const Eigen::ArrayXXd& sd, const Eigen::ArrayXXd& variance) {
-  const Eigen::ArrayXXd all = (sd.square() + variance).sqrt();
-  const Eigen::ArrayXXd share = (all > 0.0).select(sd / all, 0.0);
-  return (sd * all).colwise() * share.rowwise().sum();
+/// Whether more than one channel shows it: then their rows are not independent.
+bool IsShared(const Eigen::MatrixXd& shown) {
+  constexpr double kLeast = 0.01;  // of the squares, beside the channel that shows it most
+  const double all = shown.squaredNorm();
+  return all - shown.cwiseAbs2().rowwise().maxCoeff().sum() > kLeast * all;
 }
 
 /// What is drawn anew at each reading, beside the noise of the channels.
 void AddScatter(const Compared& c, const Scenario& scenario, const TwinComparison& comparison, LinearRun& run) {
   if (!comparison.scatter) return;
-  const Eigen::Index channels = run.Channels();
-  Eigen::ArrayXXd variance = run.sigma.cwiseAbs2().reshaped(channels, run.sigma.size() / channels).transpose();
+  Eigen::VectorXd variance = run.sigma.cwiseAbs2();
   for (const auto& [point, sd, is_at] : comparison.scatter(scenario)) {
     if (!(sd > 0.0)) continue;
-    Eigen::ArrayXXd shown = (sd * c.twin.Slope(point, {})).cwiseAbs();
+    Eigen::MatrixXd shown = sd * c.twin.Slope(point, {});
     for (Eigen::Index i = 0; is_at && i < shown.rows(); ++i)
       if (!is_at(c.used[static_cast<std::size_t>(i)])) shown.row(i).setZero();
-    variance += VarianceOfDraw(shown, variance);
+    const Eigen::VectorXd rows = ByRow(shown);
+    variance += rows.cwiseAbs2();
+    if (!IsShared(shown)) continue;
+    run.draws.conservativeResize(rows.size(), run.draws.cols() + 1);
+    run.draws.rightCols(1) = rows;
   }
-  run.sigma = ByRow(variance.sqrt().matrix());
+  run.sigma = variance.cwiseSqrt();
 }
 
 constexpr double kNoWeight = 1e5;  // times the noise: of a channel that a reading has not

@@ -116,7 +116,7 @@ Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, cons
     if (repairs == 0) {
       analysis.null = options.null
                           ? *options.null
-                          : CalibrateCached(*analysis.scanner, *analysis.projector, log_priors, options.null_runs,
+                          : CalibrateCached(run, *analysis.scanner, *analysis.projector, log_priors, options.null_runs,
                                             options.cache_folder, DesignKey(run, families, options.null_runs));
       // Nothing that is less likely than no cause at all is claimed, however rare it may be in noise.
       analysis.threshold = std::max(0.0, analysis.null.Threshold(tuning::kAlarmProbability));

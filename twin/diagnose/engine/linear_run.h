@@ -66,6 +66,8 @@ struct LinearRun {
   Eigen::VectorXd residual;  // observed - prediction without further effects, unknowns as their priors say, SI
   Eigen::VectorXd sigma;     // stated standard uncertainty of each row, SI
   bool sigma_stated = true;  // false: sigma is an estimate from the data itself
+  Eigen::MatrixXd draws = {};  // rows x draws: what one deviation of each shows, part of sigma; all channels of a
+                               // reading show the same one. Empty: rows are independent
   double rounding = 0.0;     // SI: step to which the readings are rounded, found in them; 0: none
   bool noise_free = false;   // a simulation without noise: its residuals say nothing about sigma
   Nuisance nuisance;

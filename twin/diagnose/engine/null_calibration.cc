@@ -26,6 +26,20 @@ Eigen::MatrixXd WhiteRuns(Stream& stream, Eigen::Index rows, Eigen::Index runs) 
   return noise;
 }
 
+/// Whitened readings of nothing but noise: rows x runs. What is drawn once a reading all of its channels show.
+Eigen::MatrixXd NoiseRuns(const LinearRun& run, Stream& stream, Eigen::Index runs) {
+  Eigen::MatrixXd noise = WhiteRuns(stream, run.Rows(), runs);
+  if (run.draws.cols() == 0) return noise;
+  const Eigen::MatrixXd white = run.sigma.cwiseInverse().asDiagonal() * run.draws;
+  noise.array().colwise() *= (1.0 - white.rowwise().squaredNorm().array()).max(0.0).sqrt();
+  const Eigen::Index channels = run.Channels(), readings = run.Rows() / channels;
+  for (const auto& draw : white.colwise()) {
+    const Eigen::MatrixXd drawn = WhiteRuns(stream, readings, runs);
+    for (Eigen::Index row = 0; row < noise.rows(); ++row) noise.row(row) += draw[row] * drawn.row(row / channels);
+  }
+  return noise;
+}
+
 /// Number of top values that the tail is fitted to, and their mean excess over the one below.
 struct Tail {
   std::size_t count;
@@ -100,6 +114,15 @@ void AddSizes(const LinearRun& run, const std::vector<Family>& families, Hash& h
   for (const double told : {all.mean(), spread, std::log(points)}) hash.Add(fmt::format("{}", std::lround(kPerE * told)));
 }
 
+/// How much of the noise each draw is.
+void AddDraws(const LinearRun& run, Hash& hash) {
+  constexpr double kSteps = 5.0;
+  if (run.draws.cols() == 0) return;
+  const Eigen::MatrixXd white = run.sigma.cwiseInverse().asDiagonal() * run.draws;
+  for (const auto& draw : white.colwise())
+    hash.Add(fmt::format("{}", std::lround(kSteps * draw.norm() / std::sqrt(static_cast<double>(run.Rows())))));
+}
+
 }  // namespace
 
 double NullCalibration::Threshold(double probability) const {
@@ -120,14 +143,13 @@ double NullCalibration::PValue(double statistic) const {
   return static_cast<double>(above) / n;
 }
 
-NullCalibration Calibrate(const Scanner& scanner, const Projector& projector, const Eigen::VectorXd& log_priors,
-                          int runs) {
+NullCalibration Calibrate(const LinearRun& run, const Scanner& scanner, const Projector& projector,
+                          const Eigen::VectorXd& log_priors, int runs) {
   Stream stream(1, "diagnose.null");
   NullCalibration calibration;
-  const Eigen::Index rows = projector.Jacobian().rows();
-  runs = RunsOf(rows, runs);
+  runs = RunsOf(run.Rows(), runs);
   for (int done = 0; done < runs; done += kBatch) {
-    const Eigen::MatrixXd white = WhiteRuns(stream, rows, std::min(kBatch, runs - done));
+    const Eigen::MatrixXd white = NoiseRuns(run, stream, std::min(kBatch, runs - done));
     const Evidence evidence = scanner.Scan(Project(projector, {}, white), {});
     const Eigen::VectorXd statistic = AlarmStatistic(evidence.log_bayes, log_priors);
     calibration.sorted.insert(calibration.sorted.end(), statistic.begin(), statistic.end());
@@ -136,17 +158,17 @@ NullCalibration Calibrate(const Scanner& scanner, const Projector& projector, co
   return calibration;
 }
 
-NullCalibration CalibrateCached(const Scanner& scanner, const Projector& projector,
+NullCalibration CalibrateCached(const LinearRun& run, const Scanner& scanner, const Projector& projector,
                                 const Eigen::VectorXd& log_priors, int runs, const std::string& folder,
                                 const std::string& key) {
-  if (folder.empty()) return Calibrate(scanner, projector, log_priors, runs);
+  if (folder.empty()) return Calibrate(run, scanner, projector, log_priors, runs);
   const fs::path path = fs::path(folder) / ("null-" + key + ".txt");
   NullCalibration calibration{ReadValues(path)};
-  if (std::ssize(calibration.sorted) == RunsOf(projector.Jacobian().rows(), runs) &&
+  if (std::ssize(calibration.sorted) == RunsOf(run.Rows(), runs) &&
       std::is_sorted(calibration.sorted.begin(), calibration.sorted.end())) {
     return calibration;
   }
-  calibration = Calibrate(scanner, projector, log_priors, runs);
+  calibration = Calibrate(run, scanner, projector, log_priors, runs);
   WriteValues(calibration.sorted, path);
   return calibration;
 }
@@ -163,6 +185,7 @@ std::string DesignKey(const LinearRun& run, const std::vector<Family>& families,
     hash.Add(fmt::format("{} {} {}", f.effect, f.where, f.amplitudes.size()));
   }
   AddSizes(run, families, hash);
+  AddDraws(run, hash);
   return fmt::format("{:016x}", hash.value);
 }
 

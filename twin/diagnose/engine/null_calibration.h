@@ -19,12 +19,13 @@ struct NullCalibration {
   double PValue(double statistic) const;
 };
 
-/// Simulates `runs` clean runs with white noise of this design's deviations.
-NullCalibration Calibrate(const Scanner& scanner, const Projector& projector, const Eigen::VectorXd& log_priors,
-                          int runs);
+/// Simulates `runs` clean runs with noise of this design's deviations, white but for what all channels of a reading share
+/// (LinearRun::draws).
+NullCalibration Calibrate(const LinearRun& run, const Scanner& scanner, const Projector& projector,
+                          const Eigen::VectorXd& log_priors, int runs);
 
 /// The same, kept in a file of `folder` by `key`; an empty folder keeps nothing, an unwritable one is no error.
-NullCalibration CalibrateCached(const Scanner& scanner, const Projector& projector,
+NullCalibration CalibrateCached(const LinearRun& run, const Scanner& scanner, const Projector& projector,
                                 const Eigen::VectorXd& log_priors, int runs, const std::string& folder,
                                 const std::string& key);
 
