@@ -9,6 +9,7 @@
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/naming.h"
+#include "twin/diagnose/engine/null_calibration.h"
 #include "twin/diagnose/engine/prior.h"
 
 namespace twinbench::diagnose {
@@ -153,6 +154,35 @@ TEST(NullCalibration, ExtendsItsTailBeyondTheSimulatedRuns) {
   for (int k = 0; k < 1000; ++k) null.sorted.push_back(-2.0 * std::log(1.0 - (k + 0.5) / 1000.0));  // mean excess 2
   EXPECT_NEAR(null.Threshold(0.01), -2.0 * std::log(0.01), 0.2);
   EXPECT_NEAR(null.PValue(-2.0 * std::log(1e-5)), 1e-5, 4e-6);
+}
+
+// What both channels show looks like a cause on both, where rows are taken for independent.
+TEST(NullCalibration, KnowsThatAllChannelsOfAReadingShowOneDraw) {
+  constexpr int kRuns = 1000;
+  constexpr double kShare = 0.9;
+  SearchCase c(1);
+  const NoiseModel noise = WhiteNoise(c.run);
+  const Projector projector(noise.Whiten(c.run, c.run.nuisance.jacobian), c.run.nuisance);
+  const Scanner scanner(c.run, noise, projector, c.families);
+  const Eigen::VectorXd priors = LogPriors(c.families);
+  const double as_if_white = Calibrate(c.run, scanner, projector, priors, 1000).Threshold(0.05);
+  c.run.draws = kShare * c.run.sigma;
+  const double threshold = Calibrate(c.run, scanner, projector, priors, 1000).Threshold(0.05);
+  Stream stream(5, "test.draws");
+  Eigen::MatrixXd white(c.run.Rows(), kRuns);
+  for (int k = 0; k < kRuns; ++k) {
+    for (int row = 0; row < c.run.Rows(); row += 2) {
+      const double draw = kShare * stream.Normal(), own = std::sqrt(1.0 - kShare * kShare);
+      white(row, k) = draw + own * stream.Normal();
+      white(row + 1, k) = draw + own * stream.Normal();
+    }
+  }
+  const Eigen::ArrayXd statistic = AlarmStatistic(scanner.Scan(Project(projector, {}, white), {}).log_bayes, priors);
+  const auto alarms = (statistic > threshold).count();
+  // 50 of 1000, 7 by chance, and as much that the threshold itself scatters.
+  EXPECT_GT(alarms, 20);
+  EXPECT_LT(alarms, 80);
+  EXPECT_GT((statistic > as_if_white).count(), 1.4 * static_cast<double>(alarms));
 }
 
 constexpr double kAmplitude_m = 6.0 * units::um, kLifetime_s = 700.0;
