@@ -81,4 +81,11 @@ TwinComparison::Product FollowsTemperature(const std::string& effect, const std:
   return {effect, where, point, {size}, "lag", [](const std::vector<Reading>&) { return TemperatureLags_s(); }, followed};
 }
 
+std::vector<TwinComparison::Scatter> RepeatabilityOf(const std::string& table,
+                                                     const std::array<double, kComponents>& sd) {
+  std::vector<TwinComparison::Scatter> scatter;
+  for (std::size_t c = 0; c < kComponents; ++c) scatter.push_back({table + "." + kComponentNames[c], sd[c]});
+  return scatter;
+}
+
 }  // namespace twinbench::diagnose

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
+
+#include "twin/core/table_errors.h"
 #include "twin/diagnose/by_twin.h"
 
-/// Effects of a catalogue as slopes of the twin at a point times a course of one shape.
+/// What enters at a point of the twin: effects of a catalogue as its slopes there times a course of one shape, and what
+/// a table draws anew at every stop.
 namespace twinbench::diagnose {
 
 /// A wave along a coordinate whose period is not known: sizes are those of its cosine and its sine.
@@ -21,5 +25,9 @@ std::vector<double> TemperatureLags_s();
 TwinComparison::Product FollowsTemperature(const std::string& effect, const std::string& where,
                                            const std::string& point, const std::string& size,
                                            double reference_degC);
+
+/// At the points "table.ex" to "table.dz", by the table's repeatability.
+std::vector<TwinComparison::Scatter> RepeatabilityOf(const std::string& table,
+                                                     const std::array<double, kComponents>& sd);
 
 }  // namespace twinbench::diagnose

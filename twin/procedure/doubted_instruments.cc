@@ -10,8 +10,8 @@
 namespace twinbench::procedure {
 namespace {
 
-constexpr int kAgain =
-    16;  // readings that are all the same: of steps so coarse that noise hides in them, one in many is another
+/// Readings that are all the same: of steps so coarse that noise hides in them, one in many is another.
+constexpr int kAgain = 16;
 constexpr int kSamplesTheSame = 64;
 constexpr double kAgree = 10.0;                    // times the noise of a difference
 constexpr double kFollows_rad = 1.0 * units::deg;  // more than the steps of any encoder
@@ -74,8 +74,7 @@ void RequireGoesAlong(const std::vector<ClaimedColumn>& claims, const Reading& r
     throw DeviceFault(
         FaultKind::kMoved, "instruments",
         fmt::format("went from {} to {}, which is not the way from the place of reading {} to that of {}: does "
-                    "anything stand "
-                    "elsewhere than its controller says?",
+                    "anything stand elsewhere than its controller says?",
                     Text(claim, before), claim.column.print(reading), before.reading, reading.reading));
   }
 }

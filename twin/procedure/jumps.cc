@@ -87,12 +87,11 @@ void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& read
       if (!(jump > std::max(AllowedAtPlace(claim), kTimesScatter * scatter))) continue;
       throw DeviceFault(
           FaultKind::kImplausible, "instruments",
-          fmt::format("show {} by {:.4g} (SI) otherwise against the pass before at places up to that of reading {} "
-                      "than at those "
-                      "from reading {} on: a zero, a mirror or the mounting jumped, in this pass or the one "
-                      "before; measure mounting "
-                      "{} again",
-                      claim.column.name, jump, repeats[k - 1].reading, repeats[k].reading, reading.setup));
+          fmt::format(
+              "show {} by {:.4g} (SI) otherwise against the pass before at places up to that of reading {} "
+              "than at those from reading {} on: a zero, a mirror or the mounting jumped, in this pass or the one "
+              "before; measure mounting {} again",
+              claim.column.name, jump, repeats[k - 1].reading, repeats[k].reading, reading.setup));
     }
   }
 }
@@ -114,11 +113,12 @@ void RequireNotExchanged(const ClaimedColumn& a, const ClaimedColumn& b, const R
   }
   const double noise = std::sqrt(2.0 * kPlaces) * std::hypot(a.noise, b.noise);
   if (!(std::sqrt(differs) > std::max(kTimes * std::sqrt(adds), kTimesNoise * noise))) return;
-  throw DeviceFault(FaultKind::kImplausible, "instruments",
-                    fmt::format("show at the places of the last {} readings that {} and {} differ the other way "
-                                "round than in the pass before: were "
-                                "they exchanged, in this pass or that one? Measure mounting {} again",
-                                kPlaces, a.column.name, b.column.name, reading.setup));
+  throw DeviceFault(
+      FaultKind::kImplausible, "instruments",
+      fmt::format(
+          "show at the places of the last {} readings that {} and {} differ the other way "
+          "round than in the pass before: were they exchanged, in this pass or that one? Measure mounting {} again",
+          kPlaces, a.column.name, b.column.name, reading.setup));
 }
 
 void Closing::Took(const Reading& reading) {
@@ -159,8 +159,8 @@ void Closing::Require(const Reading& again) const {
     throw DeviceFault(
         FaultKind::kImplausible, "instruments",
         fmt::format("showed {} = {} at reading {} and show {} at its place, come to from the same side, behind the "
-                    "passes: a zero, a "
-                    "mirror or the mounting jumped, or it had not come to rest; measure mounting {} again",
+                    "passes: a zero, a mirror or the mounting jumped, or it had not come to rest; measure mounting "
+                    "{} again",
                     claim.column.name, claim.column.print(then), then.reading, claim.column.print(again),
                     then.setup));
   }

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "twin/benches/rotary_4dof/twin/factory.h"
 #include "twin/core/distributions.h"
 #include "twin/core/rounding.h"
+#include "twin/diagnose/products.h"
 
 namespace twinbench::benches::rotary {
 namespace {
@@ -125,10 +124,9 @@ void StateNoise(const std::vector<Reading>& used, const Scenario& scenario,
     std::vector<diagnose::TwinComparison::Scatter> scatter = {{"mount.ez", sweep_rad, IsInCalibration},
                                                               {"mount.ex", sweep_rad, IsInCalibration}};
     const RotarySettings& own = RotaryOf(believed);
-    for (std::size_t c = 0; c < kComponents; ++c) {
-      scatter.push_back({fmt::format("target.{}", kComponentNames[c]), own.target.repeatability_sd[c]});
-      scatter.push_back({fmt::format("reference.{}", kComponentNames[c]), own.reference.repeatability_sd[c]});
-    }
+    for (const auto& table : {diagnose::RepeatabilityOf("target", own.target.repeatability_sd),
+                              diagnose::RepeatabilityOf("reference", own.reference.repeatability_sd)})
+      scatter.insert(scatter.end(), table.begin(), table.end());
     return scatter;
   };
 }

@@ -161,10 +161,9 @@ void LeaveFree(const std::vector<Reading>& readings, const Scenario& scenario, T
 std::vector<TwinComparison::Scatter> ScatterOf(const Scenario& scenario) {
   const TurntableSettings& own = TurntableOf(scenario);
   std::vector<TwinComparison::Scatter> scatter = {{"room.temperature", scenario.environment.sensor_noise_K}};
-  for (std::size_t c = 0; c < kComponents; ++c) {
-    scatter.push_back({std::string("turntable.") + kComponentNames[c], own.turntable.repeatability_sd[c]});
-    scatter.push_back({std::string("multitooth.") + kComponentNames[c], own.multitooth_table.repeatability_sd[c]});
-  }
+  for (const auto& table : {diagnose::RepeatabilityOf("turntable", own.turntable.repeatability_sd),
+                            diagnose::RepeatabilityOf("multitooth", own.multitooth_table.repeatability_sd)})
+    scatter.insert(scatter.end(), table.begin(), table.end());
   for (const EffectSettings& e : scenario.effects)
     if (e.name == "multitooth_seating") scatter.push_back({"multitooth.ez", e.parameters.at("scatter")});
   if (own.HasPolygon())  // beside a multi-tooth table the encoder is not read

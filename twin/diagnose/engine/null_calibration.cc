@@ -26,11 +26,16 @@ Eigen::MatrixXd WhiteRuns(Stream& stream, Eigen::Index rows, Eigen::Index runs) 
   return noise;
 }
 
+/// In units of the noise of each row.
+Eigen::MatrixXd WhiteDraws(const LinearRun& run) {
+  return run.sigma.cwiseInverse().asDiagonal() * run.draws;
+}
+
 /// Whitened readings of nothing but noise: rows x runs. What is drawn once a reading all of its channels show.
 Eigen::MatrixXd NoiseRuns(const LinearRun& run, Stream& stream, Eigen::Index runs) {
   Eigen::MatrixXd noise = WhiteRuns(stream, run.Rows(), runs);
   if (run.draws.cols() == 0) return noise;
-  const Eigen::MatrixXd white = run.sigma.cwiseInverse().asDiagonal() * run.draws;
+  const Eigen::MatrixXd white = WhiteDraws(run);
   noise.array().colwise() *= (1.0 - white.rowwise().squaredNorm().array()).max(0.0).sqrt();
   const Eigen::Index channels = run.Channels(), readings = run.Rows() / channels;
   for (const auto& draw : white.colwise()) {
@@ -118,7 +123,7 @@ void AddSizes(const LinearRun& run, const std::vector<Family>& families, Hash& h
 void AddDraws(const LinearRun& run, Hash& hash) {
   constexpr double kSteps = 5.0;
   if (run.draws.cols() == 0) return;
-  const Eigen::MatrixXd white = run.sigma.cwiseInverse().asDiagonal() * run.draws;
+  const Eigen::MatrixXd white = WhiteDraws(run);
   for (const auto& draw : white.colwise())
     hash.Add(fmt::format("{}", std::lround(kSteps * draw.norm() / std::sqrt(static_cast<double>(run.Rows())))));
 }
