@@ -38,11 +38,11 @@ std::optional<Entry> EntryOf(std::string_view line) {
   return is_one ? std::optional(entry) : std::nullopt;
 }
 
-using Runs = std::map<int, std::map<int, std::string_view>>;  // cells as the file has them, by run, then by row
+using CellsOfRuns = std::map<int, std::map<int, std::string_view>>;  // as the file has them, by run, then by row
 
 struct Indexed {
   std::map<int, std::string_view> target;
-  std::map<std::string, Runs> arrays;
+  std::map<std::string, CellsOfRuns> arrays;
   std::string unit;
 };
 

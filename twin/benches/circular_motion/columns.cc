@@ -36,15 +36,17 @@ std::vector<ReadingColumn> Columns() {
   return Joined({CommonColumns(false), own, {temperature}});
 }
 
+Reading WithAngle(const Reading* before, Reading r) {
+  r.target_rad = std::atan2(kCommandedY_m(r), kCommandedX_m(r));
+  r.velocity_rad_s = r.direction * kFeed_m_s(r) / Radius_m(r);
+  if (before && SamePass(*before, r))
+    r.target_rad = before->target_rad + std::remainder(r.target_rad - before->target_rad, units::turn);
+  return r;
+}
+
 std::vector<Reading> WithAngles(std::vector<Reading> readings) {
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    Reading& r = readings[i];
-    r.target_rad = std::atan2(kCommandedY_m(r), kCommandedX_m(r));
-    r.velocity_rad_s = r.direction * kFeed_m_s(r) / Radius_m(r);
-    if (i == 0 || !SamePass(readings[i - 1], r)) continue;
-    const double before_rad = readings[i - 1].target_rad;
-    r.target_rad = before_rad + std::remainder(r.target_rad - before_rad, units::turn);
-  }
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    readings[i] = WithAngle(i == 0 ? nullptr : &readings[i - 1], std::move(readings[i]));
   return readings;
 }
 

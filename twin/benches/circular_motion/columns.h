@@ -13,6 +13,8 @@ inline const Quantity kGridX_m{"grid_x_mm"}, kGridY_m{"grid_y_mm"};
 /// The readings with what follows from their columns: target_rad, the commanded polar angle, unwrapped along each
 /// pass, and velocity_rad_s, its rate.
 std::vector<Reading> WithAngles(std::vector<Reading> readings);
+/// The same of one reading behind another, whose angle is known; nullptr: of the first.
+Reading WithAngle(const Reading* before, Reading reading);
 
 /// Radial and tangential deviation from the commanded point as the instrument shows it [m]: of the bar its length,
 /// of its encoder the angle times the radius. NaN where the instrument showed nothing.

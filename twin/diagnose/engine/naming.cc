@@ -11,7 +11,7 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr const char* kUnexplained = "structure that the causes identified here do not explain";
+constexpr const char* kStructureUnexplained = "structure that the causes identified here do not explain";
 
 /// The answers of all places, and the power that they explain.
 struct Answered {
@@ -206,9 +206,9 @@ Naming Name(const SearchResult& found, const std::vector<Family>& families, doub
   } else if (found.overtones > 0.5) {
     DeclareUnknown("something that repeats as the wave identified here and is no sine, function of time", answered, naming);
   } else if (is_mostly_unnamed || one_unknown > 0.5) {
-    DeclareUnknown(kUnexplained, answered, naming);
+    DeclareUnknown(kStructureUnexplained, answered, naming);
   } else if (naming.unknown.signature.empty() && LeavesStructure(answered, found.last_statistic, threshold)) {
-    naming.unknown = {tuning::kListed, kUnexplained};
+    naming.unknown = {tuning::kListed, kStructureUnexplained};
   }
   if (const std::string effects = DisbelievePieces(naming); !effects.empty()) {
     naming.verdict = Verdict::kUnknown;

@@ -53,7 +53,7 @@ Places Targets(const Eigen::VectorXd& angle_rad, const std::vector<int>& setup, 
   return Numbered(keys);
 }
 
-Places Bins(const Eigen::VectorXd& angle_rad, const std::vector<int>& setup, double width_rad) {
+Places BinnedPlaces(const Eigen::VectorXd& angle_rad, const std::vector<int>& setup, double width_rad) {
   std::vector<std::pair<int, int>> keys;
   const int count = std::max(1, static_cast<int>(std::lround(units::turn / width_rad)));
   for (Eigen::Index i = 0; i < angle_rad.size(); ++i) {
@@ -75,7 +75,7 @@ std::vector<int> PlacesOf(const Eigen::VectorXd& angle_rad, const std::vector<in
   Places place = Targets(angle_rad, setup, kSame_rad);
   if (CountOf(place) * kVisitedAgain > readings) {
     const double range_rad = std::min(units::turn, angle_rad.maxCoeff() - angle_rad.minCoeff());
-    place = Bins(angle_rad, setup, range_rad / std::clamp(readings / kInBin, 1.0, static_cast<double>(kMostBins)));
+    place = BinnedPlaces(angle_rad, setup, range_rad / std::clamp(readings / kInBin, 1.0, static_cast<double>(kMostBins)));
   }
   return VisitsIn(place) < kVisitedAgain * CountOf(place) ? Places{} : place;
 }

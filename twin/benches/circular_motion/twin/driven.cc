@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "twin/benches/circular_motion/twin/live.h"
+#include "twin/benches/circular_motion/twin/beside.h"
 #include "twin/core/happened_once.h"
 
 namespace twinbench::sim {
@@ -15,7 +15,6 @@ using namespace benches::circular;
 constexpr double kSame_m = 1.0 * units::nm, kSameFeed = 1e-9;
 constexpr Duration kSameTime{2};     // both are rounded
 constexpr double kRoomToMove = 1.1;  // of the largest radius
-constexpr int kBesideThePlan = -1;   // a pass
 
 class CirclePhysics : public DrivenPhysics {
  public:
@@ -50,24 +49,37 @@ class CirclePhysics : public DrivenPhysics {
   Reading Show(const DrivenInstant& at) override {
     const std::optional<Time> planned = Planned(at);
     const bool as_planned = planned && std::chrono::abs(*planned - at.time) <= kSameTime;
-    Reading shown = as_planned ? run_->Take(at.sample) : run_->TakeBeside(course_, Commanded(at));
+    const Reading shown = as_planned ? AsPlanned(at.sample) : Beside(Commanded(at));
     course_.push_back(shown);
     return shown;
   }
 
-  void Restart() override { course_.clear(); }
+  void Restart() override {
+    beside_.reset();
+    course_.clear();
+  }
   void BeRun(int repeat) override {
-    if (repeat != repeat_) run_.emplace(InRun(scenario_, repeat));
+    if (repeat == repeat_) return;
+    beside_.reset();
+    run_.emplace(InRun(scenario_, repeat));
     repeat_ = repeat;
   }
 
  private:
+  Reading AsPlanned(int sample) {
+    beside_.reset();
+    return run_->Take(sample);
+  }
+  Reading Beside(const Reading& commanded) {
+    if (!beside_) beside_.emplace(*run_, course_);
+    return beside_->Take(commanded);
+  }
+
   static Reading Commanded(const DrivenInstant& at) {
     Reading r;
     r.reading = at.sample;
     r.time = at.time;
     r.setup = at.setup;
-    r.pass = kBesideThePlan;
     r.direction = at.direction;
     kCommandedX_m(r) = at.commanded[0];
     kCommandedY_m(r) = at.commanded[1];
@@ -81,6 +93,7 @@ class CirclePhysics : public DrivenPhysics {
   CircularSettings settings_;
   std::vector<MachineAxis> axes_ = {{"x"}, {"y"}};
   std::vector<Reading> course_;  // what was taken
+  std::optional<CircleBeside> beside_;
 };
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include "twin/benches/circular_motion/procedure.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/core/stream.h"
-#include "twin/sim/environment.h"
 #include "twin/sim/truth.h"
 
 namespace twinbench::sim {
@@ -14,26 +13,28 @@ namespace {
 
 using namespace benches::circular;
 
-constexpr double kOnCircle_m = 1.0 * units::nm;  // more: the machine went beside it
+Environment RoomOf(const Scenario& scenario) {
+  return {scenario.environment, scenario.RunSeed()};
+}
 
 /// With the room's temperature, as the bench's thermometer shows it.
-std::vector<Reading> WithTemperatures(std::vector<Reading> course, const Scenario& scenario) {
-  Environment environment(scenario.environment, scenario.RunSeed());
-  for (Reading& r : course)
-    r.temperature_degC =
-        scenario.noise_free ? environment.Temperature_degC(r.time) : environment.Measure_degC(r.time);
-  return course;
+Reading FeltIn(Environment& room, Reading r, bool noise_free) {
+  r.temperature_degC = noise_free ? room.Temperature_degC(r.time) : room.Measure_degC(r.time);
+  return r;
 }
 
 std::vector<Reading> CourseOf(const Scenario& scenario) {
-  return WithTemperatures(WithAngles(procedure::CircleSchedule(CircularOf(scenario).procedure)), scenario);
+  std::vector<Reading> course = WithAngles(procedure::CircleSchedule(CircularOf(scenario).procedure));
+  Environment room = RoomOf(scenario);
+  for (Reading& r : course) r = FeltIn(room, std::move(r), scenario.noise_free);
+  return course;
 }
 
 Eigen::VectorXd Above_K(const Scenario& scenario, const std::vector<Reading>& course) {
-  Environment environment(scenario.environment, scenario.RunSeed());
+  Environment room = RoomOf(scenario);
   Eigen::VectorXd above_K(std::ssize(course));
   for (std::size_t i = 0; i < course.size(); ++i)
-    above_K[static_cast<Eigen::Index>(i)] = environment.AboveReference_K(course[i].time);
+    above_K[static_cast<Eigen::Index>(i)] = room.AboveReference_K(course[i].time);
   return above_K;
 }
 
@@ -126,14 +127,16 @@ Reading CircleRun::Take(int reading) const {
   return Shown(course_[i], twin_, i);
 }
 
-Reading CircleRun::TakeBeside(std::vector<Reading> course, const Reading& commanded) const {
-  course.push_back(commanded);
-  course = WithTemperatures(WithAngles(std::move(course)), scenario_);
-  BodiesOnce bodies;  // of this course; axes that are bodies take a second or two for it
-  Reading shown = Shown(course.back(), CircleTwin(scenario_, course, Above_K(scenario_, course), bodies), course.size() - 1);
-  const double off_m = Radius_m(shown) - SetupOf(shown).radius_m;
-  if (SetupOf(shown).IsBar() && std::abs(off_m) > kOnCircle_m) kBar_m(shown) += off_m;
-  return shown;
+Environment CircleRun::Room() const {
+  return RoomOf(scenario_);
+}
+
+Reading CircleRun::Felt(Reading r, Environment& room) const {
+  return FeltIn(room, std::move(r), scenario_.noise_free);
+}
+
+CircleTwin CircleRun::TwinOf(const std::vector<Reading>& course, BodiesOnce& bodies) const {
+  return {scenario_, course, Above_K(scenario_, course), bodies};
 }
 
 namespace {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "twin/benches/circular_motion/twin/twin.h"
+#include "twin/sim/environment.h"
 #include "twin/sim/outlier_draw.h"
 
 namespace twinbench::sim {
@@ -20,19 +21,21 @@ class CircleRun {
   /// One of the procedure's readings before it is taken, with its temperature.
   const Reading& Planned(int reading) const { return course_[static_cast<std::size_t>(reading)]; }
   Reading Take(int reading) const;
-  /// A reading that the procedure does not have.
-  /// @param course     All that was taken before it: effects may remember.
-  /// @param commanded  What, when and how fast; its number says which noise it has.
-  Reading TakeBeside(std::vector<Reading> course, const Reading& commanded) const;
+
+  /// Another course of the same machine: in its room, a reading with the temperature that is felt at its time, what
+  /// follows such a course, and one of its readings as the instruments show it.
+  Environment Room() const;
+  Reading Felt(Reading r, Environment& room) const;
+  CircleTwin TwinOf(const std::vector<Reading>& course, BodiesOnce& bodies) const;
+  Reading Shown(const Reading& r, const CircleTwin& twin, std::size_t at) const;
+  const CircularSetup& SetupOf(const Reading& r) const;
 
   /// {"errors": scenario keys, "setups": what each was mounted with, "path": where the spindle was (set-up, pass),
   /// "effects", "seed"}.
   nlohmann::json Truth() const;
 
  private:
-  const CircularSetup& SetupOf(const Reading& r) const;
   CircleExtra Chance(const Reading& r) const;
-  Reading Shown(const Reading& r, const CircleTwin& twin, std::size_t at) const;
   benches::circular::Deviation Digitised(const Reading& r, benches::circular::Deviation shown) const;
 
   Scenario scenario_;

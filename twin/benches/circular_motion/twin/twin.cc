@@ -95,13 +95,23 @@ CircleTwin::CircleTwin(const Scenario& scenario, const std::vector<Reading>& cou
       tangential_(scenario.empiricals, "tangential") {
   for (std::size_t i = 0; i < course.size(); ++i)
     steps_.push_back(StepOf(course[i], settings_.procedure, above_K[static_cast<Eigen::Index>(i)]));
-  bodies_ = bodies.Of(settings_, PlacesOf(steps_));
   AddToMachine(scenario.effects, machine_);
-  moved_m_ = Moved_m(scenario.effects, steps_);
   for (const EffectSettings& effect : scenario.effects) {
     if (effect.name == kSignalEffect) signals_.emplace_back(effect, benches::circular::Format());
     if (effect.name == "tone") tones_.push_back(effect);
+    if (effect.name == "drift" || effect.name == "slip") moving_.push_back(effect);
   }
+  Follow(bodies);
+}
+
+void CircleTwin::Follow(BodiesOnce& bodies) {
+  if (settings_.mechanics.HasBodies()) bodies_ = bodies.Of(settings_, PlacesOf(steps_));
+  moved_m_ = Moved_m(moving_, steps_);
+}
+
+void CircleTwin::Append(const Reading& reading, double above_K, BodiesOnce& bodies) {
+  steps_.push_back(StepOf(reading, settings_.procedure, above_K));
+  Follow(bodies);
 }
 
 Eigen::Vector2d CircleTwin::Position_m(std::size_t i, double latency_s) const {

@@ -40,12 +40,16 @@ class CircleTwin {
   CircleTwin(const Scenario& scenario, const std::vector<Reading>& course, const Eigen::VectorXd& above_K,
              BodiesOnce& bodies);
 
+  /// One reading more at the end of the course.
+  void Append(const Reading& reading, double above_K, BodiesOnce& bodies);
+
   benches::circular::Deviation At(std::size_t i, const CircleExtra& extra) const;
 
   /// Where the spindle was, from the commanded centre.
   Eigen::Vector2d Position_m(std::size_t i, double latency_s = 0.0) const;
 
  private:
+  void Follow(BodiesOnce& bodies);
   benches::circular::Deviation Bar(std::size_t i, const CircleExtra& extra) const;
   benches::circular::Deviation Grid(std::size_t i, const CircleExtra& extra) const;
   void AddSignals(std::size_t i, benches::circular::Deviation& shown) const;
@@ -55,7 +59,7 @@ class CircleTwin {
   CircleMachine machine_;
   std::shared_ptr<const CircleBodies> bodies_;
   std::vector<CircleStep> steps_;
-  std::vector<EffectSettings> tones_;
+  std::vector<EffectSettings> tones_, moving_;  // moving_: those that make moved_m_
   Eigen::Matrix2Xd moved_m_;  // by effects that follow time or the reading's number
   std::vector<model::Product> signals_;
   EmpiricalSignal radial_, tangential_;

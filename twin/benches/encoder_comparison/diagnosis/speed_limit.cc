@@ -62,7 +62,7 @@ struct Commanded {
 };
 
 /// One number a step up or down, if that leaves less.
-bool Step(const Commanded& all, std::size_t k, double by, Servo& servo, double& left) {
+bool StepBy(const Commanded& all, std::size_t k, double by, Servo& servo, double& left) {
   Servo other = servo;
   other[k] = std::max(0.0, other[k] + by);
   const double of_other = all.Left(other);
@@ -83,7 +83,7 @@ Servo Moved(const Commanded& all, Servo servo) {
     for (int round = 0; is_moved && round < kMost; ++round) {
       is_moved = false;
       for (std::size_t k = 0; k < (is_limited ? 3 : 2); ++k)
-        is_moved = Step(all, k, by[k], servo, left) || Step(all, k, -by[k], servo, left) || is_moved;
+        is_moved = StepBy(all, k, by[k], servo, left) || StepBy(all, k, -by[k], servo, left) || is_moved;
     }
   }
   return servo;

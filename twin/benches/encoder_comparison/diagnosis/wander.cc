@@ -108,7 +108,7 @@ double ChanceBeside(const Walk& walk, const Eigen::VectorXd& shown) {
   return 1.0 / (1.0 + std::exp(-0.5 * (deviations2 - tuning::kHeadline * tuning::kHeadline)));
 }
 
-double AboutMean(const Eigen::VectorXd& rows) {
+double SquaresAboutMean(const Eigen::VectorXd& rows) {
   return (rows.array() - rows.mean()).matrix().squaredNorm();
 }
 
@@ -139,7 +139,7 @@ double GiveToWander(DiagnosisRun& result, const Walk& walk, Eigen::VectorXd& wan
     const double chance = ChanceBeside(walk, shown);
     for (const std::size_t k : GroupOf(accepted, before, done)) causes[k].probability *= chance;
     wander += (1.0 - chance) * shown;
-    named += chance * AboutMean(shown);
+    named += chance * SquaresAboutMean(shown);
   }
   return named;
 }
@@ -154,12 +154,12 @@ void TellWander(DiagnosisRun& result) {
   Diagnosis& d = result.diagnosis;
   Eigen::VectorXd wander = walk.left;
   const double named = GiveToWander(result, walk, wander);
-  const double amplitude = std::sqrt(2.0 * AboutMean(wander) / static_cast<double>(run.Rows()));
+  const double amplitude = std::sqrt(2.0 * SquaresAboutMean(wander) / static_cast<double>(run.Rows()));
   const std::string words = fmt::format("random walk, function of time, on angle, amplitude {:.2g} {}",
                                         amplitude / run.to_SI, run.unit);
   d.unknown.signature += (d.unknown.signature.empty() ? "" : " | ") + words;
   d.unknown.probability = std::max(d.unknown.probability, tuning::kListed);
-  if (d.verdict == Verdict::kNone || AboutMean(wander) > named) d.verdict = Verdict::kUnknown;
+  if (d.verdict == Verdict::kNone || SquaresAboutMean(wander) > named) d.verdict = Verdict::kUnknown;
 }
 
 }  // namespace twinbench::diagnose::encoder
