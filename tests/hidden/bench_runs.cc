@@ -110,7 +110,9 @@ std::vector<std::string> OverridesOf(Design design) {
     return {"circular_procedure.points=72", "circular_procedure.stops=18", warm[0], warm[1]};
   if (design == Design::kFreeform)
     return {"freeform_procedure.poses=40", "optics.fidelity=closed", warm[0], warm[1]};
-  if (design == Design::kRotary) return {"mechanics.fidelity=kinematic"};
+  if (design == Design::kRotary) {  // two thirds of the stops, which tell everything apart
+    return {"mechanics.fidelity=kinematic", "procedure.positions=24", "procedure.shifts=[0, 1, 5, 8]"};
+  }
   if (design == Design::kStopsInWarmRoom) return {warm[0], "environment.swing_period_s=2000.0"};
   return {};
 }

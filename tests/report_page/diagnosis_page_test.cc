@@ -22,7 +22,7 @@ const json kDiagnosis = json::parse(R"({
     {"effect": "tilt", "where": "x", "probability": 0.45, "parameters": {}, "indistinguishable_from": [], "next_measurement": ""}],
   "unknown": {"probability": 0.05, "signature": ""},
   "detectable": [{"effect": "tilt", "where": "x", "parameter": "tilt", "smallest": 0.25, "unit": "mrad"}],
-  "invisible": [{"effect": "grating_form", "where": "sphere", "could_bias": "nothing"}],
+  "invisible": [{"effect": "grating_form", "where": "sphere", "could_bias": "zero of a mounting up to 0.3 um"}],
   "plots": {"unit": "um", "against": {"dwell_s": {"a": {"x": [1, 2], "before": [0.1, 0.1], "after": [0, 0], "u": [0.1, 0.1], "n": [5, 5]},
                                                   "b": {"x": [1, 2], "before": [0.5, -0.5], "after": [0, 0.1], "u": [0.1, 0.1], "n": [5, 5]}}},
             "maps": {"a": {"position": [0, 1, 2], "setup": [3], "before": [[1, null, 3]], "after": [[0, 0, 0]]}}}})");
@@ -71,7 +71,7 @@ TEST(DiagnosisSections, SayWhatIsSeenFromWhichSizeOnAndWhatIsNot) {
   EXPECT_THAT(BlockIn<PageTable>(sections, "Smallest detectable sizes").rows,
               Contains(ElementsAre("tilt at x", "tilt", "0.25", "mrad")));
   EXPECT_THAT(BlockIn<PageTable>(sections, "Not observable in this run").rows,
-              Contains(ElementsAre("grating_form at sphere", "nothing")));
+              Contains(ElementsAre("grating_form at sphere", "zero of a mounting up to 0.3 µm")));
 }
 
 TEST(DiagnosisSections, ShowTheLoudestResidualFirstAndAllOthersToo) {

@@ -194,8 +194,9 @@ TEST(TurntablePolygon, IsDiagnosed) {
   const auto slipped = diagnosed("{name=\"slip\", where=\"x\", step_arcsec=0.1, at_reading=200}");
   ASSERT_EQ(slipped.verdict, diagnose::Verdict::kNamed);
   EXPECT_EQ(slipped.causes.front().effect, "slip");
+  const auto is_told_well = testing::Not(testing::AnyOf(testing::HasSubstr("left seated"), testing::HasSubstr("e-")));
   for (const diagnose::Invisible& unseen : slipped.invisible)
-    EXPECT_THAT(unseen.could_bias, testing::Not(testing::HasSubstr("left seated"))) << unseen.effect;
+    EXPECT_THAT(unseen.could_bias, is_told_well) << unseen.effect;
 }
 
 }  // namespace

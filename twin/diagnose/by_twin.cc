@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -16,31 +17,37 @@
 namespace twinbench::diagnose {
 namespace {
 
-/// "zero of a set-up up to 0.3 um": the largest constant of each free point; of many points those that show most.
+/// What stands in for an effect that a run does not show: the largest constant of a free point.
+struct Bias {
+  double trace;  // norm of what it shows in the readings, in units of their noise
+  std::string words;
+};
+
+/// "zero of a set-up up to 0.3 um": those that show most first, and nothing of what shows next to nothing.
 std::string BiasOf(const LinearRun& run, const FreeConstants& free, const Eigen::VectorXd& fitted) {
   constexpr std::size_t kMostTold = 4;
+  constexpr double kLeastShown = 0.01;  // of the one that shows most
   const Eigen::VectorXd constants = free.fitted * fitted.head(free.fitted.cols());
   const Eigen::VectorXd trace = (run.sigma.cwiseInverse().asDiagonal() * free.columns)
                                     .colwise()
                                     .norm()
                                     .transpose()
                                     .cwiseProduct(constants.cwiseAbs());
-  std::vector<std::pair<double, std::string>> told;
+  std::vector<Bias> told;
   Eigen::Index from = 0;
   free.ForEach(constants, [&](const FreePoint& p, const auto& own) {
-    told.emplace_back(-trace.segment(from, own.size()).maxCoeff(),
-                      fmt::format("{} of {} up to {:.2g} {}", p.point.name, p.of,
-                                  own.cwiseAbs().maxCoeff() / p.point.to_SI, p.point.unit));
+    told.push_back({trace.segment(from, own.size()).maxCoeff(),
+                    fmt::format("{} of {} up to {:.2g} {}", p.point.name, p.of, own.cwiseAbs().maxCoeff() / p.point.to_SI,
+                                p.point.unit)});
     from += own.size();
   });
+  if (told.empty()) return "nothing: the run leaves nothing free";
+  std::ranges::stable_sort(told, std::greater(), &Bias::trace);
+  std::erase_if(told, [most = told.front().trace](const Bias& b) { return b.trace < kLeastShown * most; });
   const bool too_many = told.size() > 2 * kMostTold;
-  if (too_many) {
-    std::ranges::stable_sort(told, {}, &std::pair<double, std::string>::first);
-    told.resize(kMostTold);
-  }
+  if (too_many) told.resize(kMostTold);
   std::string words;
-  for (const auto& [trace_of_it, text] : told) words += (words.empty() ? "" : ", ") + text;
-  if (words.empty()) return "nothing: the run leaves nothing free";
+  for (const Bias& b : told) words += (words.empty() ? "" : ", ") + b.words;
   return too_many ? words + " and others" : words;
 }
 

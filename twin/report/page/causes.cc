@@ -67,7 +67,7 @@ PageTable DetectableTable(const nlohmann::json& seen) {
 PageTable InvisibleTable(const nlohmann::json& seen) {
   PageTable table{"Not observable in this run", {"effect", "could bias"}, {}};
   for (const nlohmann::json& lost : ListAt(seen, "invisible"))
-    table.rows.push_back({NameOfCause(lost), TextAt(lost, "could_bias")});
+    table.rows.push_back({NameOfCause(lost), InPrint(TextAt(lost, "could_bias"))});
   return table;
 }
 
