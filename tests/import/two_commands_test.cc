@@ -88,6 +88,28 @@ TEST_F(TwoCommands, TakeABallBarToTheErrorsOfTheMachine) {
   EXPECT_NEAR(alone_um["backlash x"], 4.0, 0.1);
 }
 
+/// scenarios/samples/gear_train.py says what it hid.
+TEST_F(TwoCommands, TakeAGearTrainToItsOrdersAndItsBacklash) {
+  const std::set<std::string> named = Named("train.csv", Contents(std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/samples/gear_train.csv"), {});
+  EXPECT_THAT(named, testing::IsSupersetOf({"hob_runout", "backlash"}));
+  EXPECT_NEAR(Parameter("backlash", "width"), 20.0, 0.1);
+  EXPECT_NEAR(Parameter("hob_runout", "amplitude"), 15.0, 0.1);
+  std::map<int, double> amplitude_arcsec;
+  for (const auto& order : found_.at("harmonics")) amplitude_arcsec[order.at("order")] = 3600.0 * order.at("amplitude_deg").get<double>();
+  EXPECT_NEAR(amplitude_arcsec[1], 42.0, 0.2);
+  EXPECT_NEAR(amplitude_arcsec[2], 9.0, 0.2);
+}
+
+/// Any number of rows a turn is enough for the orders that they show.
+TEST_F(TwoCommands, TakeAGearTrainWithFewRowsATurn) {
+  std::string text = "input_deg,output_deg\n";
+  for (int k = 0; k < 110; ++k) text += fmt::format("{:.6f},{:.6f}\n", 21.6 * k, 7.2 * k + 0.01 * Cosine(1.0, 7.2 * k, 30.0));
+  Write("few.csv", text);
+  const std::string story = Succeed({"import", "few.csv", "-o", "few"});
+  EXPECT_THAT(story, HasSubstr("order 1: 36.00 ±")) << "0.01 deg, of 50 rows a turn";
+  EXPECT_THAT(story, HasSubstr("orders 1-20"));
+}
+
 TEST_F(TwoCommands, LookBeforeAnythingIsWritten) {
   Write("hal.txt", HalSamples(DriveAxis({.turns = 0.1}, LostMotion)));
   const std::string text = Succeed({"import", "hal.txt", "--look", "--map", "halsampler"});

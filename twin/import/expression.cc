@@ -10,7 +10,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
-#include "twin/import/common.h"
+#include "twin/import/column_functions.h"
 
 namespace twinbench::imports {
 
@@ -64,9 +64,8 @@ auto Find(const Table& table, std::string_view name) {
 }
 
 std::size_t ArgumentsOf(std::string_view function) {
-  constexpr std::array kOfColumns = std::to_array<std::string_view>({"before", "turns", "correction", "parts", "step", "sense", "whole", "middle", "span"});
-  if (std::ranges::count(kOfColumns, function) > 0 || Find(kOne, function)) return 1;
-  return function == "is" || Find(kTwo, function) ? 2 : 0;
+  if (function == "before" || ColumnFunction(function) || Find(kOne, function)) return 1;
+  return function == "is" || ColumnsFunction(function) || Find(kTwo, function) ? 2 : 0;
 }
 
 /// Recursive descent: sum, product, power, atom.
@@ -214,14 +213,9 @@ class Evaluator {
     if (node.kind == Node::Kind::kName) return Number(node);
     if (node.text == "is") return Is(node);
     if (node.text == "before") return Before(node);
-    if (node.text == "turns") return Turns(node);
-    if (node.text == "correction") return Correction(node);
-    if (node.text == "parts") return Parts(node);
-    if (node.text == "step") return Step(node);
-    if (node.text == "sense") return Sense(node);
-    if (node.text == "middle" || node.text == "span") return OfEnds(node);
-    if (node.text == "whole") return Whole(node);
     std::vector<double> a = Of(*node.arguments[0]);
+    if (const OfColumn function = ColumnFunction(node.text)) return function(std::move(a), where_);
+    if (const OfColumns function = ColumnsFunction(node.text)) return function(a, Of(*node.arguments[1]), where_);
     if (const auto* one = Find(kOne, node.text)) {
       std::ranges::transform(a, a.begin(), one->function);
       return a;
@@ -253,87 +247,6 @@ class Evaluator {
       if (std::isfinite(own)) sum += own;
     }
     return x;
-  }
-
-  /// A table that goes round once leaves out its last step: n entries span (n - 1) / n of a turn.
-  std::vector<double> Turns(const Node& node) const {
-    std::vector<double> x = Of(*node.arguments[0]);
-    const auto [low, high] = std::ranges::minmax(x);
-    const double turn =
-        (high - low) * static_cast<double>(x.size()) / std::max(1.0, static_cast<double>(x.size()) - 1.0);
-    std::vector<double> known = {1.0, 2.0 * units::kPi, 360.0, 400.0, 3600.0, 36000.0, 360000.0, 1296000.0};
-    for (int bits = 8; bits <= 32; ++bits) known.push_back(std::ldexp(1.0, bits));
-    for (const double steps : {200.0, 1600.0, 3200.0, 6400.0, 12800.0, 25600.0, 51200.0, 20000.0})
-      known.push_back(steps);
-    const double nearest =
-        *std::ranges::min_element(known, {}, [turn](double k) { return std::abs(std::log(turn / k)); });
-    if (!(std::abs(turn / nearest - 1.0) < 0.02))
-      throw InputError(
-          where_,
-          fmt::format("the entries go from {:.6g} to {:.6g}, which is one turn of no unit that is known", low,
-                      high),
-          "a factor instead of turns(...)");
-    for (double& value : x) value /= nearest;
-    return x;
-  }
-
-  /// Errors of an angle as firmwares print them: rad, or 16 bit about their middle. No sensor errs by half a turn.
-  std::vector<double> Correction(const Node& node) const {
-    std::vector<double> x = Of(*node.arguments[0]);
-    const bool of_16_bit = AreErrorsOf16Bit(x);
-    const auto [low, high] = std::ranges::minmax(x);
-    if (!of_16_bit && !(std::max(high, -low) < units::kPi))
-      throw InputError(where_, fmt::format("the entries go from {:.6g} to {:.6g}: they are no errors in rad", low, high),
-                       "a map with a factor instead of correction(entry), as in (entry - 32768) / 65536 of 16 bit about their middle, or "
-                       "--map lookup_table for a table of angles");
-    for (double& value : x) value = of_16_bit ? (value - 32768.0) / 65536.0 : value / units::turn;
-    return x;
-  }
-
-  std::vector<double> Parts(const Node& node) const {
-    const std::vector<double> x = Of(*node.arguments[0]);
-    std::vector<double> part(x.size(), 0.0);
-    for (std::size_t i = 1; i < x.size(); ++i) part[i] = part[i - 1] + (x[i] != x[i - 1] ? 1.0 : 0.0);
-    return part;
-  }
-
-  /// The first row has that of the second.
-  std::vector<double> Step(const Node& node) const {
-    const std::vector<double> x = Of(*node.arguments[0]);
-    std::vector<double> step(x.size(), 0.0);
-    for (std::size_t i = 1; i < x.size(); ++i) step[i] = x[i] - x[i - 1];
-    if (x.size() > 1) step[0] = step[1];
-    return step;
-  }
-
-  std::vector<double> OfEnds(const Node& node) const {
-    const std::vector<double> x = Of(*node.arguments[0]);
-    const auto [low, high] = std::ranges::minmax(x);
-    return {node.text == "middle" ? 0.5 * (low + high) : high - low};
-  }
-
-  /// Of the steps before and behind a row that one counts which is more like the others: the other one may be a way back.
-  std::vector<double> Sense(const Node& node) const {
-    constexpr double kTurn_deg = 360.0;
-    const std::vector<double> x = Of(*node.arguments[0]);
-    std::vector<double> steps, sizes;
-    for (std::size_t i = 1; i < x.size(); ++i) {
-      steps.push_back(std::remainder(x[i] - x[i - 1], kTurn_deg));
-      sizes.push_back(std::abs(steps.back()));
-    }
-    const double usual = MedianOf(sizes);
-    std::vector<double> sense(x.size(), 1.0);
-    for (std::size_t i = 0; i < x.size() && !steps.empty(); ++i) {
-      const double before = steps[i == 0 ? 0 : i - 1], behind = steps[std::min(i, steps.size() - 1)];
-      sense[i] = std::copysign(1.0, std::abs(std::abs(behind) - usual) < std::abs(std::abs(before) - usual) ? behind : before);
-    }
-    return sense;
-  }
-
-  std::vector<double> Whole(const Node& node) const {
-    const double middle = MedianOf(Of(*node.arguments[0]));
-    const double step = std::pow(10.0, std::floor(std::log10(std::abs(middle))) - 2.0);
-    return {middle == 0.0 ? 0.0 : step * std::round(middle / step)};
   }
 
   std::vector<double> Is(const Node& node) const {

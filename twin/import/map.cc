@@ -109,12 +109,13 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
         t.Add("words", kPure, {}, &s.words, "what it is called in columns and lines of text, the clearest first");
         t.Add("otherwise", kPure, {}, &s.otherwise,
               "formulas where it is not found; the first whose names are known");
-        t.Text("note", &s.note, {}, "what is said then");
+        t.Text("note", &s.note, {}, "what is said then, if that is a number");
       },
       "quantities that are looked for by their names");
   Table guess(keys, "guess");
   guess.Add("by", kPure, {}, &map.guess_by,
             "lists of quantities sought, \"angle_deg, deviation_um\": a file with such columns is of this kind");
+  guess.Text("only", &map.guess_only, {}, "formula of them: a file of which it gives no number is of another kind");
   guess.Text("clock", &map.guess_clock, {"any", "none"}, "none: only if it has no time");
   Table scenario(keys, "scenario");
   scenario.Add("set", kPure, {}, &map.set, "keys of the scenario, as --set has them: \"device.teeth=144\"");

@@ -38,7 +38,7 @@ struct Sought {
   std::string kind = "value";          // value: another in most rows | condition: holds for many rows, also in a line | any | turn: a way round
   std::vector<std::string> words;      // what it is called, in small letters, the clearest first
   std::vector<std::string> otherwise;  // where it is not found: the first formula of which every name is known
-  std::string note;                    // what is said then; {}: the value
+  std::string note;                    // what is said then, if that is a number; {}: the value
 };
 
 struct Map {
@@ -53,6 +53,7 @@ struct Map {
   std::vector<Sought> sought;
   std::vector<std::string> guess_by;  // lists of names that are sought: a file that has the columns of one is of this kind
   std::string guess_clock = "any";    // any | none
+  std::string guess_only;             // formula of quantities sought that gives a number of such a file; empty: any
   std::vector<std::string> set;       // keys of the scenario, as in --set; {name}: what was found of a quantity that is sought
 };
 

@@ -79,7 +79,8 @@ class Seeker {
         const std::string* formula = Has(sought) ? nullptr : FormulaOf(sought);
         if (!formula) continue;
         const std::vector<double> values = Evaluated(*formula);
-        if (!sought.note.empty()) remarks.push_back(NoteWith(sought.note, values));
+        const bool is_said = !sought.note.empty() && !values.empty() && !std::isnan(values.front());
+        if (is_said) remarks.push_back(NoteWith(sought.note, values));
         Put(sought, values, "");
         more = true;
       }
@@ -96,6 +97,8 @@ class Seeker {
     const auto unit = UnitAtEnd(name);
     return found != found_.end() && unit && (unit->dimension == Dimension::kAngle || UnitNamed(found->unit));
   }
+
+  bool GivesANumber(const std::string& formula) const { return std::isfinite(Evaluated(formula).front()); }
 
   /// The columns of the track under the names that formulas have.
   void Finish() {
@@ -216,10 +219,11 @@ bool IsOfKind(const Recording& recording, const Map& map) {
     StackTurns(map, track);
     Seeker seeker(map.sought, track);
     seeker.Find();
-    return std::ranges::any_of(map.guess_by, [&seeker](const std::string& list) {
+    const bool has_columns = std::ranges::any_of(map.guess_by, [&seeker](const std::string& list) {
       return std::ranges::all_of(NamesIn(list),
                                  [&seeker](const std::string& name) { return seeker.HasSurely(name); });
     });
+    return has_columns && (map.guess_only.empty() || seeker.GivesANumber(map.guess_only));
   });
 }
 

@@ -9,6 +9,7 @@
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
 #include "twin/benches/hob_transmission/uncertainty_parts.h"
 #include "twin/core/errors.h"
+#include "twin/report/compensation_text.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
 
@@ -220,11 +221,11 @@ std::string ComparisonText(const char* with, const std::vector<OrderComparison>&
 }
 
 std::string LostText(const HobAnalysis& a) {
-  std::string orders;
+  std::vector<int> orders;
   for (const SeparatedOrder& order : a.separation->orders) {
-    if (order.status == OrderStatus::kSumOnly) orders += fmt::format(" {}", order.order);
+    if (order.status == OrderStatus::kSumOnly) orders.push_back(order.order);
   }
-  return orders.empty() ? "" : "not separable, counted as transmission: orders" + orders + "\n";
+  return orders.empty() ? "" : fmt::format("not separable, counted as transmission: {}\n", report::OrderRanges(orders));
 }
 
 std::string SummaryOf(const HobAnalysis& a) {

@@ -21,6 +21,23 @@ TransmissionOptions OptionsOf(const Scenario& scenario) {
   return options;
 }
 
+/// Of readings that are farther apart than the procedure's: so many orders as they still tell, regular or not.
+int OrdersThatShow(const std::vector<HobSample>& samples, const TransmissionOptions& options) {
+  constexpr double kOrdersASample = 0.4;
+  std::vector<double> steps_rad;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (samples[i].setup == samples[i - 1].setup && samples[i].pass == samples[i - 1].pass)
+      steps_rad.push_back(std::abs(samples[i].table_encoder_rad - samples[i - 1].table_encoder_rad));
+  }
+  std::erase_if(steps_rad, [](double step_rad) { return !(step_rad > 0.0); });
+  if (steps_rad.empty()) return options.max_order;
+  const auto middle = steps_rad.begin() + std::ssize(steps_rad) / 2;
+  std::ranges::nth_element(steps_rad, middle);
+  const double a_turn = units::turn / *middle;
+  if (a_turn > 2.0 * options.max_order) return options.max_order;
+  return std::max(1, static_cast<int>(kOrdersASample * a_turn));
+}
+
 bool HasTurns(const PositionError& position) {
   return position.status == PositionStatus::kOk;
 }
@@ -152,7 +169,8 @@ HobAnalysis AnalyseHob(const std::vector<Reading>& readings, const Scenario& sce
   analysis.left_out = static_cast<int>(readings.size()) - analysis.used;
   std::ranges::copy_if(samples, std::back_inserter(at_rest), IsAtRest);
   std::erase_if(samples, IsAtRest);
-  const TransmissionOptions options = OptionsOf(scenario);
+  TransmissionOptions options = OptionsOf(scenario);
+  options.max_order = OrdersThatShow(samples, options);
   analysis.positions = MeasurePositions(samples, options);
   if (std::ranges::none_of(analysis.positions, HasTurns)) {
     analysis.not_separated = "no head position has a complete turn";

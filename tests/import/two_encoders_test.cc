@@ -1,0 +1,120 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "tests/import/importing.h"
+#include "twin/import/column_functions.h"
+
+// Logs of the two shafts of a gear train as people have them: other ratios, senses, units, names, times and turns.
+namespace twinbench::imports {
+namespace {
+
+using testing::Contains, testing::HasSubstr, testing::Not;
+
+struct Train {
+  int input_turns = 31, output_turns = 16;
+  double amplitude_arcsec = 34.0;  // once per turn of the output
+  double Ratio() const { return static_cast<double>(input_turns) / output_turns; }
+  double Output_deg(double input_deg) const {
+    const double even_deg = input_deg / Ratio();
+    return even_deg + amplitude_arcsec / 3600.0 * std::cos((even_deg + 57.0) * units::deg);
+  }
+};
+
+/// @param row  Of the input's and the output's angle in deg.
+std::string Log(const Train& train, const std::function<std::string(int k, double input_deg, double output_deg)>& row,
+                int rows = 396, int rows_a_turn = 180) {
+  std::string text;
+  for (int k = 0; k < rows; ++k) {
+    const double input_deg = train.Ratio() * 360.0 * k / rows_a_turn;
+    text += row(k, input_deg, train.Output_deg(input_deg));
+  }
+  return text;
+}
+
+class TwoEncoders : public Importing {
+ protected:
+  /// The readings are the log's, and their transmission error is the train's.
+  static void Expect(const Imported& taken, const Train& train, std::size_t readings) {
+    EXPECT_EQ(taken.bench, "hob_transmission");
+    EXPECT_THAT(taken.story, HasSubstr("taken as --map two_encoders"));
+    EXPECT_THAT(taken.set, Contains(fmt::format("transmission.gear_teeth={}", train.input_turns)));
+    EXPECT_THAT(taken.set, Contains(fmt::format("transmission.hob_starts={}", train.output_turns)));
+    ASSERT_EQ(taken.readings.size(), readings) << taken.story;
+    const Reading& first = taken.readings.front();
+    for (const Reading& r : taken.readings) {
+      const double even_rad = r.reference_rad / train.Ratio(), wave_rad = train.amplitude_arcsec * units::arcsec;
+      const double expected_rad = wave_rad * (std::cos(even_rad + 57.0 * units::deg) - std::cos(57.0 * units::deg));
+      ASSERT_NEAR(r.measured_rad - first.measured_rad - even_rad, expected_rad, 0.1 * units::arcsec) << r.reading;
+    }
+  }
+};
+
+TEST_F(TwoEncoders, AreGuessedByTheNamesOfTheirShafts) {
+  const Train train;
+  const Imported taken = Take("time_s,input_deg,output_deg\n" + Log(train, [](int k, double in, double out) {
+                                return fmt::format("{:.4f},{:.7f},{:.7f}\n", 0.005 * k, in, out);
+                              }));
+  Expect(taken, train, 396);
+  EXPECT_EQ(taken.readings.front().direction, 1);
+  EXPECT_THAT(taken.story, HasSubstr("taken as one of 1.9375 turns of the input to one of the output"));
+  EXPECT_THAT(taken.story, Not(HasSubstr("against each other")));
+}
+
+TEST_F(TwoEncoders, MayStartAgainAtATurnInRadWithoutTimes) {
+  const Train train{20, 1, 120.0};
+  const auto wrapped = [](double deg) { return deg - 360.0 * std::floor(deg / 360.0); };
+  const Imported taken = Take("Antrieb [rad];Abtrieb [rad]\n" + Log(
+                                  train,
+                                  [&](int, double in, double out) {
+                                    return fmt::format("{:.9f};{:.9f}\n", wrapped(in) * units::deg, wrapped(out) * units::deg);
+                                  },
+                                  2232, 720));
+  Expect(taken, train, 2232);
+}
+
+TEST_F(TwoEncoders, MayTurnAgainstEachOther) {
+  const Train train{50, 17, 60.0};
+  const Imported taken = Take("t [s]\tpinion [deg]\twheel [deg]\n" + Log(train, [](int k, double in, double out) {
+                                return fmt::format("{:.4f}\t{:.7f}\t{:.7f}\n", 0.005 * k, -in, out);
+                              }));
+  Expect(taken, train, 396);
+  EXPECT_THAT(taken.story, HasSubstr("turn against each other"));
+}
+
+TEST_F(TwoEncoders, HaveTheRatioThatALineStates) {
+  const Train train{60, 1, 5.0};
+  const Imported taken = Take("# gear ratio: 60\nmotor_deg,load_deg\n" + Log(train, [](int, double in, double out) {
+                                return fmt::format("{:.7f},{:.7f}\n", in, out);
+                              }));
+  Expect(taken, train, 396);
+}
+
+TEST_F(TwoEncoders, OfARatioOfOneAreAComparison) {
+  const Train train{1, 1, 60.0};
+  const Imported taken = Take("time_s,input_deg,output_deg\n" + Log(train, [](int k, double in, double out) {
+                                return fmt::format("{:.4f},{:.7f},{:.7f}\n", 0.005 * k, in, out);
+                              }));
+  EXPECT_EQ(taken.bench, "encoder_comparison");
+}
+
+TEST(WholeTurns, AreThoseOfTheTrainWhateverItsErrors) {
+  for (const Train& train : {Train{31, 16, 3000.0}, Train{44, 2, 500.0}, Train{97, 89, 20.0}, Train{3, 1, 3600.0}, Train{121, 1, 1000.0}}) {
+    std::vector<double> input_deg, output_deg;
+    for (int k = 0; k < 900; ++k) {
+      input_deg.push_back(train.Ratio() * k);
+      output_deg.push_back(train.Output_deg(input_deg.back()));
+    }
+    const int shared = std::gcd(train.input_turns, train.output_turns);
+    const OfColumns whole_turns = ColumnsFunction("whole_turns");
+    EXPECT_THAT(whole_turns(input_deg, output_deg, ""), testing::ElementsAre(train.input_turns / shared));
+    EXPECT_THAT(whole_turns(output_deg, input_deg, ""), testing::ElementsAre(train.output_turns / shared));
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::imports

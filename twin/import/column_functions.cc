@@ -1,0 +1,209 @@
+#include "twin/import/column_functions.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "twin/core/errors.h"
+#include "twin/core/units.h"
+#include "twin/import/common.h"
+
+namespace twinbench::imports {
+namespace {
+
+constexpr double kTurn_deg = 360.0;
+
+/// A table that goes round once leaves out its last step: n entries span (n - 1) / n of a turn.
+std::vector<double> Turns(std::vector<double> x, const std::string& where) {
+  const auto [low, high] = std::ranges::minmax(x);
+  const double turn =
+      (high - low) * static_cast<double>(x.size()) / std::max(1.0, static_cast<double>(x.size()) - 1.0);
+  std::vector<double> known = {1.0, 2.0 * units::kPi, 360.0, 400.0, 3600.0, 36000.0, 360000.0, 1296000.0};
+  for (int bits = 8; bits <= 32; ++bits) known.push_back(std::ldexp(1.0, bits));
+  for (const double steps : {200.0, 1600.0, 3200.0, 6400.0, 12800.0, 25600.0, 51200.0, 20000.0})
+    known.push_back(steps);
+  const double nearest =
+      *std::ranges::min_element(known, {}, [turn](double k) { return std::abs(std::log(turn / k)); });
+  if (!(std::abs(turn / nearest - 1.0) < 0.02))
+    throw InputError(
+        where,
+        fmt::format("the entries go from {:.6g} to {:.6g}, which is one turn of no unit that is known", low,
+                    high),
+        "a factor instead of turns(...)");
+  for (double& value : x) value /= nearest;
+  return x;
+}
+
+/// Errors of an angle as firmwares print them: rad, or 16 bit about their middle. No sensor errs by half a turn.
+std::vector<double> Correction(std::vector<double> x, const std::string& where) {
+  const bool of_16_bit = AreErrorsOf16Bit(x);
+  const auto [low, high] = std::ranges::minmax(x);
+  if (!of_16_bit && !(std::max(high, -low) < units::kPi))
+    throw InputError(where, fmt::format("the entries go from {:.6g} to {:.6g}: they are no errors in rad", low, high),
+                     "a map with a factor instead of correction(entry), as in (entry - 32768) / 65536 of 16 bit about their middle, or "
+                     "--map lookup_table for a table of angles");
+  for (double& value : x) value = of_16_bit ? (value - 32768.0) / 65536.0 : value / units::turn;
+  return x;
+}
+
+std::vector<double> Parts(std::vector<double> x, const std::string&) {
+  std::vector<double> part(x.size(), 0.0);
+  for (std::size_t i = 1; i < x.size(); ++i) part[i] = part[i - 1] + (x[i] != x[i - 1] ? 1.0 : 0.0);
+  return part;
+}
+
+/// The first row has that of the second.
+std::vector<double> Step(std::vector<double> x, const std::string&) {
+  std::vector<double> step(x.size(), 0.0);
+  for (std::size_t i = 1; i < x.size(); ++i) step[i] = x[i] - x[i - 1];
+  if (x.size() > 1) step[0] = step[1];
+  return step;
+}
+
+std::vector<double> Middle(std::vector<double> x, const std::string&) {
+  const auto [low, high] = std::ranges::minmax(x);
+  return {0.5 * (low + high)};
+}
+
+std::vector<double> Span(std::vector<double> x, const std::string&) {
+  const auto [low, high] = std::ranges::minmax(x);
+  return {high - low};
+}
+
+/// Of the steps before and behind a row that one counts which is more like the others: the other one may be a way back.
+std::vector<double> Sense(std::vector<double> x, const std::string&) {
+  std::vector<double> steps, sizes;
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    steps.push_back(std::remainder(x[i] - x[i - 1], kTurn_deg));
+    sizes.push_back(std::abs(steps.back()));
+  }
+  const double usual = MedianOf(sizes);
+  std::vector<double> sense(x.size(), 1.0);
+  for (std::size_t i = 0; i < x.size() && !steps.empty(); ++i) {
+    const double before = steps[i == 0 ? 0 : i - 1], behind = steps[std::min(i, steps.size() - 1)];
+    sense[i] = std::copysign(1.0, std::abs(std::abs(behind) - usual) < std::abs(std::abs(before) - usual) ? behind : before);
+  }
+  return sense;
+}
+
+std::vector<double> Whole(std::vector<double> x, const std::string&) {
+  const double middle = MedianOf(std::move(x));
+  const double step = std::pow(10.0, std::floor(std::log10(std::abs(middle))) - 2.0);
+  return {middle == 0.0 ? 0.0 : step * std::round(middle / step)};
+}
+
+/// A column that stays within a turn starts again at its end; one that goes on is as it is.
+std::vector<double> Unwrapped(std::vector<double> x, const std::string&) {
+  constexpr double kWithinATurn_deg = 1.02 * kTurn_deg;
+  const auto [low, high] = std::ranges::minmax(x);
+  if (high - low > kWithinATurn_deg) return x;
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    if (std::isfinite(x[i]) && std::isfinite(x[i - 1])) x[i] = x[i - 1] + std::remainder(x[i] - x[i - 1], kTurn_deg);
+  }
+  return x;
+}
+
+/// What errors of the first orders of both shafts, and a line, make of an angle of two that go together.
+Eigen::RowVectorXd TermsOf(double a_rad, double b_rad) {
+  constexpr int kOrders = 3;
+  Eigen::RowVectorXd terms(2 + 4 * kOrders);
+  terms.head<2>() << 1.0, b_rad;
+  for (int k = 1; k <= kOrders; ++k)
+    terms.segment<4>(4 * k - 2) << std::cos(k * a_rad), std::sin(k * a_rad), std::cos(k * b_rad), std::sin(k * b_rad);
+  return terms;
+}
+
+/// How far a goes with b, by least squares beside the errors of the first orders, and how much of its way it goes otherwise.
+struct Proportion {
+  double ratio = kNaN, loose = kNaN;
+};
+
+Proportion ProportionOf(const std::vector<double>& wrapped_a, const std::vector<double>& wrapped_b) {
+  constexpr double kTurnsToTell = 1.5;  // fewer do not tell an order from a line
+  const std::vector<double> a = Unwrapped(wrapped_a, ""), b = Unwrapped(wrapped_b, "");
+  const Eigen::Index terms = TermsOf(0.0, 0.0).size();
+  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(terms, terms);
+  Eigen::VectorXd products = Eigen::VectorXd::Zero(terms);
+  const auto angle = [](const std::vector<double>& x, std::size_t i) { return (x[i] - x[0]) * units::deg; };
+  double way_rad = 0.0, slower_rad = 0.0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    if (!std::isfinite(a[i] + b[i])) continue;
+    const Eigen::RowVectorXd row = TermsOf(angle(a, i), angle(b, i));
+    squares += row.transpose() * row;
+    products += row.transpose() * angle(a, i);
+    way_rad = std::max(way_rad, std::abs(angle(a, i)));
+    slower_rad = std::max(slower_rad, std::min(std::abs(angle(a, i)), std::abs(angle(b, i))));
+  }
+  const Eigen::Index used = slower_rad > kTurnsToTell * units::turn ? terms : 2;
+  const Eigen::VectorXd fitted = squares.topLeftCorner(used, used).ldlt().solve(products.head(used));
+  double low = 0.0, high = 0.0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    const double otherwise = angle(a, i) - fitted[1] * angle(b, i);
+    low = std::fmin(low, otherwise), high = std::fmax(high, otherwise);
+  }
+  return {fitted[1], (high - low) / way_rad};
+}
+
+std::vector<double> Ratio(const std::vector<double>& a, const std::vector<double>& b, const std::string&) {
+  return {ProportionOf(a, b).ratio};
+}
+
+/// The smallest number of turns of a that is one of b as well, as near as their errors let it be told.
+std::vector<double> WholeTurns(const std::vector<double>& a, const std::vector<double>& b, const std::string& where) {
+  constexpr int kMostTurns = 1000;       // of the slower one
+  constexpr double kLeastLoose = 1e-8;   // a file has no more digits
+  constexpr double kOfLoose = 0.25;      // of the ratio, that is a standard deviation
+  const bool a_is_slower = std::abs(ProportionOf(a, b).ratio) < 1.0;
+  const Proportion found = a_is_slower ? ProportionOf(b, a) : ProportionOf(a, b);
+  const double ratio = std::abs(found.ratio), sd = std::max(kLeastLoose, kOfLoose * found.loose);
+  double best = kNaN, least = std::numeric_limits<double>::infinity();
+  for (int slower = 1; slower <= kMostTurns; ++slower) {
+    const double faster = std::round(ratio * slower), off = (faster / (ratio * slower) - 1.0) / sd;
+    const double cost = off * off + 2.0 * std::log(slower);  // small numbers are more likely
+    if (!(cost < least)) continue;
+    least = cost;
+    best = a_is_slower ? slower : faster;
+  }
+  if (!std::isfinite(best)) throw InputError(where, "the two angles do not go together", "the angles of two shafts of one train");
+  return {best};
+}
+
+template <class Function>
+struct NamedFunction {
+  std::string_view name;
+  Function function;
+};
+
+template <class Function, std::size_t kCount>
+Function FindIn(const std::array<NamedFunction<Function>, kCount>& table, std::string_view name) {
+  const auto found = std::ranges::find(table, name, &NamedFunction<Function>::name);
+  return found == table.end() ? nullptr : found->function;
+}
+
+}  // namespace
+
+OfColumn ColumnFunction(std::string_view name) {
+  static constexpr auto kFunctions =
+      std::to_array<NamedFunction<OfColumn>>({{"turns", Turns},
+                                              {"correction", Correction},
+                                              {"parts", Parts},
+                                              {"step", Step},
+                                              {"middle", Middle},
+                                              {"span", Span},
+                                              {"sense", Sense},
+                                              {"whole", Whole},
+                                              {"unwrapped", Unwrapped}});
+  return FindIn(kFunctions, name);
+}
+
+OfColumns ColumnsFunction(std::string_view name) {
+  static constexpr auto kFunctions =
+      std::to_array<NamedFunction<OfColumns>>({{"ratio", Ratio}, {"whole_turns", WholeTurns}});
+  return FindIn(kFunctions, name);
+}
+
+}  // namespace twinbench::imports
