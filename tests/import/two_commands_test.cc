@@ -110,6 +110,21 @@ TEST_F(TwoCommands, TakeAGearTrainWithFewRowsATurn) {
   EXPECT_THAT(story, HasSubstr("orders 1-20"));
 }
 
+/// 12 faces whose certified deviations are taken out; the table errs by 3 arcsec once a turn, and stands 0.2 arcsec off from the other side.
+TEST_F(TwoCommands, TakeAFaceTableToTheErrorsOfTheTable) {
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  std::string text = "face,nominal_deg,certified_arcsec,reading_forward_arcsec,reading_reverse_arcsec\n";
+  for (int k = 0; k < 12; ++k) {
+    const double certified = 1.5 * std::sin(2.3 * k), table = 3.0 * Cosine(1.0, 30.0 * k, 40.0);
+    text += fmt::format("{},{},{:.3f},{:.3f},{:.3f}\n", k + 1, 30 * k, certified, table + certified + noise(random), table + certified + 0.2 + noise(random));
+  }
+  EXPECT_THAT(Named("faces.csv", text, {}), Contains("backlash"));
+  EXPECT_NEAR(Parameter("backlash", "width"), 0.2, 0.03);
+  EXPECT_THAT(story_, HasSubstr("rms 2.1"));
+  for (const auto& cause : found_.at("causes")) EXPECT_NE(cause.at("effect"), "autocollimator_drift") << "there is no clock";
+}
+
 TEST_F(TwoCommands, LookBeforeAnythingIsWritten) {
   Write("hal.txt", HalSamples(DriveAxis({.turns = 0.1}, LostMotion)));
   const std::string text = Succeed({"import", "hal.txt", "--look", "--map", "halsampler"});

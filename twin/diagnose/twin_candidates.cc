@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 
+#include "twin/core/reading_clock.h"
 #include "twin/diagnose/as_predicted.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/asked_effects.h"
@@ -244,6 +245,20 @@ std::vector<EffectEntry> AskedOf(const TwinComparison& comparison, const Diagnos
   return entries;
 }
 
+/// Whether an effect is told by when something was read: it has a rate or a frequency. (What has a time may go by a speed.)
+bool GoesByTime(const BenchFormat& bench, const std::string& effect) {
+  const auto entry = std::ranges::find(bench.effects, effect, &EffectEntry::name);
+  return entry != bench.effects.end() && std::ranges::any_of(entry->parameters, [](const EffectParameter& p) {
+           return p.unit == "Hz" || p.unit.ends_with("_h");
+         });
+}
+
+/// Nothing is told against time where none is known.
+void LeaveOutTimes(const BenchFormat& bench, TwinCandidates& candidates) {
+  std::erase_if(candidates.families, [&](const Family& f) { return f.goes_by_time || GoesByTime(bench, f.effect); });
+  std::erase_if(candidates.invisible, [&](const Invisible& lost) { return GoesByTime(bench, lost.effect); });
+}
+
 }  // namespace
 
 BelievedRecord AskedRecord(const Compared& c, const std::vector<Reading>& readings, const Scenario& scenario,
@@ -287,6 +302,7 @@ TwinCandidates CandidatesOf(const Compared& compared, const std::vector<Reading>
   if (NamesLowOrders(comparison)) std::erase_if(shapes, [](const Family& family) { return family.goes_by_time; });
   std::ranges::move(shapes, std::back_inserter(candidates.families));
   AddAtPoints(c, comparison, candidates.families);
+  if (!HasClock(readings)) LeaveOutTimes(*comparison.format, candidates);
   return candidates;
 }
 

@@ -107,6 +107,14 @@ std::vector<double> Unwrapped(std::vector<double> x, const std::string&) {
   return x;
 }
 
+std::vector<double> Distinct(std::vector<double> x, const std::string&) {
+  constexpr double kSame = 1e-9;
+  std::erase_if(x, [](double value) { return !std::isfinite(value); });
+  std::ranges::sort(x);
+  const auto end = std::unique(x.begin(), x.end(), [](double a, double b) { return b - a < kSame; });
+  return {static_cast<double>(end - x.begin())};
+}
+
 /// What errors of the first orders of both shafts, and a line, make of an angle of two that go together.
 Eigen::RowVectorXd TermsOf(double a_rad, double b_rad) {
   constexpr int kOrders = 3;
@@ -196,7 +204,8 @@ OfColumn ColumnFunction(std::string_view name) {
                                               {"span", Span},
                                               {"sense", Sense},
                                               {"whole", Whole},
-                                              {"unwrapped", Unwrapped}});
+                                              {"unwrapped", Unwrapped},
+                                              {"distinct", Distinct}});
   return FindIn(kFunctions, name);
 }
 

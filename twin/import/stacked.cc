@@ -1,20 +1,50 @@
 #include "twin/import/stacked.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "twin/import/column_words.h"
+#include "twin/import/common.h"
 #include "twin/import/unit_names.h"
 
 namespace twinbench::imports {
 namespace {
 
+bool IsAnAngle(const Sought& sought) {
+  const auto unit = UnitAtEnd(sought.name);
+  return unit && unit->dimension == Dimension::kAngle;
+}
+
+/// Whether it says where, not what was read there: the first quantity of the map is the place.
 bool IsAngle(const Map& map, const Column& column) {
+  int as_place = 0, as_value = 0;
+  bool are_angles_read = false;
+  for (const Sought& sought : map.sought) {
+    const bool is_place = &sought == &map.sought.front();
+    (is_place ? as_place : as_value) = std::max(is_place ? as_place : as_value, ClearnessBy(column.name, sought.words));
+    are_angles_read |= !is_place && sought.kind == "value" && IsAnAngle(sought);
+  }
+  if (are_angles_read) return as_place > as_value;
   if (const auto unit = UnitNamed(column.unit)) return unit->dimension == Dimension::kAngle;
   return std::ranges::any_of(map.sought, [&column](const Sought& sought) {
-    const auto unit = UnitAtEnd(sought.name);
-    return unit && unit->dimension == Dimension::kAngle && ClearnessBy(column.name, sought.words) > 0;
+    return IsAnAngle(sought) && ClearnessBy(column.name, sought.words) > 0;
   });
+}
+
+/// "CCW", or one of its words says which way: "reading forward".
+int WayIn(const std::string& name) {
+  constexpr std::array<std::string_view, 4> kForward = {"forward", "fwd", "vorwärts", "vor"};
+  constexpr std::array<std::string_view, 7> kBack = {"reverse", "rev", "backward", "backwards", "bwd", "rückwärts", "zurück"};
+  if (const int turn = TurnIn(name); turn != 0) return turn;
+  const std::string words = SmallLetters(name) + ' ';
+  for (std::size_t from = 0, end; (end = words.find_first_of(" _-.", from)) != std::string::npos; from = end + 1) {
+    const std::string_view word = std::string_view(words).substr(from, end - from);
+    if (std::ranges::count(kForward, word) > 0) return 1;
+    if (std::ranges::count(kBack, word) > 0) return -1;
+  }
+  return 0;
 }
 
 /// "CCW [µm]" says a way round and a unit only: it is the quantity that has such a unit.
@@ -25,8 +55,7 @@ std::string OwnNameOf(const Map& map, const Column& column) {
   const auto unit = UnitNamed(column.unit);
   for (const Sought& sought : map.sought) {
     const auto own = UnitAtEnd(sought.name);
-    const bool is_angle = own && own->dimension == Dimension::kAngle;
-    if (sought.kind == "value" && own && !is_angle && !sought.words.empty() && (!unit || unit->dimension == own->dimension))
+    if (sought.kind == "value" && own && !IsAnAngle(sought) && !sought.words.empty() && (!unit || unit->dimension == own->dimension))
       return sought.words.front();
   }
   return column.name;
@@ -42,10 +71,10 @@ struct Part {
 std::vector<Part> PartsOf(const Map& map, const Track& track) {
   std::vector<Part> parts;
   for (const Column& column : track.columns) {
-    const int turn = column.IsNumber() ? TurnIn(column.name) : 0;
+    const int turn = column.IsNumber() ? WayIn(column.name) : 0;
     if (turn == 0 || IsAngle(map, column)) continue;
     const auto angle = std::ranges::find_if(
-        track.columns, [&](const Column& c) { return c.IsNumber() && IsAngle(map, c) && TurnIn(c.name) == turn; });
+        track.columns, [&](const Column& c) { return c.IsNumber() && IsAngle(map, c) && WayIn(c.name) == turn; });
     parts.push_back({&column, angle == track.columns.end() ? nullptr : &*angle, turn});
   }
   return parts;
@@ -56,7 +85,7 @@ class Stack {
  public:
   Stack(const Map& map, const Track& track, const std::vector<Part>& parts) : track_(track), parts_(parts) {
     for (const Column& column : track.columns) {
-      if (TurnIn(column.name) == 0) shared_.push_back({column.name, column.unit, {}, column.words});
+      if (WayIn(column.name) == 0) shared_.push_back({column.name, column.unit, {}, column.words});
     }
     value_ = {OwnNameOf(map, *parts.front().value), parts.front().value->unit, {}, {}};
     if (parts.front().angle) angle_ = {"angle", parts.front().angle->unit, {}, {}};
@@ -75,12 +104,15 @@ class Stack {
   }
 
  private:
+  /// Rows that ways share are gone through once forward and once back.
   void Take(const Part& part, double run) {
-    for (std::size_t row = 0; row < track_.Rows(); ++row) {
+    const bool is_back = !part.angle && part.turn != parts_.front().turn;
+    for (std::size_t k = 0; k < track_.Rows(); ++k) {
+      const std::size_t row = is_back ? track_.Rows() - 1 - k : k;
       if (!std::isfinite(part.value->value[row])) continue;
       std::size_t kept = 0;
       for (const Column& column : track_.columns) {
-        if (TurnIn(column.name) == 0) shared_[kept++].value.push_back(column.value[row]);
+        if (WayIn(column.name) == 0) shared_[kept++].value.push_back(column.value[row]);
       }
       if (part.angle) angle_.value.push_back(part.angle->value[row]);
       value_.value.push_back(part.value->value[row]);

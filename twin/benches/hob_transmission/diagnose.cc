@@ -8,6 +8,7 @@
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/factory.h"
 #include "twin/core/errors.h"
+#include "twin/core/reading_clock.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/by_twin.h"
 #include "twin/diagnose/tuning.h"
@@ -231,6 +232,7 @@ TwinComparison Comparison(const std::vector<Reading>& readings, const Scenario& 
   comparison.named = {{"ring harmonic", ""}, {"hob harmonic", ""}, {"direction offset", ""}, {"transition", ""},
                       {"speed", ""},         {"trend", ""},        {"step", "slip"},         {"tone", "tone"}};
   comparison.most_causes = 6;
+  if (!HasClock(readings)) comparison.unrecorded = {"latency"};
   comparison.bends = true;
   comparison.next_measurement = NextMeasurement;
   return comparison;

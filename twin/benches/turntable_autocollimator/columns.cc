@@ -33,8 +33,8 @@ std::vector<ReadingColumn> Columns() {
       ShownColumn(
           "autocollimator_x_arcsec", units::arcsec, "arcsec",
           [](auto& r) -> auto& { return r.autocollimator_yaw_rad; }),
-      ShownColumn(
-          "autocollimator_y_arcsec", units::arcsec, "arcsec",
+      NumberColumn(
+          "autocollimator_y_arcsec", units::arcsec, ColumnRole::kShownToo,
           [](auto& r) -> auto& { return r.autocollimator_tilt_rad; })};
   return Joined({CommonColumns(false), own, ConditionColumns()});
 }
@@ -46,7 +46,10 @@ void CountBothTheSameWay(std::vector<Reading>& readings) {
 }
 
 std::vector<DesiredColumn> Desired() {
-  return {{"dwell_s", [](const Reading& r) { return std::isfinite(r.dwell_s); },
+  return {{"autocollimator_y_arcsec", [](const Reading& r) { return std::isfinite(r.autocollimator_tilt_rad); },
+           "tilts of the mirror are taken for zero: what they make of x with a roll of the crosshair is hidden in the "
+           "turntable's errors"},
+          {"dwell_s", [](const Reading& r) { return std::isfinite(r.dwell_s); },
            "settling cannot be named: it looks like backlash"},
           {"temperature_degC", [](const Reading& r) { return std::isfinite(r.temperature_degC); },
            "autocollimator_temperature cannot be named: it looks like autocollimator_drift, mount_creep or unknown "

@@ -4,8 +4,10 @@
 #include <set>
 
 #include "twin/benches/turntable_autocollimator/bench.h"
+#include "twin/benches/turntable_autocollimator/estimators/one_axis.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
+#include "twin/core/reading_clock.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/at.h"
 #include "twin/diagnose/products.h"
@@ -204,9 +206,26 @@ void AddRipples(const std::vector<Reading>& readings, const std::string& axis, A
   if (longest_rad > 1.2 * shortest_rad) add(shortest_rad, longest_rad);
 }
 
+bool HasX(const Reading& r) {
+  return std::isfinite(X_rad(r)) && std::isfinite(r.target_rad) && std::isfinite(r.reference_rad);
+}
 bool HasBoth(const Reading& r) {
-  return std::isfinite(X_rad(r)) && std::isfinite(Y_rad(r)) && std::isfinite(r.target_rad) &&
-         std::isfinite(r.reference_rad);
+  return HasX(r) && std::isfinite(Y_rad(r));
+}
+
+/// Of an instrument of one axis: tilts show nowhere, and nothing is left free for them.
+void LeaveOutTilt(TwinComparison& comparison) {
+  comparison.channels = {"x"};
+  comparison.is_used = HasX;
+  comparison.shown = [](const Reading& r) -> Eigen::VectorXd { return Eigen::VectorXd::Constant(1, X_rad(r)); };
+  comparison.show = [](Reading& r, const Eigen::VectorXd& shown_rad) { r.autocollimator_yaw_rad = shown_rad[0]; };
+  comparison.noise_of = [both = comparison.noise_of](const Scenario& s, const Reading& r) -> Eigen::VectorXd {
+    return both(s, r).head(1);
+  };
+  comparison.tones = comparison.steps = {{"x", Eigen::VectorXd::Ones(1)}};
+  comparison.free_places->points = {"turntable.ez"};
+  comparison.free_points = {"turntable.ez"};
+  std::erase_if(comparison.free_courses, [](const TwinComparison::FreeCourses& c) { return c.point == "multitooth.ex"; });
 }
 
 TwinComparison Comparison(const std::vector<Reading>& readings, const Scenario& scenario) {
@@ -233,7 +252,8 @@ TwinComparison Comparison(const std::vector<Reading>& readings, const Scenario& 
   if (Teeth(readings).cols() > 0)
     comparison.angles.push_back({"multitooth", &Reading::reference_rad, "reference angle", "harmonic", 0});
   if (!own.HasPolygon()) AddRipples(readings, "x", X_rad, own, comparison);
-  AddRipples(readings, "y", Y_rad, own, comparison);
+  const bool shows_tilt = separate::turntable::ShowsTilt(readings);
+  if (shows_tilt) AddRipples(readings, "y", Y_rad, own, comparison);
   comparison.tones = comparison.steps = {{"x", Eigen::Vector2d::UnitX()}, {"y", Eigen::Vector2d::UnitY()}};
   comparison.named = {{"direction offset", ""},
                       {"trend", ""},
@@ -255,6 +275,8 @@ TwinComparison Comparison(const std::vector<Reading>& readings, const Scenario& 
   };
   if (lacks(&Reading::temperature_degC)) comparison.unrecorded.emplace_back("autocollimator_temperature");
   if (lacks(&Reading::dwell_s)) comparison.unrecorded.emplace_back("settling");
+  if (!HasClock(readings)) comparison.unrecorded.emplace_back("mount_creep");
+  if (!shows_tilt) LeaveOutTilt(comparison);
   return comparison;
 }
 

@@ -74,7 +74,8 @@ report::ErrorMotionTexts EvaluateTilt(const std::vector<separate::turntable::Tur
   if (separation.turntable.position_rad.size() > kMostPositions) return told;
   const StopGrid grid = FindGrid(stops, positions);
   const ShiftFit fit(grid);
-  if (!fit.determined()) return told;
+  const Eigen::VectorXd seen_rad = Collect(stops, grid).y_rad;
+  if (!fit.determined() || seen_rad.isZero(0.0)) return told;  // or nobody saw a tilt
   const Eigen::VectorXd y_rad = WithoutLean(grid, Upright(Collect(stops, grid), separation.roll));
   const report::DirectedMotion tilt = TiltOf(grid, fit, y_rad, stated_noise_rad * stated_noise_rad);
   if (!tilt.motion.contour.allFinite()) return told;

@@ -146,6 +146,7 @@ void AddNotes(const Eigen::VectorXd& d_roll, int n, IndexingSeparation& result) 
   if (result.status != IndexingStatus::kUndetermined && result.roll.status == RollStatus::kTiltsAlike) {
     const double change_arcsec = d_roll.head(n).array().isNaN().select(0.0, d_roll.head(n)).cwiseAbs().maxCoeff() *
                                  units::deg / units::arcsec;
+    if (change_arcsec == 0.0) return;  // nobody saw a tilt
     result.notes.push_back(
         fmt::format("the roll of the crosshair is not determined and not taken out; 1 deg of it "
                     "would change the turntable's error by up to {:.3f} arcsec",

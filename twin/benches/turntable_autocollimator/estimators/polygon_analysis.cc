@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "twin/benches/turntable_autocollimator/estimators/one_axis.h"
 #include "twin/benches/turntable_autocollimator/estimators/polygon_means.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 
@@ -67,7 +68,7 @@ double PolygonAnalysis::Stated_rad() const {
 PolygonAnalysis AnalysePolygon(const std::vector<Reading>& readings, const Scenario& scenario,
                                Estimator estimator) {
   const TurntableSettings& own = TurntableOf(scenario);
-  const std::vector<FaceReading> faces = FaceReadings(readings, scenario);
+  const std::vector<FaceReading> faces = FaceReadings(WithTilt(readings), scenario);
   PolygonAnalysis analysis;
   analysis.estimator = estimator;
   analysis.used = static_cast<int>(faces.size());

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "twin/benches/turntable_autocollimator/estimators/collimator_scale.h"
+#include "twin/benches/turntable_autocollimator/estimators/one_axis.h"
 #include "twin/benches/turntable_autocollimator/estimators/tilt_squared.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 
@@ -117,8 +118,9 @@ std::vector<TurntableStop> StopsOf(const std::vector<Reading>& readings, const S
   return stops;
 }
 
-TurntableAnalysis AnalyseTurntable(const std::vector<Reading>& readings, const Scenario& scenario,
+TurntableAnalysis AnalyseTurntable(const std::vector<Reading>& as_read, const Scenario& scenario,
                                    Estimator estimator) {
+  const std::vector<Reading> readings = WithTilt(as_read);
   TurntableAnalysis analysis;
   analysis.estimator = estimator;
   analysis.left_out = static_cast<int>(
