@@ -123,6 +123,8 @@ TEST_F(TwoCommands, TakeAFaceTableToTheErrorsOfTheTable) {
   EXPECT_NEAR(Parameter("backlash", "width"), 0.2, 0.03);
   EXPECT_THAT(story_, HasSubstr("rms 2.1"));
   for (const auto& cause : found_.at("causes")) EXPECT_NE(cause.at("effect"), "autocollimator_drift") << "there is no clock";
+  Succeed({"export", "run", "--readings", "again.csv"});
+  EXPECT_EQ(Json({"diagnose", "again.csv", "--scenario", "run/scenario.toml", "--json", "-"}).at("verdict"), found_.at("verdict"));
 }
 
 TEST_F(TwoCommands, LookBeforeAnythingIsWritten) {

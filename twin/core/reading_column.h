@@ -26,8 +26,11 @@ struct ReadingColumn {
   std::function<bool(Reading&, const std::string&)> parse;  // false: not what is expected
   std::string expected;
   std::function<double&(Reading&)> number = {};  // where its number lives in a reading; empty: it is none
+  bool may_be_absent = false;  // of what was shown: a run may have none of it
 
-  bool MustBeThere() const { return role == ColumnRole::kRequired || role == ColumnRole::kShown; }
+  bool MustBeThere() const {
+    return role == ColumnRole::kRequired || (role == ColumnRole::kShown && !may_be_absent);
+  }
   bool MayBeEmpty() const { return role != ColumnRole::kRequired; }
   /// Of a reading that has no numbers these are not kept.
   bool IsShown() const { return role == ColumnRole::kShown || role == ColumnRole::kShownToo; }

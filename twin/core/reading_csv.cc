@@ -60,7 +60,18 @@ void Harmonise(Reading& reading, const std::vector<ReadingColumn>& columns) {
   }
 }
 
-Reading ParseRow(const CsvTable& table, const CsvTable::Row& row, const std::vector<ReadingColumn>& columns) {
+/// Those without which a reading of this file is missing.
+std::vector<ReadingColumn> NeededIn(const CsvTable& table, std::vector<ReadingColumn> columns) {
+  std::erase_if(columns, [&table](const ReadingColumn& column) {
+    const auto at = table.Column(column.name);
+    const auto is_empty = [&at](const CsvTable::Row& row) { return row.fields[*at].empty(); };
+    return column.may_be_absent && (!at || std::ranges::all_of(table.rows, is_empty));
+  });
+  return columns;
+}
+
+Reading ParseRow(const CsvTable& table, const CsvTable::Row& row, const std::vector<ReadingColumn>& columns,
+                 const std::vector<ReadingColumn>& needed) {
   Reading reading;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const bool is_known = std::ranges::find(columns, table.columns[i], &ReadingColumn::name) != columns.end();
@@ -68,7 +79,7 @@ Reading ParseRow(const CsvTable& table, const CsvTable::Row& row, const std::vec
   }
   for (const ReadingColumn& column : columns)
     if (table.Column(column.name)) ParseField(table, row, column, reading);
-  Harmonise(reading, columns);
+  Harmonise(reading, needed);
   return reading;
 }
 
@@ -147,8 +158,9 @@ std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name,
   RequireColumns(table, format);
   std::vector<Reading> readings;
   std::set<int> numbers;
+  const std::vector<ReadingColumn> needed = NeededIn(table, format.columns);
   for (const CsvTable::Row& row : table.rows) {
-    const Reading reading = ParseRow(table, row, format.columns);
+    const Reading reading = ParseRow(table, row, format.columns, needed);
     CheckOrder(table, row, reading, readings.empty() ? Time::min() : readings.back().time, numbers);
     readings.push_back(reading);
   }

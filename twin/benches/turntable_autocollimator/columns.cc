@@ -25,7 +25,7 @@ double Wander_rad(const std::vector<Reading>& readings, double sense) {
 }  // namespace
 
 std::vector<ReadingColumn> Columns() {
-  const std::vector<ReadingColumn> own = {
+  std::vector<ReadingColumn> own = {
       NumberColumn(
           "turntable_deg", units::deg, ColumnRole::kRequired, [](auto& r) -> auto& { return r.target_rad; }),
       NumberColumn(
@@ -33,9 +33,10 @@ std::vector<ReadingColumn> Columns() {
       ShownColumn(
           "autocollimator_x_arcsec", units::arcsec, "arcsec",
           [](auto& r) -> auto& { return r.autocollimator_yaw_rad; }),
-      NumberColumn(
-          "autocollimator_y_arcsec", units::arcsec, ColumnRole::kShownToo,
+      ShownColumn(
+          "autocollimator_y_arcsec", units::arcsec, "arcsec",
           [](auto& r) -> auto& { return r.autocollimator_tilt_rad; })};
+  own.back().may_be_absent = true;  // an instrument of one axis has none
   return Joined({CommonColumns(false), own, ConditionColumns()});
 }
 
