@@ -19,6 +19,25 @@ namespace {
 
 using testing::HasSubstr, testing::Not;
 
+/// Drifts begin with the run, and not half a century before.
+TEST(ReadReadingsCsv, CountsTimesSince1970FromTheFirstReading) {
+  std::vector<Reading> readings(2);
+  for (int i = 0; i < 2; ++i) {
+    readings[i].reading = i;
+    readings[i].target_rad = readings[i].reference_rad = 0.0;
+    readings[i].mean_V.fill(0.1);
+  }
+  const std::string path = testing::TempDir() + "/since_1970.csv";
+  const auto seconds = [&](double first_s) {
+    readings[0].time = Time(FromSeconds(first_s)), readings[1].time = Time(FromSeconds(first_s + 3.0));
+    WriteReadingsCsv(readings, kRotaryBench, path);
+    const std::vector<Reading> read = ReadReadingsCsv(path);
+    return std::pair(ToSeconds(read[0].time), ToSeconds(read[1].time));
+  };
+  EXPECT_EQ(seconds(1.7e9), std::pair(0.0, 3.0));
+  EXPECT_EQ(seconds(7.5), std::pair(7.5, 10.5)) << "a run's own clock stays";
+}
+
 constexpr const char* kHeader =
     "reading,time_s,setup,pass,direction,position,phase,target_deg,reference_deg,psd_a_x_V,psd_a_y_V,psd_b_x_V,"
     "psd_b_y_V";

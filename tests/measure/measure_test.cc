@@ -112,6 +112,18 @@ TEST(SpotVariances, CountTheStepOfTheConverterOnlyWhenNoiseDoesNotDitherIt) {
   EXPECT_NEAR(SpotVariances(noisy, Bench()).value()[0], 0.09e-12, 1e-24);
 }
 
+/// A common part of both spots' x is a yaw: of l (1 + 1/cos) a radian.
+TEST(Measure, CountsWhatABlockLeavesOfTheHumForBothSpotsTogether) {
+  BenchGeometry humming = Bench();
+  humming.hum_V = 1e-3, humming.hum_Hz = 50.0, humming.scan_s = 16e-6;
+  Reading reading = OneReading();
+  reading.n_samples = 1000;
+  const double half_rad = units::kPi * 50.0 * 16e-3;
+  const double hum_m = std::sqrt(0.5) * 1e-3 / 2000.0 * std::sin(half_rad) / half_rad;
+  const Matrix4 added = Measure({reading}, humming, {}, Estimator::kRigorous)[0].cov - Measured(reading).cov;
+  EXPECT_NEAR(std::sqrt(added(0, 0)), hum_m / (kL1_m * (1 + 1 / std::cos(kTheta))), 1e-3 * hum_m);
+}
+
 TEST(Measure, KeepsTheCalibrationsUncertaintyApartFromTheNoise) {
   const Motion m = Measured(OneReading());
   // Prior of 2 % on both x gains: u(ez) = ez 2 % / sqrt 2 and the same again for each part; rolls add the tilts.

@@ -199,6 +199,21 @@ Rows Twice(const Rows& readings) {
   return twice;
 }
 
+Rows EverySecond(const Rows& readings) {
+  Rows half;
+  for (std::size_t i = 0; i < readings.size(); i += 2) half.push_back(readings[i]);
+  return half;
+}
+
+Rows FirstHalf(const Rows& readings) {
+  return {readings.begin(), readings.begin() + std::ssize(readings) / 2};
+}
+
+Rows EachTime(Rows readings, double times) {
+  for (Reading& r : readings) r.time = Time(FromSeconds(times * ToSeconds(r.time)));
+  return readings;
+}
+
 /// A channel shows a value to the last digit from the third of the readings on.
 Rows Stuck(Rows readings, const Scenario& scenario) {
   const ReadingColumn& column = *Values(scenario).front();
@@ -233,6 +248,10 @@ TEST(Mangled, ReadingsOfAnyBenchAreRefusedOrSaidAndGoodOnesAreNot) {
       {"stuck", Stuck},
       {"shuffled", Shuffled},
       {"twice", [](const Rows& r, const Scenario&) { return Twice(r); }},
+      {"every second", [](const Rows& r, const Scenario&) { return EverySecond(r); }},
+      {"the first half", [](const Rows& r, const Scenario&) { return FirstHalf(r); }},
+      {"times in ms", [](const Rows& r, const Scenario&) { return EachTime(r, 1e3); }},
+      {"times in h", [](const Rows& r, const Scenario&) { return EachTime(r, 1.0 / units::hour); }},
       {"angles in mdeg", [](const Rows& r, const Scenario& s) { return EachAngle(r, s, 1e3); }},
       {"angles in rad", [](const Rows& r, const Scenario& s) { return EachAngle(r, s, units::deg); }}};
   for (const auto& [what, change] : changes) {
@@ -241,6 +260,38 @@ TEST(Mangled, ReadingsOfAnyBenchAreRefusedOrSaidAndGoodOnesAreNot) {
       said += Benches()[bench].bench + ": " + Said(change(Good(bench), Benches()[bench]), Benches()[bench]) + "\n";
     EXPECT_KEPT(std::string(what) + "\n" + said);
   }
+}
+
+/// Fifteen times the noise is a digit or a speck of dust, and six is chance; where a place was read three times and more.
+TEST(Mangled, OneValueThatIsUnlikeAllOthersOfItsPlaceIsDoubted) {
+  for (const auto& [bench, column, noise] : {std::tuple(0, "psd_a_x_V", 0.6e-3), std::tuple(4, "bar_um", 0.25e-6)}) {
+    const Scenario& scenario = Benches()[static_cast<std::size_t>(bench)];
+    const auto& columns = FormatOf(scenario.bench).columns;
+    const ReadingColumn& shown = *std::ranges::find(columns, column, &ReadingColumn::name);
+    const std::size_t count = Good(static_cast<std::size_t>(bench)).size();
+    for (const std::size_t at : {count / 2 + 5, 2 * count / 3}) {
+      Rows far = Good(static_cast<std::size_t>(bench)), near = far;
+      if (!std::isfinite(shown.number(far[at]))) continue;
+      shown.number(far[at]) += 18.0 * noise, shown.number(near[at]) += 3.0 * noise;
+      EXPECT_THAT(Said(far, scenario), HasSubstr("from all others of its place")) << column << " " << at;
+      EXPECT_EQ(Said(near, scenario), "-") << column << " " << at;
+    }
+  }
+}
+
+/// Nobody plans a recording: neither a scenario that was made up for it, nor one that knows the device only.
+TEST(Mangled, AComparisonAtOtherAnglesThanPlannedMayHaveAnyNumberOfReadings) {
+  const Scenario& planned = Benches()[2];
+  const auto turned = [&](double step_rad) {
+    Rows readings = FirstHalf(Good(2));
+    for (Reading& r : readings) r.reference_rad = r.position * step_rad, r.measured_rad = r.reference_rad + 1e-5 * (r.reading % 7);
+    return readings;
+  };
+  EXPECT_THAT(Said(turned(5.0 * units::deg), planned), HasSubstr("of the 576 readings"));
+  EXPECT_THAT(Said(turned(4.0 * units::deg), planned), Not(HasSubstr("readings that")));
+  Scenario made_up = planned;
+  made_up.title = "imported from mine.csv";
+  EXPECT_THAT(Said(turned(5.0 * units::deg), made_up), Not(HasSubstr("readings that")));
 }
 
 TEST(Mangled, AShaftThatStandsWhileItsEncoderCountsIsRefused) {

@@ -106,5 +106,19 @@ TEST(Sound, AFitThatDoesNotDescribeItsReadingsHasNoUncertainty) {
   EXPECT_EQ(bad.summary, "12 readings\nno result: " + bad.not_separated + "\n");
 }
 
+TEST(Sound, ASeparationOfWhichNothingIsDeterminedIsNone) {
+  Evaluation some, none;
+  some.separation = {{"target", {{"ez_arcsec", {1.0, INFINITY}}, {"u_ez_arcsec", {0.1, INFINITY}}}}};
+  none.separation = {{"target", {{"ez_arcsec", {1.0, 2.0}}, {"u_ez_arcsec", {INFINITY, INFINITY}}}}};
+  some.results = none.results = {{"readings", 20}};
+  some.summary = none.summary = "20 readings\nez -\n";
+  KeepSound({}, some);
+  EXPECT_TRUE(some.Separated());
+  KeepSound({}, none);
+  EXPECT_TRUE(none.IsRefuted());
+  EXPECT_FALSE(none.Separated());
+  EXPECT_EQ(none.summary, "20 readings\nno result: the readings determine none of the errors\n");
+}
+
 }  // namespace
 }  // namespace twinbench::report

@@ -14,6 +14,7 @@
 #include "tools/twinbench/doubts.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/run_folder.h"
+#include "twin/benches/plan_of.h"
 #include "twin/benches/registry.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/csv.h"
@@ -58,7 +59,7 @@ std::string TakenAsItIs(const ImportWish& options) {
 }
 
 Scenario UsualScenario(const std::string& bench, const ImportWish& options, const std::vector<std::string>& set) {
-  const std::string title = "imported from " + std::filesystem::path(options.files.front()).filename().string();
+  const std::string title = kImportedTitle + std::filesystem::path(options.files.front()).filename().string();
   std::string quoted;
   for (const char c : title) quoted += c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ' ? '_' : c;
   return ParseScenario(fmt::format("bench = \"{}\"\ntitle = \"{}\"\n", bench, quoted), "the imported run", "", set);

@@ -9,6 +9,7 @@
 #include "twin/benches/freeform_five_axis/estimators/probe_model.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"
+#include "twin/benches/plan_of.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/distributions.h"
@@ -138,7 +139,7 @@ std::vector<Expected> ExpectedOf(const Scenario& scenario, const std::vector<Rea
 }
 
 std::vector<plausible::Finding> DoubtsAbout(const std::vector<Reading>& readings, const Scenario& scenario) {
-  return plausible::Check(readings, scenario, ExpectedOf(scenario, readings));
+  return plausible::Check(readings, scenario, ExpectedOf(scenario, readings), PlanOf(scenario, readings));
 }
 
 }  // namespace twinbench

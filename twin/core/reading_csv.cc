@@ -133,6 +133,14 @@ std::string PrintRow(const Reading& reading, const std::vector<ReadingColumn>& c
   return line;
 }
 
+/// A clock that counts from 1970 counts from the first reading: drifts begin there, and not half a century before.
+void CountFromFirst(std::vector<Reading>& readings) {
+  constexpr double kThreeYears_s = 1e8;  // no run takes so long
+  if (readings.empty() || ToSeconds(readings.front().time) < kThreeYears_s) return;
+  const Duration before = readings.front().time.time_since_epoch();
+  for (Reading& reading : readings) reading.time -= before;
+}
+
 }  // namespace
 
 void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& bench, std::ostream& out) {
@@ -170,7 +178,9 @@ std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name,
 
 std::vector<Reading> ReadReadingsCsv(const std::string& path, const std::string& bench) {
   std::istringstream in(InputText(path, "a readings.csv"));
-  return ParseReadingsCsv(in, path, bench);
+  std::vector<Reading> readings = ParseReadingsCsv(in, path, bench);
+  CountFromFirst(readings);
+  return readings;
 }
 
 }  // namespace twinbench

@@ -4,19 +4,20 @@
 namespace twinbench::schema {
 namespace {
 
+/// Lengths up to those of a table: beyond them it is a wheel.
 void AddComponents(Keys& keys, const std::string& table, std::array<double, kComponents>& values,
-                   const std::string& meaning) {
+                   const std::string& meaning, double most_arcsec = 3600.0) {
   Table t(keys, table);
   for (std::size_t i = 0; i < kComponents; ++i) {
     const bool angle = IsAngle(static_cast<Component>(i));
-    t.Add(kComponentNames[i], angle ? kArcsec : kUm, UpTo(angle ? 3600 : 10000), &values[i], meaning);
+    t.Add(kComponentNames[i], angle ? kArcsec : kUm, UpTo(angle ? most_arcsec : 500.0), &values[i], meaning);
   }
 }
 
 void AddMotion(Table& t, TableSettings& s) {
   t.Add("half_frequency_order", kPure, {0.3, 0.7}, &s.half_frequency_order, "of the bearing, periods per turn");
   t.Add("half_frequency_tilt", kArcsec, UpTo(3600), &s.half_frequency_tilt_rad, "amplitude");
-  t.Add("half_frequency_radial", kUm, UpTo(10000), &s.half_frequency_radial_m, "amplitude");
+  t.Add("half_frequency_radial", kUm, UpTo(1000), &s.half_frequency_radial_m, "amplitude");
   t.Add("backlash", kArcsec, UpTo(36000), &s.backlash_rad, "full width, of the servo's encoder against the rotor");
   t.Add("speed", {"deg_s", units::deg}, Between(1e-4, 3600), &s.speed_rad_s, "of long moves");
   t.Add("move_time", kSecond, Positive(3600), &s.move_time_s, "of one step");
@@ -38,7 +39,7 @@ void AddTable(Keys& keys, const std::string& table, const std::string& frame, Ta
   Table random(keys, table + ".random");
   random.Add("orders", kPure, {1, 1000}, &s.random_orders, "they have harmonics 1..orders, falling as 1/order");
   AddComponents(keys, table + ".seating", s.seating_sd, "scatter of the pose at every mounting");
-  AddComponents(keys, table + ".repeatability", s.repeatability_sd, "scatter of the pose at every measuring position");
+  AddComponents(keys, table + ".repeatability", s.repeatability_sd, "scatter of the pose at every measuring position", 600.0);
   Table(keys, table)
       .Add("errors", kPure, {}, &s.errors, "the content of errors_file: position_deg, ex_arcsec, ...");
   if (is_driven)

@@ -8,6 +8,7 @@
 
 #include "twin/core/units.h"
 #include "twin/plausible/goes_with.h"
+#include "twin/plausible/repeated_places.h"
 
 namespace twinbench::plausible {
 namespace {
@@ -144,7 +145,9 @@ void CheckAgainst(const Expected& expected, const Channel& channel, std::vector<
   CheckGoesWith(channel, expected, findings);
   CheckSize(channel, expected, findings);
   CheckOrdered(channel, expected, findings);
+  const std::size_t before = findings.size();
   CheckSingleValues(channel, expected, findings);
+  if (findings.size() == before) CheckRepeatedPlaces(expected, channel, LeftOf(channel, expected), findings);
 }
 
 }  // namespace twinbench::plausible

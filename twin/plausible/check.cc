@@ -119,7 +119,8 @@ void CheckSteps(const Channel& channel, const std::vector<double>& beside, std::
 
 }  // namespace
 
-std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario& scenario, const std::vector<Expected>& expected) {
+std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario& scenario, const std::vector<Expected>& expected,
+                           const Plan& plan) {
   std::vector<Finding> findings;
   const BenchFormat& bench = FormatOf(scenario.bench);
   const std::vector<Channel> channels = ShownChannels(readings, bench);
@@ -143,6 +144,7 @@ std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario&
     if (!claim.column.empty() && Moves(channel)) CheckAgainst(claim, channel, findings);
   }
   CheckLabels(readings, bench, findings);
+  CheckPlan(readings, plan, findings);
   std::ranges::stable_sort(findings, {}, [](const Finding& f) { return !f.fatal; });
   return findings;
 }

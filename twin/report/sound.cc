@@ -164,11 +164,24 @@ const Misfit* WorstOf(const std::vector<Misfit>& misfits) {
   return worst != misfits.end() && worst->per_u > kMostMisfit ? &*worst : nullptr;
 }
 
-void TakeUncertainty(const Misfit& worst, Evaluation& evaluation) {
-  evaluation.not_separated = fmt::format(
-      "the fit does not describe the readings: {} leaves {:.3g} times its stated standard uncertainty (rms), so nothing "
-      "that is derived from it has an uncertainty",
-      worst.of, worst.per_u);
+/// Uncertainties that are numbers, and all there are.
+struct Counted {
+  int known = 0, all = 0;
+};
+
+Counted CountUncertainties(const Json& node, bool is_u = false) {
+  if (!node.is_structured()) return {is_u && node.is_number() ? 1 : 0, is_u ? 1 : 0};
+  Counted counted;
+  for (const auto& [key, inner] : node.items()) {
+    const bool is_inner_u = node.is_object() ? key == "u" || (key.starts_with("u_") && key != "u_parts") : is_u;
+    const Counted of = CountUncertainties(inner, is_inner_u);
+    counted.known += of.known, counted.all += of.all;
+  }
+  return counted;
+}
+
+void TakeUncertainty(const std::string& why, Evaluation& evaluation) {
+  evaluation.not_separated = why;
   evaluation.separation = nullptr;
   evaluation.tables.clear();
   evaluation.joints = {};
@@ -198,8 +211,14 @@ std::string WithoutNoNumbers(const std::string& text, const std::string& absent)
 }
 
 void KeepSound(const std::vector<Reading>& readings, Evaluation& evaluation) {
-  if (const Misfit* worst = WorstOf(evaluation.misfits)) TakeUncertainty(*worst, evaluation);
+  if (const Misfit* worst = WorstOf(evaluation.misfits))
+    TakeUncertainty(fmt::format("the fit does not describe the readings: {} leaves {:.3g} times its stated standard uncertainty "
+                                "(rms), so nothing that is derived from it has an uncertainty",
+                                worst->of, worst->per_u),
+                    evaluation);
   const int absurd = ClearNoNumbers(evaluation.results) + ClearNoNumbers(evaluation.separation);
+  if (const Counted u = CountUncertainties(evaluation.separation); u.all > 0 && u.known == 0)
+    TakeUncertainty(fmt::format("the readings determine none of the errors{}", LeftOut(readings)), evaluation);
   for (ResultTable& table : evaluation.tables) table.text = WithoutNoNumbers(table.text, "");
   const std::string sound = WithoutNoNumbers(evaluation.summary);
   evaluation.summary = InPrint(evaluation.summary);

@@ -41,7 +41,8 @@ std::string WithoutNoNumbers(const std::string& text, const std::string& absent 
 int ClearNoNumbers(nlohmann::json& results);
 
 /// Takes from an evaluation what is no result: numbers that are none become null in JSON and `-` in text, with one
-/// line that says why; a fit beyond kMostMisfit loses its separation and every `u`, and `not_separated` says so.
+/// line that says why; a fit beyond kMostMisfit, and one that determines nothing, loses its separation and every `u`, and
+/// `not_separated` says so.
 /// @param readings  Behind the evaluation.
 void KeepSound(const std::vector<Reading>& readings, Evaluation& evaluation);
 

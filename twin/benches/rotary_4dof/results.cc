@@ -35,8 +35,14 @@ TableErrors ErrorsOf(const nlohmann::json& truth, const std::string& table) {
   return errors;
 }
 
-std::vector<report::Misfit> MisfitsOf(const separate::Separation& s) {
+/// A detector that is not linear leaves ten times the noise, and a diagnosis names it. What leaves more is not seen by the detectors
+/// alone: light that goes another way to them, or spots beyond what they can show.
+constexpr double kMostOfSweeps = 20.0;
+
+std::vector<report::Misfit> MisfitsOf(const separate::Separation& s, const measure::Calibration& c) {
   std::vector<report::Misfit> misfits;
+  const double of_sweeps = c.dof > 0 ? std::sqrt(c.chi2 / c.dof) : 0.0;
+  if (of_sweeps > kMostOfSweeps) misfits.push_back({"the calibration", of_sweeps});
   for (int d = 0; d < 4; ++d)
     if (s.dof_of[d] >= 1.0)
       misfits.push_back(report::WidenedMisfit(std::array{"ez", "ex", "ey", "dy"}[static_cast<std::size_t>(d)],
@@ -66,7 +72,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   report::Evaluation evaluation{results, separation, analysis.not_separated, Summary(analysis)};
   if (!analysis.separation) return evaluation;
   evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
-  evaluation.misfits = MisfitsOf(*analysis.separation);
+  evaluation.misfits = MisfitsOf(*analysis.separation, analysis.calibration);
   evaluation.score = [analysis](const nlohmann::json& truth) { return ScoreOf(analysis, truth); };
   const report::ErrorMotionTexts motions = EvaluateErrorMotions(*analysis.separation, analysis.motions);
   evaluation.results["iso230_7"] = motions.json;

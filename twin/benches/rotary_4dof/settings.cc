@@ -39,11 +39,12 @@ void AddLaser(Keys& keys, LaserSettings& s) {
 }
 
 void AddRuling(Table& t, GratingSettings& s) {
-  t.Add("sphere", kNm, Within(1e6), &s.sphere_m, "its front at half its width above its middle");
-  t.Add("astigmatism", kNm, Within(1e6), &s.astigmatism_m, "the same along x, as much lower along z");
-  t.Add("ruling_chirp", {"ppm_mm", 1e-6 / units::mm}, Within(1e4), &s.ruling_chirp_per_m,
+  constexpr double kMostSag_nm = 1e4;  // thirty fringes: a bent plate, no grating
+  t.Add("sphere", kNm, Within(kMostSag_nm), &s.sphere_m, "its front at half its width above its middle");
+  t.Add("astigmatism", kNm, Within(kMostSag_nm), &s.astigmatism_m, "the same along x, as much lower along z");
+  t.Add("ruling_chirp", {"ppm_mm", 1e-6 / units::mm}, Within(1e3), &s.ruling_chirp_per_m,
         "growth of the grooves' distance");
-  t.Add("ruling_fan", {"urad_mm", units::urad / units::mm}, Within(1e4), &s.ruling_fan_rad_m,
+  t.Add("ruling_fan", {"urad_mm", units::urad / units::mm}, Within(1e3), &s.ruling_fan_rad_m,
         "turn of the grooves along x");
   t.File("flatness_file", s.flatness_file, "OpenEXR of the front's height [um]");
   t.File("ruling_file", s.ruling_file, "OpenEXR of how far the grooves lie towards +x [um]");
@@ -91,7 +92,7 @@ void AddPsd(Keys& keys, const std::string& table, PsdSettings& s) {
   t.Add("window_index", kPure, {1, 4}, &s.window_index, "refractive index of the glass");
   t.Add("window_gap", kMm, Positive(50), &s.window_gap_m, "from the window's back to the silicon");
   t.Add("window_reflectance", kPure, UpTo(0.99), &s.window_reflectance, "of one surface");
-  t.Add("window_wedge", kMrad, Within(200), &s.window_wedge_rad, "between the faces");
+  t.Add("window_wedge", kMrad, Within(99), &s.window_wedge_rad, "between the faces");
   t.Flag("window_coherent", s.window_coherent, "interference between the window's faces");
   t.Add("silicon_reflectance", kPure, UpTo(0.99), &s.silicon_reflectance, "above 0: ghosts by way of the grating");
   t.Add("distance_expansion", {"ppm_K", 1e-6}, Within(1000), &s.distance_expansion_per_K,

@@ -112,6 +112,16 @@ void Compare(const char* table, const TableEstimate& estimate, const TableErrors
   }
 }
 
+/// Means and lost orders are taken out of truth and estimate over the same positions.
+TableErrors WhereEstimated(TableErrors truth, const TableEstimate& estimate) {
+  for (std::size_t c = 0; c < kComponents; ++c) {
+    const std::vector<double>& value = estimate.value.value[c];
+    for (std::size_t i = 0; i < std::min(truth.value[c].size(), value.size()); ++i)
+      if (std::isnan(value[i])) truth.value[c][i] = kNaN;
+  }
+  return truth;
+}
+
 }  // namespace
 
 std::string Summary(const Analysis& analysis) {
@@ -130,9 +140,10 @@ std::string Summary(const Analysis& analysis) {
 Score CompareWithTruth(const separate::Separation& separation, const TableErrors& target,
                        const TableErrors& reference) {
   Score score;
-  score.target_truth = separate::RemoveNotSeparable(target, separate::Table::kTarget, separation.not_separable);
-  score.reference_truth =
-      separate::RemoveNotSeparable(reference, separate::Table::kReference, separation.not_separable);
+  score.target_truth = separate::RemoveNotSeparable(WhereEstimated(target, separation.target), separate::Table::kTarget,
+                                                    separation.not_separable);
+  score.reference_truth = separate::RemoveNotSeparable(WhereEstimated(reference, separation.reference),
+                                                       separate::Table::kReference, separation.not_separable);
   // What the published equations give of it is their invention: it is taken out of estimate and truth alike.
   const auto comparable = [&](TableEstimate estimate, separate::Table table) {
     estimate.value = separate::RemoveNotSeparable(estimate.value, table, separation.not_separable);

@@ -77,7 +77,8 @@ nlohmann::json PartsOf(const separate::TableEstimate& estimate, std::size_t bloc
   const std::vector<double>& u = estimate.u[estimate.components[block]];
   std::vector<double> u2;
   report::VariancePart noise{"noise", {}}, steps{"quantisation", {}}, passes{"repeatability", {}},
-      calibration{"calibration", {}}, second{"second order", {}}, model{"model", {}};
+      calibration{"calibration", {}}, second{"second order", {}}, model{"model", {}}, bearing{"asynchronous motion", {}};
+  const double asynchronous = estimate.asynchronous[static_cast<std::size_t>(estimate.components[block])];
   for (std::size_t i = 0; i < u.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(block * u.size() + i);
     const double systematic = estimate.cov_systematic(row, row), stated = estimate.cov(row, row);
@@ -89,10 +90,11 @@ nlohmann::json PartsOf(const separate::TableEstimate& estimate, std::size_t bloc
     passes.variance.push_back(scatter.repeatability * random);
     second.variance.push_back(std::isfinite(stated) ? estimate.second_order * random : 0.0);
     model.variance.push_back(bias * bias);
-    calibration.variance.push_back(
-        std::isfinite(systematic) ? std::max(0.0, systematic - second.variance.back() - bias * bias) : 0.0);
+    bearing.variance.push_back(asynchronous * asynchronous);
+    const double known = second.variance.back() + model.variance.back() + bearing.variance.back();
+    calibration.variance.push_back(std::isfinite(systematic) ? std::max(0.0, systematic - known) : 0.0);
   }
-  return report::PartsJson(u2, {noise, steps, passes, calibration, second, model});
+  return report::PartsJson(u2, {noise, steps, passes, calibration, second, model, bearing});
 }
 
 /// @param k  Of gains and rolls.

@@ -44,7 +44,7 @@ void AddMirror(Keys& keys, MirrorSettings& s) {
   Table t(keys, "mirror");
   t.Add("width", kMm, Positive(1000), &s.width_m, "of the mirror");
   t.Add("height", kMm, Positive(1000), &s.height_m, "of the mirror");
-  t.Add("flatness", kNm, Within(100000), &s.flatness_m, "sag over its width; positive: hollow");
+  t.Add("flatness", kNm, Within(2000), &s.flatness_m, "sag over its width; positive: hollow");
   t.Add("radius", kMm, UpTo(5000), &s.radius_m, "its surface from the multi-tooth table's axis");
 }
 
@@ -71,7 +71,7 @@ void AddSetUps(Table& t, TurntableProcedureSettings& s) {
   t.Add("tilts", kArcsec, Within(3600), &s.tilts_rad, "of the multi-tooth table's axis" + list);
   t.Add("tilt_azimuths", kDeg, Within(360), &s.tilt_azimuths_rad, "on the turntable, where it leans to" + list);
   t.Add("shifts_teeth", kPure, UpTo(99999), &s.shifts, "of the multi-tooth table" + list);
-  t.Add("eccentricities", kUm, Within(50000), &s.eccentricities_m, "of its axis, along the azimuth" + list);
+  t.Add("eccentricities", kUm, Within(5000), &s.eccentricities_m, "of its axis, along the azimuth" + list);
   t.Add("polygon_offsets", kDeg, Within(360), &s.polygon_offsets_rad,
         "of the turntable where the polygon's face 0 is seen" + list);
   t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a mounting takes");

@@ -29,6 +29,9 @@ BenchGeometry NominalGeometry(const Scenario& scenario) {
   geometry.grating_point_m = RotaryOf(scenario).grating.point_m;
   geometry.reference_height_m = RotaryOf(scenario).reference_height_m;
   geometry.adc_step_V = AdcStep_V(scenario);
+  if (!scenario.noise_free) geometry.hum_V = RotaryOf(scenario).amplifier.hum_V;
+  geometry.hum_Hz = RotaryOf(scenario).amplifier.hum_Hz;
+  geometry.scan_s = kChannels / RotaryOf(scenario).adc.rate_Hz;
   geometry.autocollimator_noise_rad = RotaryOf(scenario).autocollimator.noise_rad;
   geometry.autocollimator_gain = 1.0 + RotaryOf(scenario).autocollimator.gain_error;
   Check(geometry);

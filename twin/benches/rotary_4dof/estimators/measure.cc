@@ -87,7 +87,9 @@ Motion MeasureOne(const Reading& reading, const BenchGeometry& geometry, const C
   if (!estimate.motion.allFinite()) {
     return Reject(motion, ReadingStatus::kMissing, "no motion of the grating gives these spots");
   }
-  Fill(motion, estimate, SpotVariances(reading, geometry));
+  std::optional<Vector4> variance_m2 = SpotVariances(reading, geometry);
+  if (variance_m2) *variance_m2 += HumVariances_m2(reading.n_samples, geometry);
+  Fill(motion, estimate, variance_m2);
   const Matrix46 d_calibration = estimate.d_spots * SpotCalibrationJacobian(spots_m, detectors);
   FillSystematic(motion, rigorous ? d_calibration : Matrix46::Zero(), detectors.cov);
   return motion;

@@ -87,6 +87,27 @@ Separation SeparateRigorous(const std::vector<Motion>& motions, const BenchGeome
   return result;
 }
 
+void AddAsynchronous(const std::array<double, kComponents>& rms, TableEstimate& estimate) {
+  const std::size_t n = estimate.value.position_rad.size();
+  estimate.asynchronous = rms;
+  for (std::size_t s = 0; s < estimate.components.size(); ++s) {
+    const Component component = estimate.components[s];
+    if (rms[static_cast<std::size_t>(component)] == 0.0) continue;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double variance = std::pow(rms[static_cast<std::size_t>(component)], 2);
+      estimate.cov_systematic.AddVariance(static_cast<Eigen::Index>(s * n + i), variance);
+      estimate.u[component][i] = std::sqrt(std::pow(estimate.u[component][i], 2) + variance);
+    }
+  }
+}
+
+std::array<double, kComponents> AsynchronousOf(const RotarySettings& bench, std::size_t table) {
+  const TableSettings& half = table == 0 ? bench.target : bench.reference;
+  const double tilt_rad = std::hypot(bench.mechanics.asynchronous_tilt_rad[table], half.half_frequency_tilt_rad / std::sqrt(2.0));
+  const double radial_m = std::hypot(bench.mechanics.asynchronous_radial_m[table], half.half_frequency_radial_m / std::sqrt(2.0));
+  return {tilt_rad, tilt_rad, 0.0, radial_m, radial_m, 0.0};  // in the order of Component
+}
+
 }  // namespace
 
 SeparateOptions OptionsFrom(const Scenario& scenario) {
@@ -95,6 +116,8 @@ SeparateOptions OptionsFrom(const Scenario& scenario) {
     throw InputError("procedure.clamping", "\"" + clamping + "\"", "\"reclamp\" or \"reseat\"");
   }
   SeparateOptions options;
+  for (std::size_t table = 0; table < 2; ++table)
+    options.asynchronous[table] = AsynchronousOf(RotaryOf(scenario), table);
   options.layout.positions = RotaryOf(scenario).procedure.positions;
   options.layout.clamping = clamping == "reclamp" ? Clamping::kReclamp : Clamping::kReseat;
   return options;
@@ -107,6 +130,8 @@ Separation Separate(const std::vector<Motion>& motions, const BenchGeometry& geo
                                 : SeparateRigorous(motions, geometry, options);
   result.estimator = options.estimator;
   result.closure = FindClosure(motions, FindLayout(motions, geometry, options.layout));
+  AddAsynchronous(options.asynchronous[0], result.target);
+  AddAsynchronous(options.asynchronous[1], result.reference);
   NoteMissing(result.target, "target", result);
   NoteMissing(result.reference, "reference", result);
   return result;

@@ -26,6 +26,9 @@ struct SeparateOptions {
   Estimator estimator = Estimator::kRigorous;
   LayoutOptions layout;
   Matrix6 cov_calibration = Matrix6::Zero();  // of gains and rolls, for the systematic part (Calibration::cov)
+  /// What the bearings of target and reference do not repeat, root mean square by component. All passes of a run go over the same
+  /// turn, so none of them shows it.
+  std::array<std::array<double, kComponents>, 2> asynchronous = {};
 };
 
 /// Positions and clamping of a scenario's procedure.
@@ -41,6 +44,7 @@ struct TableEstimate {
   CurveCovariance cov;             // random part; row s * n + i is components[s] at position i [rad^2, rad m, m^2]
   CurveCovariance cov_systematic;  // of the calibration, of the model's second order, and of published equations
   double second_order = 0.0;       // variance of the model's second order, as a part of the random one
+  std::array<double, kComponents> asynchronous = {};  // root mean squares, as a part of cov_systematic
 };
 
 /// Mean motion of a set-up over its positions minus that of the first: zero if nothing was re-mounted differently

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "twin/benches/rotary_4dof/estimators/calibrate.h"
+#include "twin/core/units.h"
 
 /// Between voltages and spots: sensitivity, gain, roll, noise.
 namespace twinbench::measure {
@@ -60,6 +61,13 @@ std::optional<Vector4> SpotVariances(const Reading& reading, const BenchGeometry
     variance_m2[c] = variance_V2 / std::pow(geometry.sensitivity_V_m[static_cast<std::size_t>(c / 2)], 2);
   }
   return variance_m2;
+}
+
+Vector4 HumVariances_m2(int samples, const BenchGeometry& geometry) {
+  const double half_rad = units::kPi * geometry.hum_Hz * samples * geometry.scan_s;  // of its phase over the block
+  const double left = half_rad > 0.0 ? std::sin(half_rad) / half_rad : 1.0;
+  const auto& s = geometry.sensitivity_V_m;
+  return Vector4(s[0], s[0], s[1], s[1]).cwiseAbs2().cwiseInverse() * std::pow(geometry.hum_V * left, 2);
 }
 
 }  // namespace twinbench::measure

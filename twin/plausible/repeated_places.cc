@@ -1,0 +1,100 @@
+#include "twin/plausible/repeated_places.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "twin/core/units.h"
+
+namespace twinbench::plausible {
+namespace {
+
+constexpr double kTimesOthers = 10.0;  // nor a tail of any noise that has a standard deviation
+constexpr double kTimesNext = 3.0;     // times its neighbours: a spike has a course
+constexpr std::size_t kNear = 3;       // on either side
+
+using RowsOfPass = std::vector<std::size_t>;
+
+std::vector<RowsOfPass> Passes(const Channel& channel) {
+  std::map<std::tuple<Phase, int, int>, RowsOfPass> passes;
+  for (std::size_t i = 0; i < channel.size(); ++i) {
+    const Reading& r = *channel.reading[i];
+    passes[{r.phase, r.setup, r.pass}].push_back(i);
+  }
+  std::vector<RowsOfPass> all;
+  for (auto& [pass, rows] : passes) all.push_back(std::move(rows));
+  return all;
+}
+
+/// Each value less the middle of the others of its place; NaN: there are fewer than two others, and nobody knows which is wrong.
+/// A position of passes of another length is another place.
+std::vector<double> BesideOthers(const Channel& channel, const std::vector<RowsOfPass>& passes,
+                                 const std::vector<double>& left, bool is_angle) {
+  std::map<std::tuple<Phase, int, int, std::size_t>, RowsOfPass> places;
+  for (const RowsOfPass& pass : passes) {
+    for (const std::size_t i : pass) {
+      const Reading& r = *channel.reading[i];
+      places[{r.phase, r.setup, r.position, pass.size()}].push_back(i);
+    }
+  }
+  std::vector<double> beside(channel.size(), kNaN);
+  for (const auto& [place, rows] : places) {
+    if (rows.size() < 3) continue;
+    for (const std::size_t i : rows) {
+      std::vector<double> off;
+      for (const std::size_t k : rows)
+        if (k != i) off.push_back(is_angle ? std::remainder(left[i] - left[k], units::turn) : left[i] - left[k]);
+      beside[i] = MiddleOf(std::move(off));
+    }
+  }
+  return beside;
+}
+
+/// Less the middle of those next to it: a pass may lie elsewhere as a whole, and drift.
+void TakeNeighbours(const RowsOfPass& pass, std::vector<double>& beside) {
+  std::vector<double> course;
+  for (const std::size_t i : pass) course.push_back(beside[i]);
+  for (std::size_t k = 0; k < pass.size(); ++k) {
+    std::vector<double> near;
+    for (std::size_t n = std::max(k, kNear) - kNear; n < std::min(pass.size(), k + kNear + 1); ++n)
+      if (n != k && std::isfinite(course[n])) near.push_back(course[n]);
+    beside[pass[k]] = near.size() < 2 * kNear ? kNaN : course[k] - MiddleOf(std::move(near));
+  }
+}
+
+/// Of the two next to it in its pass, the larger.
+double NextTo(const RowsOfPass& pass, std::size_t k, const std::vector<double>& beside) {
+  double largest = 0.0;
+  if (k > 0 && std::isfinite(beside[pass[k - 1]])) largest = std::abs(beside[pass[k - 1]]);
+  if (k + 1 < pass.size() && std::isfinite(beside[pass[k + 1]])) largest = std::max(largest, std::abs(beside[pass[k + 1]]));
+  return largest;
+}
+
+}  // namespace
+
+void CheckRepeatedPlaces(const Expected& expected, const Channel& channel, const std::vector<double>& left,
+                         std::vector<Finding>& findings) {
+  const std::vector<RowsOfPass> passes = Passes(channel);
+  std::vector<double> beside = BesideOthers(channel, passes, left, expected.is_angle), sizes;
+  for (const RowsOfPass& pass : passes) TakeNeighbours(pass, beside);
+  for (const double one : beside)
+    if (std::isfinite(one)) sizes.push_back(std::abs(one));
+  if (sizes.size() < kFewestToJudge) return;
+  const double usual = std::max({1.4826 * MiddleOf(std::move(sizes)), expected.noise, expected.step, StepOf(channel)});
+  double times = kTimesOthers;
+  std::size_t worst = channel.size();
+  for (const RowsOfPass& pass : passes) {
+    for (std::size_t k = 0; k < pass.size(); ++k) {
+      const double here = std::abs(beside[pass[k]]);
+      if (here > times * usual && here > kTimesNext * NextTo(pass, k, beside)) times = here / usual, worst = pass[k];
+    }
+  }
+  if (worst == channel.size()) return;
+  findings.push_back({false, fmt::format("{} of reading {} lies {:.3g} times the scatter from all others of its place",
+                                         Text(*channel.column, channel.value[worst]), channel.reading[worst]->reading, times)});
+}
+
+}  // namespace twinbench::plausible
