@@ -12,9 +12,9 @@
 namespace twinbench::plausible {
 namespace {
 
-constexpr double kTimesOthers = 10.0;  // nor a tail of any noise that has a standard deviation
-constexpr double kTimesNext = 3.0;     // times its neighbours: a spike has a course
-constexpr std::size_t kNear = 3;       // on either side
+constexpr double kTimesOthers = 8.0;  // nor a tail of any noise that has a standard deviation
+constexpr double kTimesNext = 3.0;    // times its neighbours: a spike has a course
+constexpr std::size_t kNear = 3;      // on either side
 
 using RowsOfPass = std::vector<std::size_t>;
 
@@ -53,7 +53,8 @@ std::vector<double> BesideOthers(const Channel& channel, const std::vector<RowsO
   return beside;
 }
 
-/// Less the middle of those next to it: a pass may lie elsewhere as a whole, and drift.
+/// Less the middle of those next to it: a pass may lie elsewhere as a whole, and drift. Not the first and the last: what turns round
+/// there may not have come to rest.
 void TakeNeighbours(const RowsOfPass& pass, std::vector<double>& beside) {
   std::vector<double> course;
   for (const std::size_t i : pass) course.push_back(beside[i]);
@@ -61,7 +62,8 @@ void TakeNeighbours(const RowsOfPass& pass, std::vector<double>& beside) {
     std::vector<double> near;
     for (std::size_t n = std::max(k, kNear) - kNear; n < std::min(pass.size(), k + kNear + 1); ++n)
       if (n != k && std::isfinite(course[n])) near.push_back(course[n]);
-    beside[pass[k]] = near.size() < 2 * kNear ? kNaN : course[k] - MiddleOf(std::move(near));
+    const bool is_within = k > 0 && k + 1 < pass.size() && near.size() > kNear;
+    beside[pass[k]] = is_within ? course[k] - MiddleOf(std::move(near)) : kNaN;
   }
 }
 

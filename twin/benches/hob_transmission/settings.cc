@@ -28,7 +28,7 @@ void AddTransmission(Keys& keys, TransmissionSettings& s) {
   t.Add("stiffness", {"Nm_mrad", 1e3}, Positive(1e9), &s.stiffness_Nm_rad, "torsion between worm wheel and table");
   t.Add("damping_ratio", kPure, UpTo(2), &s.damping_ratio, "of that torsion");
   t.Add("friction", {"Nm"}, UpTo(1e6), &s.friction_Nm, "on the table: winds the torsion up, by direction");
-  t.Add("backlash", kArcsec, UpTo(36000), &s.backlash_rad, "of the worm, full width at the table");
+  t.Add("backlash", kArcsec, UpTo(1000), &s.backlash_rad, "of the worm, full width at the table");
   t.Text("compensation_file", &s.compensation_file, {},
          "CSV of position_deg, correction_arcsec: added by the gearbox to the table's angle that it commands");
   t.Add("compensation", kPure, {}, &s.compensation,
