@@ -171,7 +171,8 @@ double LargestMeanChi2(Scenario scenario) {
     scenario.seed = static_cast<std::uint64_t>(seed);
     const test::TwinRun run = test::RunTwin(scenario);
     for (const test::SeparatedTable& t : test::BothTables(test::Evaluate(run), run.truth))
-      for (const Component c : {Component::kEx, Component::kEy, Component::kEz, Component::kDy}) sums[t.Name(c)] += MeanChi2(t, c) / kRuns;
+      for (const Component c : {Component::kEx, Component::kEy, Component::kEz, Component::kDy})
+        sums[t.Name(c)] += MeanChi2(t, c) / kRuns;
   }
   double largest = 0.0;
   for (const auto& [name, mean] : sums) largest = std::max(largest, mean);
@@ -185,8 +186,8 @@ Scenario FewPositions() {
   return scenario;
 }
 
-/// The block takes 16 ms and the hum 20 ms; the tables stop after whole hundredths of a second, so that the hum's phase goes with the
-/// position, in every pass.
+/// The block takes 16 ms and the hum 20 ms; the tables stop after whole hundredths of a second, so that the hum's
+/// phase goes with the position, in every pass.
 TEST(StatedUncertainty, CoversAHumThatTheSamplesOfABlockShare) {
   const Scenario scenario = LoadScenario(
       test::ScenarioPath("one_of_everything.toml"),

@@ -323,7 +323,8 @@ TEST(ScenarioError, WantsTurntablePositionsWholeTeethAndHobSamplesWholeLinesApar
                           {3, "[turntable_procedure]\nverification_positions = 300\n"},
                           {3, "[turntable_procedure]\nshifts_teeth = [360]\n"},
                           {4, "[turntable_procedure]\ntilts_arcsec = [60, 100, 30]\nshifts_teeth = [0, 5]\n"},
-                          {3, "[turntable_procedure]\npasses = [1, 0]\n"}},
+                          {3, "[turntable_procedure]\npasses = [1, 0]\n"},
+                          {5, "[polygon]\nfaces = 24\n[mirror]\nflatness_nm = 3000\n"}},
                          kTurntableBench);
   ExpectScenariosRefused(
       {{2, "hob_procedure.samples_per_turn = 700\n"},

@@ -241,9 +241,12 @@ TEST(Mangled, ReadingsOfAnyBenchAreRefusedOrSaidAndGoodOnesAreNot) {
   using Mangling = std::function<Rows(const Rows&, const Scenario&)>;
   const std::pair<const char*, Mangling> changes[] = {
       {"good", [](const Rows& r, const Scenario&) { return r; }},
-      {"all zero", [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return 0.0 * x; }); }},
-      {"a thousandth", [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return 1e-3 * x; }); }},
-      {"a thousand times", [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return 1e3 * x; }); }},
+      {"all zero",
+       [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return 0.0 * x; }); }},
+      {"a thousandth",
+       [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return 1e-3 * x; }); }},
+      {"a thousand times",
+       [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return 1e3 * x; }); }},
       {"negative", [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return -x; }); }},
       {"stuck", Stuck},
       {"shuffled", Shuffled},
@@ -262,9 +265,11 @@ TEST(Mangled, ReadingsOfAnyBenchAreRefusedOrSaidAndGoodOnesAreNot) {
   }
 }
 
-/// Fifteen times the noise is a digit or a speck of dust, and six is chance; where a place was read three times and more.
+/// Fifteen times the noise is a digit or a speck of dust, and six is chance; where a place was read three times and
+/// more.
 TEST(Mangled, OneValueThatIsUnlikeAllOthersOfItsPlaceIsDoubted) {
-  for (const auto& [bench, column, noise] : {std::tuple(0, "psd_a_x_V", 0.6e-3), std::tuple(4, "bar_um", 0.25e-6)}) {
+  for (const auto& [bench, column, noise] :
+       {std::tuple(0, "psd_a_x_V", 0.6e-3), std::tuple(4, "bar_um", 0.25e-6)}) {
     const Scenario& scenario = Benches()[static_cast<std::size_t>(bench)];
     const auto& columns = FormatOf(scenario.bench).columns;
     const ReadingColumn& shown = *std::ranges::find(columns, column, &ReadingColumn::name);
@@ -284,7 +289,8 @@ TEST(Mangled, AComparisonAtOtherAnglesThanPlannedMayHaveAnyNumberOfReadings) {
   const Scenario& planned = Benches()[2];
   const auto turned = [&](double step_rad) {
     Rows readings = FirstHalf(Good(2));
-    for (Reading& r : readings) r.reference_rad = r.position * step_rad, r.measured_rad = r.reference_rad + 1e-5 * (r.reading % 7);
+    for (Reading& r : readings)
+      r.reference_rad = r.position * step_rad, r.measured_rad = r.reference_rad + 1e-5 * (r.reading % 7);
     return readings;
   };
   EXPECT_THAT(Said(turned(5.0 * units::deg), planned), HasSubstr("of the 576 readings"));

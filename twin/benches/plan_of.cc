@@ -35,8 +35,8 @@ Interval BesideDwell(const std::vector<double>& dwells_s, const Reading&, const 
   return AtRest(std::isfinite(here.dwell_s) ? here.dwell_s : std::ranges::min(dwells_s));
 }
 
-/// Whether the reference stood where the stops are planned, but for a constant of each set-up: anybody's recording may be compared
-/// under a scenario that knows the device only.
+/// Whether the reference stood where the stops are planned, but for a constant of each set-up: anybody's recording
+/// may be compared under a scenario that knows the device only.
 bool AreStopsOf(const EncoderProcedureSettings& procedure, const std::vector<Reading>& readings) {
   constexpr double kBeside = 0.1;  // of a step
   const double step_rad = units::turn / procedure.stops;
@@ -58,15 +58,17 @@ Interval BetweenAngles(double at_rest_s, const Reading& before, const Reading& h
 /// No slower than at the lowest speed, no faster than at the highest.
 Interval BetweenEdges(const HobSettings& s, const Reading& before, const Reading& here) {
   const auto [slowest, fastest] = std::ranges::minmax(s.hob_procedure.hob_speeds_rad_s);
-  const double way_rad = s.transmission.HobOrder() * std::remainder(here.measured_rad - before.measured_rad, units::turn);
+  const double way_rad =
+      s.transmission.HobOrder() * std::remainder(here.measured_rad - before.measured_rad, units::turn);
   return {InMotion(way_rad, fastest).least_s, InMotion(way_rad, slowest).usual_s};
 }
 
 Interval OnCircle(const CircularSettings& s, const Reading& before, const Reading& here) {
   using namespace benches::circular;
   if (!(kFeed_m_s(here) > 0.0)) return AtRest(s.procedure.dwell_s);
-  return InMotion(std::hypot(kCommandedX_m(here) - kCommandedX_m(before), kCommandedY_m(here) - kCommandedY_m(before)),
-                  kFeed_m_s(here));
+  return InMotion(
+      std::hypot(kCommandedX_m(here) - kCommandedX_m(before), kCommandedY_m(here) - kCommandedY_m(before)),
+      kFeed_m_s(here));
 }
 
 /// A machine may well be faster than the interval that was thought of.
@@ -106,7 +108,8 @@ int PositionsOf(const Scenario& scenario) {
 
 plausible::Plan PlanOf(const Scenario& scenario, const std::vector<Reading>& readings) {
   if (scenario.title.starts_with(kImportedTitle)) return {};
-  const bool are_stops = scenario.bench == kEncoderBench && AreStopsOf(EncoderOf(scenario).encoder_procedure, readings);
+  const bool are_stops =
+      scenario.bench == kEncoderBench && AreStopsOf(EncoderOf(scenario).encoder_procedure, readings);
   const bool is_planned = scenario.bench != kEncoderBench || are_stops;
   if (!is_planned) return {.interval = IntervalOf(scenario, are_stops)};
   return {BenchOf(scenario).planned_readings(scenario), PositionsOf(scenario), IntervalOf(scenario, are_stops)};

@@ -39,7 +39,8 @@ void AddTable(Keys& keys, const std::string& table, const std::string& frame, Ta
   Table random(keys, table + ".random");
   random.Add("orders", kPure, {1, 1000}, &s.random_orders, "they have harmonics 1..orders, falling as 1/order");
   AddComponents(keys, table + ".seating", s.seating_sd, "scatter of the pose at every mounting");
-  AddComponents(keys, table + ".repeatability", s.repeatability_sd, "scatter of the pose at every measuring position", 600.0);
+  AddComponents(keys, table + ".repeatability", s.repeatability_sd,
+                "scatter of the pose at every measuring position", 600.0);
   Table(keys, table)
       .Add("errors", kPure, {}, &s.errors, "the content of errors_file: position_deg, ex_arcsec, ...");
   if (is_driven)

@@ -119,8 +119,8 @@ void CheckSteps(const Channel& channel, const std::vector<double>& beside, std::
 
 }  // namespace
 
-std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario& scenario, const std::vector<Expected>& expected,
-                           const Plan& plan) {
+std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario& scenario,
+                           const std::vector<Expected>& expected, const Plan& plan) {
   std::vector<Finding> findings;
   const BenchFormat& bench = FormatOf(scenario.bench);
   const std::vector<Channel> channels = ShownChannels(readings, bench);

@@ -13,10 +13,10 @@
 /// readings, the bench's columns and what the scenario says of its converters.
 namespace twinbench::plausible {
 
-/// Too few readings; values that the instrument cannot give; channels that are dead, or stuck while others move; positions and
-/// directions that contradict the angles; times that stand still; rows that repeat; axes that stood elsewhere; readings that come
-/// in steps as large as their noise; what is not as the scenario claims: of another size, order or sign; what is not as it plans.
-/// Fatal ones first.
+/// Too few readings; values that the instrument cannot give; channels that are dead, or stuck while others move;
+/// positions and directions that contradict the angles; times that stand still; rows that repeat; axes that stood
+/// elsewhere; readings that come in steps as large as their noise; what is not as the scenario claims: of another
+/// size, order or sign; what is not as it plans. Fatal ones first.
 /// @param expected  What is claimed of the columns; of those that are left out nothing is.
 std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario& scenario,
                            const std::vector<Expected>& expected = {}, const Plan& plan = {});

@@ -33,10 +33,12 @@ void CheckCount(const std::vector<Reading>& readings, const Plan& plan, std::vec
   if (absent == 0 || !is_of_plan) return;
   findings.push_back(
       {absent > plan.readings / kOneOf,
-       fmt::format("there are {} of the {} readings that the scenario plans{}", readings.size(), plan.readings,
-                   absent < 0 ? ": is it the scenario of these readings?"
-                              : ": if no more were taken, say in the scenario's procedure which; the others may be bad ones that "
-                                "somebody took out")});
+       fmt::format(
+           "there are {} of the {} readings that the scenario plans{}", readings.size(), plan.readings,
+           absent < 0
+               ? ": is it the scenario of these readings?"
+               : ": if no more were taken, say in the scenario's procedure which; the others may be bad ones that "
+                 "somebody took out")});
 }
 
 /// By how much the readings of a pass follow each other slower than planned: the middle of them.
@@ -54,11 +56,14 @@ double Slower(const std::vector<Reading>& readings, const Plan& plan, double Int
 void CheckIntervals(const std::vector<Reading>& readings, const Plan& plan, std::vector<Finding>& findings) {
   const bool has_clock = !readings.empty() && readings.front().time < readings.back().time;
   if (!plan.interval || !has_clock) return;
-  const double least = Slower(readings, plan, &Interval::least_s), usual = Slower(readings, plan, &Interval::usual_s);
+  const double least = Slower(readings, plan, &Interval::least_s),
+               usual = Slower(readings, plan, &Interval::usual_s);
   if (least >= kLeastTimes && usual <= kMostTimes) return;
-  findings.push_back({true, fmt::format("the readings of a pass follow each other {:.3g} times as slowly as the scenario plans: is "
-                                        "time_s in s?",
-                                        usual > kMostTimes ? usual : least)});
+  findings.push_back(
+      {true,
+       fmt::format("the readings of a pass follow each other {:.3g} times as slowly as the scenario plans: is "
+                   "time_s in s?",
+                   usual > kMostTimes ? usual : least)});
 }
 
 }  // namespace

@@ -16,8 +16,9 @@ struct Interval {
 
 /// What a scenario's own procedure says of a run's readings.
 struct Plan {
-  int readings = 0;   // of the whole run; 0: nothing is planned
-  int positions = 0;  // of the longest pass of the full circle: others make it another plan, of which nothing is known
+  int readings = 0;  // of the whole run; 0: nothing is planned
+  int positions =
+      0;  // of the longest pass of the full circle: others make it another plan, of which nothing is known
   std::function<Interval(const Reading& before, const Reading& here)> interval = {};
 };
 

@@ -29,8 +29,8 @@ std::vector<RowsOfPass> Passes(const Channel& channel) {
   return all;
 }
 
-/// Each value less the middle of the others of its place; NaN: there are fewer than two others, and nobody knows which is wrong.
-/// A position of passes of another length is another place.
+/// Each value less the middle of the others of its place; NaN: there are fewer than two others, and nobody knows
+/// which is wrong. A position of passes of another length is another place.
 std::vector<double> BesideOthers(const Channel& channel, const std::vector<RowsOfPass>& passes,
                                  const std::vector<double>& left, bool is_angle) {
   std::map<std::tuple<Phase, int, int, std::size_t>, RowsOfPass> places;
@@ -53,8 +53,8 @@ std::vector<double> BesideOthers(const Channel& channel, const std::vector<RowsO
   return beside;
 }
 
-/// Less the middle of those next to it: a pass may lie elsewhere as a whole, and drift. Not the first and the last: what turns round
-/// there may not have come to rest.
+/// Less the middle of those next to it: a pass may lie elsewhere as a whole, and drift. Not the first and the last:
+/// what turns round there may not have come to rest.
 void TakeNeighbours(const RowsOfPass& pass, std::vector<double>& beside) {
   std::vector<double> course;
   for (const std::size_t i : pass) course.push_back(beside[i]);
@@ -71,7 +71,8 @@ void TakeNeighbours(const RowsOfPass& pass, std::vector<double>& beside) {
 double NextTo(const RowsOfPass& pass, std::size_t k, const std::vector<double>& beside) {
   double largest = 0.0;
   if (k > 0 && std::isfinite(beside[pass[k - 1]])) largest = std::abs(beside[pass[k - 1]]);
-  if (k + 1 < pass.size() && std::isfinite(beside[pass[k + 1]])) largest = std::max(largest, std::abs(beside[pass[k + 1]]));
+  if (k + 1 < pass.size() && std::isfinite(beside[pass[k + 1]]))
+    largest = std::max(largest, std::abs(beside[pass[k + 1]]));
   return largest;
 }
 
@@ -85,18 +86,21 @@ void CheckRepeatedPlaces(const Expected& expected, const Channel& channel, const
   for (const double one : beside)
     if (std::isfinite(one)) sizes.push_back(std::abs(one));
   if (sizes.size() < kFewestToJudge) return;
-  const double usual = std::max({1.4826 * MiddleOf(std::move(sizes)), expected.noise, expected.step, StepOf(channel)});
+  const double usual =
+      std::max({1.4826 * MiddleOf(std::move(sizes)), expected.noise, expected.step, StepOf(channel)});
   double times = kTimesOthers;
   std::size_t worst = channel.size();
   for (const RowsOfPass& pass : passes) {
     for (std::size_t k = 0; k < pass.size(); ++k) {
       const double here = std::abs(beside[pass[k]]);
-      if (here > times * usual && here > kTimesNext * NextTo(pass, k, beside)) times = here / usual, worst = pass[k];
+      if (here > times * usual && here > kTimesNext * NextTo(pass, k, beside))
+        times = here / usual, worst = pass[k];
     }
   }
   if (worst == channel.size()) return;
-  findings.push_back({false, fmt::format("{} of reading {} lies {:.3g} times the scatter from all others of its place",
-                                         Text(*channel.column, channel.value[worst]), channel.reading[worst]->reading, times)});
+  findings.push_back(
+      {false, fmt::format("{} of reading {} lies {:.3g} times the scatter from all others of its place",
+                          Text(*channel.column, channel.value[worst]), channel.reading[worst]->reading, times)});
 }
 
 }  // namespace twinbench::plausible

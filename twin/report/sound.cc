@@ -212,10 +212,12 @@ std::string WithoutNoNumbers(const std::string& text, const std::string& absent)
 
 void KeepSound(const std::vector<Reading>& readings, Evaluation& evaluation) {
   if (const Misfit* worst = WorstOf(evaluation.misfits))
-    TakeUncertainty(fmt::format("the fit does not describe the readings: {} leaves {:.3g} times its stated standard uncertainty "
-                                "(rms), so nothing that is derived from it has an uncertainty",
-                                worst->of, worst->per_u),
-                    evaluation);
+    TakeUncertainty(
+        fmt::format(
+            "the fit does not describe the readings: {} leaves {:.3g} times its stated standard uncertainty "
+            "(rms), so nothing that is derived from it has an uncertainty",
+            worst->of, worst->per_u),
+        evaluation);
   const int absurd = ClearNoNumbers(evaluation.results) + ClearNoNumbers(evaluation.separation);
   if (const Counted u = CountUncertainties(evaluation.separation); u.all > 0 && u.known == 0)
     TakeUncertainty(fmt::format("the readings determine none of the errors{}", LeftOut(readings)), evaluation);

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <complex>
 #include <map>
-#include <set>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
@@ -317,11 +317,9 @@ report::ScoredRun ScoreOf(const HobAnalysis& analysis, const nlohmann::json& tru
   }
   if (analysis.is_interferometer_at_rest)
     curves.push_back(CurveOf("interferometer at rest", analysis.encoder_by_interferometer, encoder));
-  return {
-      ToJson(curves),
-      "against the truth: both parts of every order that is separable\n" +
-          report::ScoreTable(curves),
-      report::PositionTable(curves), report::ValuesOf(curves)};
+  return {ToJson(curves),
+          "against the truth: both parts of every order that is separable\n" + report::ScoreTable(curves),
+          report::PositionTable(curves), report::ValuesOf(curves)};
 }
 
 }  // namespace

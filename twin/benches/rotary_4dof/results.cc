@@ -35,8 +35,8 @@ TableErrors ErrorsOf(const nlohmann::json& truth, const std::string& table) {
   return errors;
 }
 
-/// A detector that is not linear leaves ten times the noise, and a diagnosis names it. What leaves more is not seen by the detectors
-/// alone: light that goes another way to them, or spots beyond what they can show.
+/// A detector that is not linear leaves ten times the noise, and a diagnosis names it. What leaves more is not seen
+/// by the detectors alone: light that goes another way to them, or spots beyond what they can show.
 constexpr double kMostOfSweeps = 20.0;
 
 std::vector<report::Misfit> MisfitsOf(const separate::Separation& s, const measure::Calibration& c) {

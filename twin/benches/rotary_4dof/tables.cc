@@ -140,8 +140,8 @@ std::string Summary(const Analysis& analysis) {
 Score CompareWithTruth(const separate::Separation& separation, const TableErrors& target,
                        const TableErrors& reference) {
   Score score;
-  score.target_truth = separate::RemoveNotSeparable(WhereEstimated(target, separation.target), separate::Table::kTarget,
-                                                    separation.not_separable);
+  score.target_truth = separate::RemoveNotSeparable(WhereEstimated(target, separation.target),
+                                                    separate::Table::kTarget, separation.not_separable);
   score.reference_truth = separate::RemoveNotSeparable(WhereEstimated(reference, separation.reference),
                                                        separate::Table::kReference, separation.not_separable);
   // What the published equations give of it is their invention: it is taken out of estimate and truth alike.

@@ -77,7 +77,8 @@ nlohmann::json PartsOf(const separate::TableEstimate& estimate, std::size_t bloc
   const std::vector<double>& u = estimate.u[estimate.components[block]];
   std::vector<double> u2;
   report::VariancePart noise{"noise", {}}, steps{"quantisation", {}}, passes{"repeatability", {}},
-      calibration{"calibration", {}}, second{"second order", {}}, model{"model", {}}, bearing{"asynchronous motion", {}};
+      calibration{"calibration", {}}, second{"second order", {}}, model{"model", {}},
+      bearing{"asynchronous motion", {}};
   const double asynchronous = estimate.asynchronous[static_cast<std::size_t>(estimate.components[block])];
   for (std::size_t i = 0; i < u.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(block * u.size() + i);

@@ -44,7 +44,7 @@ void AddMirror(Keys& keys, MirrorSettings& s) {
   Table t(keys, "mirror");
   t.Add("width", kMm, Positive(1000), &s.width_m, "of the mirror");
   t.Add("height", kMm, Positive(1000), &s.height_m, "of the mirror");
-  t.Add("flatness", kNm, Within(2000), &s.flatness_m, "sag over its width; positive: hollow");
+  t.Add("flatness", kNm, Within(10000), &s.flatness_m, "sag over its width; positive: hollow");
   t.Add("radius", kMm, UpTo(5000), &s.radius_m, "its surface from the multi-tooth table's axis");
 }
 
@@ -71,7 +71,7 @@ void AddSetUps(Table& t, TurntableProcedureSettings& s) {
   t.Add("tilts", kArcsec, Within(3600), &s.tilts_rad, "of the multi-tooth table's axis" + list);
   t.Add("tilt_azimuths", kDeg, Within(360), &s.tilt_azimuths_rad, "on the turntable, where it leans to" + list);
   t.Add("shifts_teeth", kPure, UpTo(99999), &s.shifts, "of the multi-tooth table" + list);
-  t.Add("eccentricities", kUm, Within(5000), &s.eccentricities_m, "of its axis, along the azimuth" + list);
+  t.Add("eccentricities", kUm, Within(10000), &s.eccentricities_m, "of its axis, along the azimuth" + list);
   t.Add("polygon_offsets", kDeg, Within(360), &s.polygon_offsets_rad,
         "of the turntable where the polygon's face 0 is seen" + list);
   t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a mounting takes");
@@ -163,6 +163,15 @@ void CheckSetUps(const ScenarioText& text, const TurntableProcedureSettings& pro
   check("polygon_offsets_deg", procedure.polygon_offsets_rad.size());
 }
 
+/// Beyond it the light meets so different slopes of a face that the first order of what they make is not enough.
+void CheckFaces(const ScenarioText& text, const TurntableSettings& own) {
+  constexpr double kMost_m = 2000.0 * units::nm;
+  if (!own.HasPolygon() || std::abs(own.mirror.flatness_m) <= kMost_m) return;
+  throw InputError(Place(text, "mirror.flatness_nm"),
+                   fmt::format("faces of a polygon with a sag of {:.6g} nm", own.mirror.flatness_m / units::nm),
+                   "at most 2000 nm");
+}
+
 }  // namespace
 
 void AddKeys(Keys& keys, Scenario& s) {
@@ -182,6 +191,7 @@ void AddKeys(Keys& keys, Scenario& s) {
 
 void CheckTogether(const ScenarioText& text, const Scenario& s) {
   const TurntableSettings& own = TurntableOf(s);
+  CheckFaces(text, own);
   CheckPasses(text, "turntable_procedure.passes", own.turntable_procedure.passes);
   CheckPasses(text, "turntable_procedure.verification_passes", own.turntable_procedure.verification_passes);
   CheckPolygon(text, s);

@@ -63,8 +63,9 @@ Vector4 ShownSpots(const Vector4& spots_m, const Eigen::Vector4d& gain, const Ei
 /// Random variances of the four channels' means [m^2] or nothing if std or n is missing.
 std::optional<Vector4> SpotVariances(const Reading& reading, const BenchGeometry& geometry);
 
-/// Of what the mean of a block that begins anywhere in the hum keeps of it. All channels have the same at once: twice what one of them
-/// scatters by, so that taken one by one they give the sum of two spots what it has. Of their difference it is too much.
+/// Of what the mean of a block that begins anywhere in the hum keeps of it. All channels have the same at once:
+/// twice what one of them scatters by, so that taken one by one they give the sum of two spots what it has. Of
+/// their difference it is too much.
 Vector4 HumVariances_m2(int samples, const BenchGeometry& geometry);
 
 }  // namespace twinbench::measure

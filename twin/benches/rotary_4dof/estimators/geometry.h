@@ -18,8 +18,8 @@ struct BenchGeometry {
   Vector3 grating_point_m{kNaN, kNaN, kNaN};             // laser spot, from the reference table's origin
   double reference_height_m = kNaN;                      // reference table's origin above the target table's
   double adc_step_V = 0.0;                               // one bit of the A/D converter; 0: not known
-  double hum_V = 0.0, hum_Hz = 50.0;                     // amplitude: samples of a block share it, so no scatter shows it
-  double scan_s = 0.0;                                   // from sample to sample of a channel
+  double hum_V = 0.0, hum_Hz = 50.0;  // amplitude: samples of a block share it, so no scatter shows it
+  double scan_s = 0.0;                // from sample to sample of a channel
   double autocollimator_noise_rad = 0.0;
   double autocollimator_gain = 1.0;  // shown over true, both axes, as its certificate says
 

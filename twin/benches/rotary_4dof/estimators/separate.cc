@@ -103,8 +103,10 @@ void AddAsynchronous(const std::array<double, kComponents>& rms, TableEstimate& 
 
 std::array<double, kComponents> AsynchronousOf(const RotarySettings& bench, std::size_t table) {
   const TableSettings& half = table == 0 ? bench.target : bench.reference;
-  const double tilt_rad = std::hypot(bench.mechanics.asynchronous_tilt_rad[table], half.half_frequency_tilt_rad / std::sqrt(2.0));
-  const double radial_m = std::hypot(bench.mechanics.asynchronous_radial_m[table], half.half_frequency_radial_m / std::sqrt(2.0));
+  const double tilt_rad =
+      std::hypot(bench.mechanics.asynchronous_tilt_rad[table], half.half_frequency_tilt_rad / std::sqrt(2.0));
+  const double radial_m =
+      std::hypot(bench.mechanics.asynchronous_radial_m[table], half.half_frequency_radial_m / std::sqrt(2.0));
   return {tilt_rad, tilt_rad, 0.0, radial_m, radial_m, 0.0};  // in the order of Component
 }
 

@@ -26,8 +26,8 @@ struct SeparateOptions {
   Estimator estimator = Estimator::kRigorous;
   LayoutOptions layout;
   Matrix6 cov_calibration = Matrix6::Zero();  // of gains and rolls, for the systematic part (Calibration::cov)
-  /// What the bearings of target and reference do not repeat, root mean square by component. All passes of a run go over the same
-  /// turn, so none of them shows it.
+  /// What the bearings of target and reference do not repeat, root mean square by component. All passes of a run go
+  /// over the same turn, so none of them shows it.
   std::array<std::array<double, kComponents>, 2> asynchronous = {};
 };
 
