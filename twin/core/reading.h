@@ -74,7 +74,8 @@ void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& b
 void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& bench, const std::string& path);
 
 /// Reads readings.csv. Column order is free, `#` lines are comments, unknown columns are kept. A reading with an
-/// empty voltage (or angle that was read) and no other status becomes kMissing.
+/// empty voltage (or angle that was read) and no other status becomes kMissing. Of a file, times since
+/// 1970 become times since the first reading.
 /// @param bench  Its name; empty, of a file that comes without a scenario: the one that the columns speak of.
 /// @throws InputError with file:line for missing required columns (all are named), a field that is no number, a
 ///         wrong number of fields, an unknown phase or status, a reading number that comes twice or a time that
