@@ -229,15 +229,38 @@ TEST_F(Importing, KeepsAWaveOfTheOrderThatItSays) {
 }
 
 TEST_F(Importing, RefusesADeviceThatDoesNotFollowOneToOne) {
-  std::string rad = "time_s,reference_deg,measured_deg\n", dead = rad, noise = rad, against = rad;
+  std::string rad = "time_s,reference_deg,measured_deg\n", dead = rad, noise = rad;
   for (int i = 0; i < 200; ++i) {
     rad += fmt::format("{},{},{}\n", 0.1 * i, i, i * units::deg);
     dead += fmt::format("{},{},7\n", 0.1 * i, i);
     noise += fmt::format("{},{},{}\n", 0.1 * i, i, i % 7);
-    against += fmt::format("{},{},{}\n", 0.1 * i, i, -i);
   }
-  for (const std::string& text : {rad, dead, noise, against}) EXPECT_KEPT(MessageOf([&] { Take(text); }));
-  EXPECT_EQ(Take(against, "", {"measured_deg=-[measured_deg]"}).readings.size(), 200u);
+  for (const std::string& text : {rad, dead, noise}) EXPECT_KEPT(MessageOf([&] { Take(text); }));
+}
+
+TEST_F(Importing, TakesADeviceThatCountsTheOtherWayAndSaysSo) {
+  std::string against = "time_s,reference_deg,measured_deg\n";
+  for (int i = 0; i < 200; ++i) against += fmt::format("{},{},{:.4f}\n", 0.1 * i, i, std::fmod(360.0 + 77.0 - 0.9995 * i, 360.0));
+  const Imported imported = Take(against);
+  EXPECT_KEPT(imported.assumed.at(0));
+  EXPECT_THAT(imported.story, HasSubstr("note: " + imported.assumed.at(0)));
+  const std::vector<Reading>& r = imported.readings;
+  EXPECT_NEAR(std::remainder(r[100].measured_rad - r[0].measured_rad, units::turn), 99.95 * units::deg, 1e-9);
+  EXPECT_TRUE(Take(against, "", {"measured_deg=-[measured_deg]"}).assumed.empty());
+}
+
+TEST_F(Importing, TakesAWholeNumberOfTurnsForAGearAndSaysSo) {
+  std::string motor = "output [deg],drive angle [deg]\n", against = "motor [deg],output [deg]\n";
+  for (int i = 0; i < 200; ++i) {
+    motor += fmt::format("{},{}\n", 2 * i, 40.02 * i);
+    against += fmt::format("{},{}\n", -10 * i, 2 * i);
+  }
+  const Imported imported = Take(motor), turned = Take(against);
+  EXPECT_KEPT(imported.assumed.at(0) + "\n" + turned.assumed.at(0));
+  EXPECT_NEAR(imported.readings.back().reference_rad / units::deg, 398.0, 1e-6);
+  EXPECT_NEAR(imported.readings.back().measured_rad / units::deg, 398.199, 1e-6) << "what a gear does not explain stays";
+  EXPECT_LT(Worst_deg(turned.readings), 1e-9);
+  EXPECT_THAT(MessageOf([&] { Take("output [deg],drive [deg]\n0,0\n1,4.37\n2,8.74\n3,13.11\n"); }), HasSubstr("times 4.37"));
 }
 
 TEST_F(Importing, NamesTheColumnsThereAreWhereItCannotChoose) {

@@ -92,6 +92,18 @@ TEST_F(Importing, TakesCountsByWhatIsStatedOrByThePowerOfTwoAtWhichTheyFollow) {
   EXPECT_KEPT(MessageOf([&] { Take(neither); }));
 }
 
+TEST_F(Importing, TakesCountsOfAScaleThatErrsAndOfAMotorBehindAGear) {
+  std::string scale = "angle [deg],encoder counts\n", gear = "angle [deg],motor counts\n";
+  for (int i = 0; i < 72; ++i) {
+    scale += fmt::format("{},{}\n", 5 * i, std::lround(1.016 * 4096.0 * i / 72.0));
+    gear += fmt::format("{},{}\n", 5 * i, std::lround(1.0003 * 20.0 * 4096.0 * i / 72.0));
+  }
+  EXPECT_THAT(Take(scale).story, HasSubstr("4096 counts per turn, the power of two at which it follows; +1.6 % that it is off"));
+  EXPECT_NEAR(Take(scale).readings.back().measured_rad / units::deg, 355.0 * 1.016, 0.1);
+  EXPECT_THAT(Take(gear).story, HasSubstr("81920 counts per turn, at which it follows: taken as a motor's behind a gear"));
+  EXPECT_LT(Worst_deg(Take(gear).readings), 0.12);
+}
+
 TEST_F(Importing, FindsCountsPerTurnInNamesAndInSentences) {
   for (const char* head : {"reference [deg],encoder [4000 counts/rev]\n", "reference [deg],encoder_4000cpr\n",
                            "# an encoder of 4000 counts per revolution, on the shaft\nreference [deg],encoder [counts]\n",

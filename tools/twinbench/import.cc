@@ -58,8 +58,11 @@ std::string TakenAsItIs(const ImportWish& options) {
   return BenchOfReadingsCsv(options.files.front());
 }
 
-Scenario UsualScenario(const std::string& bench, const ImportWish& options, const std::vector<std::string>& set) {
-  const std::string title = kImportedTitle + std::filesystem::path(options.files.front()).filename().string();
+/// @param assumed  Of the recording, which whoever opens the scenario later has to know.
+Scenario UsualScenario(const std::string& bench, const ImportWish& options, const std::vector<std::string>& set,
+                       const std::vector<std::string>& assumed = {}) {
+  std::string title = kImportedTitle + std::filesystem::path(options.files.front()).filename().string();
+  for (const std::string& one : assumed) title += "; " + one;
   std::string quoted;
   for (const char c : title) quoted += c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ' ? '_' : c;
   return ParseScenario(fmt::format("bench = \"{}\"\ntitle = \"{}\"\n", bench, quoted), "the imported run", "", set);
@@ -87,7 +90,7 @@ Scenario ScenarioOf(const ImportWish& options, const imports::Imported& imported
   std::vector<std::string> set = imported.set;
   set.insert(set.end(), options.overrides.begin(), options.overrides.end());
   if (!options.scenario.empty()) return LoadScenario(options.scenario, set);
-  return UsualScenario(imported.bench, options, set);
+  return UsualScenario(imported.bench, options, set, imported.assumed);
 }
 
 Imported TakeAnything(const ImportWish& options) {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "twin/core/errors.h"
+#include "twin/core/lag.h"
 #include "twin/core/units.h"
 #include "twin/import/common.h"
 #include "twin/import/follows.h"
@@ -53,8 +54,54 @@ std::vector<double> OtherAngle(const std::string& target, const Track& track, co
   return {};
 }
 
-std::optional<double> FoundPerTurn(const Column& column, const std::vector<double>& other) {
-  constexpr double kSame = 0.02, kClearly = 0.99;
+/// How many counts make a turn, and why that is thought.
+struct PerTurn {
+  double counts = 0.0;
+  std::string why;
+};
+
+std::optional<PerTurn> PowerOfTwo(const std::vector<double>& reference, const std::vector<double>& counts) {
+  constexpr double kSame = 0.02, kClearly = 0.99, kToBeSaid = 1e-3;
+  for (int bits = 8; bits <= 32; ++bits) {
+    std::vector<double> angle = counts;
+    for (double& x : angle) x *= units::turn / std::ldexp(1.0, bits);
+    const Following following = FollowingOf(reference, angle);
+    const double off = std::abs(following.gain) - 1.0;
+    if (std::abs(off) > kSame || !(std::abs(following.correlation) > kClearly)) continue;
+    const std::string scale =
+        std::abs(off) > kToBeSaid ? fmt::format("; {:+.2g} % that it is off are taken for an error of its scale", 100.0 * off) : "";
+    return PerTurn{std::ldexp(1.0, bits), "the power of two at which it follows" + scale};
+  }
+  return std::nullopt;
+}
+
+/// A motor's encoder in front of a gear.
+struct Gear {
+  double turns = 0.0, per_motor_turn = 0.0;
+
+  double Counts() const { return turns * per_motor_turn; }
+  /// Gears of 10, 20, 100 are built more often than those of 51.
+  int Unusual() const { return std::fmod(turns, 10.0) == 0.0 ? 0 : std::fmod(turns, 5.0) == 0.0 ? 1 : 2; }
+};
+
+/// A whole number of motor turns, each of usual counts: the most usual of those that come to what is seen.
+std::optional<PerTurn> ByGear(const std::vector<double>& reference, const std::vector<double>& counts) {
+  constexpr double kLine = 0.9999, kSame = 5e-3, kMostTurns = 200.0;
+  constexpr std::array kUsual = {4096.0, 16384.0, 65536.0, 8192.0, 4000.0, 10000.0, 8000.0, 2048.0, 2000.0, 1024.0};
+  const StraightLine line = LineThrough(reference, counts);
+  if (!(std::abs(line.correlation) > kLine)) return std::nullopt;
+  const double found = std::abs(line.slope) * units::turn;
+  std::optional<Gear> best;
+  for (const double per_motor_turn : kUsual) {
+    const Gear gear{std::round(found / per_motor_turn), per_motor_turn};
+    if (gear.turns < 2.0 || gear.turns > kMostTurns || std::abs(found / gear.Counts() - 1.0) > kSame) continue;
+    if (!best || gear.Unusual() < best->Unusual()) best = gear;
+  }
+  if (!best) return std::nullopt;
+  return PerTurn{best->Counts(), fmt::format("at which it follows: taken as a motor's behind a gear, {:g}:1 of {:g} counts", best->turns, best->per_motor_turn)};
+}
+
+std::optional<PerTurn> FoundPerTurn(const Column& column, const std::vector<double>& other) {
   if (other.size() != column.value.size()) return std::nullopt;
   std::vector<double> reference, counts;
   for (std::size_t i = 0; i < other.size(); ++i) {
@@ -63,13 +110,8 @@ std::optional<double> FoundPerTurn(const Column& column, const std::vector<doubl
     counts.push_back(column.value[i]);
   }
   if (counts.size() < 3) return std::nullopt;
-  for (int bits = 8; bits <= 32; ++bits) {
-    std::vector<double> angle = counts;
-    for (double& x : angle) x *= units::turn / std::ldexp(1.0, bits);
-    const Following following = FollowingOf(reference, angle);
-    if (std::abs(following.gain - 1.0) < kSame && following.correlation > kClearly) return std::ldexp(1.0, bits);
-  }
-  return std::nullopt;
+  const std::optional<PerTurn> power = PowerOfTwo(reference, counts);
+  return power || !IsCalledCounts(column) ? power : ByGear(reference, counts);
 }
 
 /// The column that was guessed as it stands; null of what somebody said, or of a formula.
@@ -143,17 +185,36 @@ bool TakeCounts(const std::string& target, const Column& column, const Track& tr
   const auto wanted = UnitAtEnd(target);
   const bool unit_is_open = column.unit.empty() || IsCalledCounts(column);
   if (!wanted || wanted->dimension != Dimension::kAngle || !unit_is_open || !AreWhole(column)) return false;
-  const bool called = IsCalledCounts(column);
-  std::optional<double> per_turn = called ? StatedPerTurn(column, track) : std::nullopt;
-  const char* why = "as the file states";
-  if (!per_turn) {
-    per_turn = FoundPerTurn(column, OtherAngle(target, track, map));
-    why = "the power of two at which it follows";
-  }
+  const std::optional<double> stated = IsCalledCounts(column) ? StatedPerTurn(column, track) : std::nullopt;
+  const std::optional<PerTurn> per_turn =
+      stated ? PerTurn{*stated, "as the file states"} : FoundPerTurn(column, OtherAngle(target, track, map));
   if (!per_turn) return false;
-  map.columns.push_back({target, fmt::format("[{}] * 360 / {:.17g}", column.name, *per_turn), "deg", ""});
-  remarks.push_back(fmt::format("{} is taken from \"{}\", {:.17g} counts per turn, {}", target, column.name, *per_turn, why));
+  map.columns.push_back({target, fmt::format("[{}] * 360 / {:.17g}", column.name, per_turn->counts), "deg", ""});
+  remarks.push_back(fmt::format("{} is taken from \"{}\", {:.17g} counts per turn, {}", target, column.name, per_turn->counts, per_turn->why));
   return true;
+}
+
+void TakeCountsBesideAngle(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, Map& map,
+                           std::vector<std::string>& remarks) {
+  for (const std::string& target : compared) {
+    const auto mapped = std::ranges::find(map.columns, target, &MappedColumn::column);
+    if (mapped == map.columns.end() || !mapped->where.empty()) continue;
+    const MappedColumn guessed = *mapped;
+    for (const Recording& recording : recordings) {
+      for (const Track& track : recording.tracks) {
+        const auto column = std::ranges::find(track.columns, guessed.expression, &Column::name);
+        if (column == track.columns.end() || !IsCalledCounts(*column)) continue;
+        std::vector<std::string> said;
+        Map with_counts = map;
+        std::erase_if(with_counts.columns, [&target](const MappedColumn& c) { return c.column == target; });
+        if (!TakeCounts(target, *column, track, with_counts, said)) continue;
+        map = std::move(with_counts);
+        std::erase_if(remarks, [&target](const std::string& remark) { return remark.starts_with(target); });
+        remarks.insert(remarks.end(), said.begin(), said.end());
+        return;
+      }
+    }
+  }
 }
 
 }  // namespace twinbench::imports

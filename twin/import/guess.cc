@@ -176,6 +176,7 @@ void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
   if (columns.size() > compared.size()) std::erase_if(columns, [](const Choice& c) { return IsCalledError(c.name); });
   TakeByName(columns, compared, map, remarks);
   TakeWhatIsLeft(columns, recordings, compared, map, remarks);
+  TakeCountsBesideAngle(compared, recordings, map, remarks);
   TakeBothForCounts(compared, recordings, map, remarks);
   RequireCountsPerTurn(recordings, map);
 }

@@ -114,6 +114,7 @@ Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
         bench.compared->scenario_of({maker.tally.stops, (maker.tally.high - maker.tally.low) / units::turn,
                                      joined.linear ? joined.turn_m : 0.0});
   for (const std::string& key : map.set) imported.set.push_back(key);
+  imported.assumed = maker.tally.assumed;
   imported.story = StoryOf(recordings, joined, maker.tally, guessed, map, imported);
   return imported;
 }

@@ -16,6 +16,7 @@ struct Imported {
   std::string bench;
   std::vector<Reading> readings;
   std::vector<std::string> set;  // keys of a scenario that say how the axis was driven
+  std::vector<std::string> assumed;  // of the sense in which the device counts and of gears
   std::string story;             // what was understood, derived and left out: lines for a person
 };
 

@@ -8,7 +8,6 @@
 #include "twin/core/errors.h"
 #include "twin/core/reading_clock.h"
 #include "twin/core/units.h"
-#include "twin/import/one_to_one.h"
 #include "twin/import/said.h"
 #include "twin/import/whole_rows.h"
 
@@ -57,6 +56,10 @@ void Maker::Take(const Session& session, std::size_t most, Imported& imported) {
   const bool one_place = bench_.compared && IsOnePlace(session);
   Course course = CourseOf(reference, session.has_clock && !one_place ? session.time_s : no_clock, map_.course, wrap);
   if (one_place && session.value.contains("direction")) NumberApproaches(session.value.at("direction"), course);
+  if (bench_.compared && !one_place) {
+    const Alignment alignment = AlignmentOf(session, course.reference, bench_, map_);
+    if (alignment.IsNeeded()) return Take(Aligned(session, alignment), most, imported);
+  }
   if (bench_.compared) {
     const std::string remark = RequireOneToOne(session, course.reference, one_place, bench_, map_);
     if (!remark.empty()) tally.remarks.push_back(remark);
@@ -75,6 +78,14 @@ void Maker::Take(const Session& session, std::size_t most, Imported& imported) {
   }
   ++setup_;
   first_pass_ = last_pass_ + 1;
+}
+
+/// Said once, however many set-ups there are.
+Session Maker::Aligned(Session session, const Alignment& alignment) {
+  for (double& x : session.value.at(bench_.compared->reference)) x *= alignment.reference;
+  for (double& x : session.value.at(bench_.compared->shown)) x *= alignment.shown;
+  if (std::ranges::count(tally.assumed, alignment.said) == 0) tally.assumed.push_back(alignment.said);
+  return session;
 }
 
 /// Of a drive from stop to stop; empty: of another.

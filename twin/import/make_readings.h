@@ -8,6 +8,7 @@
 #include "twin/import/course.h"
 #include "twin/import/import.h"
 #include "twin/import/join.h"
+#include "twin/import/one_to_one.h"
 
 namespace twinbench::imports {
 
@@ -17,6 +18,7 @@ inline constexpr std::size_t kFewestCompared = 3;  // readings, or rests, that a
 struct Tally {
   std::vector<LeftOut> left_out;
   std::vector<std::string> remarks;
+  std::vector<std::string> assumed;  // of sense and gear
   int wraps = 0, reversals = 0, rests = 0, fly_backs = 0;
   std::size_t rows = 0;
   double low = std::numeric_limits<double>::infinity(), high = -low, fastest = 0.0, rest_share = 0.0, widest = 0.0;
@@ -41,6 +43,7 @@ class Maker {
     std::size_t at = 0;
     double reference = 0.0;
   };
+  Session Aligned(Session session, const Alignment& alignment);
   std::vector<Rest> RestsIn(const Session& session, const Course& course) const;
   std::string CourseColumn(const Session& session) const;
   bool IsOnePlace(const Session& session) const;

@@ -74,7 +74,38 @@ std::string LagText(const std::string& name, const std::string& reference, const
                         ExpressionOf(map, name), gain));
 }
 
+/// The whole number of turns that one side makes for one of the other; 0: it is none.
+double GearOf(double ratio) {
+  constexpr double kExact = 5e-3, kLargest = 400.0;
+  const double whole = std::round(ratio);
+  const bool is_gear = whole >= 2.0 && whole <= kLargest && std::abs(ratio / whole - 1.0) < kExact && MeaningOfGain(ratio).empty();
+  return is_gear ? whole : 0.0;
+}
+
+Alignment AgainstReference(const std::string& name, const std::string& by, const Map& map) {
+  return {1.0, -1.0, fmt::format("{} counts against {}: taken with the other sign, as --column '{}=-{}' has it", name, by, KeyOf(map, name),
+                                 ExpressionOf(map, name))};
+}
+
 }  // namespace
+
+Alignment AlignmentOf(const Session& session, const std::vector<double>& reference, const BenchFormat& bench, const Map& map) {
+  const std::string &name = bench.compared->shown, &by = bench.compared->reference;
+  const auto [low, high] = std::ranges::minmax(session.value.at(name));
+  if (low == high) return {};
+  const Following now = FollowingOf(reference, session.value.at(name));
+  if (!now.is_line) return {};
+  if (std::abs(now.gain + 1.0) <= kLikeOne) return AgainstReference(name, by, map);
+  const double size = std::abs(now.gain), sense = now.gain < 0.0 ? -1.0 : 1.0;
+  const std::string against = sense < 0.0 ? ", in the other sense" : "";
+  if (const double gear = GearOf(size); gear > 0.0)
+    return {1.0, sense / gear, fmt::format("{0} goes {1:g} times as far as {2}{3}: taken as a motor in front of a gear {1:g}:1 and divided by it",
+                                           name, gear, by, against)};
+  if (const double gear = GearOf(1.0 / size); gear > 0.0)
+    return {1.0 / gear, sense, fmt::format("{0} goes {1:g} times as far as {2}{3}: taken as a motor in front of a gear {1:g}:1 and divided by it",
+                                           by, gear, name, against)};
+  return {};
+}
 
 std::string RequireOneToOne(const Session& session, const std::vector<double>& reference, bool one_place, const BenchFormat& bench,
                             const Map& map) {

@@ -71,7 +71,7 @@ std::string StoryOf(const std::vector<Recording>& recordings, const Joined& join
   for (const auto* list : {&joined.left_out, &tally.left_out}) {
     for (const LeftOut& left_out : *list) text += fmt::format("left out: {} {}\n", left_out.count, left_out.why);
   }
-  for (const auto* list : {&guessed, &joined.remarks, &tally.remarks}) {
+  for (const auto* list : {&guessed, &joined.remarks, &tally.remarks, &tally.assumed}) {
     for (const std::string& remark : *list) text += "note: " + remark + "\n";
   }
   return text + fmt::format("{} readings of {} rows, {} mounting{}, bench {}\n", imported.readings.size(), tally.rows, joined.sessions.size(),
