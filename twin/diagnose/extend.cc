@@ -9,6 +9,7 @@
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/core/signal_effect.h"
+#include "twin/core/units.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -22,9 +23,11 @@ bool IsAccepted(const Cause& cause, const DiagnosisRun& run) {
   });
 }
 
-/// Causes of a verdict "named" are all at work. Of a tie or beside the unknown it is those that the search took in.
+/// Causes of a verdict "named" are all at work. Of a tie or beside the unknown it is those that the search took in, and
+/// single disturbed readings, which it leaves out and which tie with nothing.
 bool IsAtWork(const Cause& cause, const DiagnosisRun& run) {
-  return run.diagnosis.verdict == Verdict::kNamed || IsAccepted(cause, run);
+  const bool is_disturbed = cause.effect == "outliers" && cause.probability > 0.5;
+  return run.diagnosis.verdict == Verdict::kNamed || is_disturbed || IsAccepted(cause, run);
 }
 
 /// What the search took in predicts readings that it was not fitted to, or nothing could be held out.
@@ -49,7 +52,7 @@ void TakeEstimates(const Cause& cause, const EffectEntry& entry, EffectSettings&
     if (std::isfinite(estimate.u)) effect.finding.u[estimate.name] = estimate.u;
   }
   effect.finding.log_evidence = cause.log_evidence;
-  effect.finding.probability = cause.probability;
+  effect.finding.probability = std::min(cause.probability, 1.0);  // sums of shares round
 }
 
 /// A structure without a name on one channel, where it is known.
@@ -80,7 +83,11 @@ std::vector<EmpiricalSettings> TableOf(const Known& known, const std::string& ch
     table.reading = known.reading;
   }
   std::vector<double>& values = ValuesOf(table, FormatOf(run.bench).signal);
-  for (const double value : known.value_SI) values.push_back(std::round(value / kRounding_SI) * kRounding_SI);
+  const bool is_angle = FormatOf(run.bench).signal == SignalKind::kAngle;
+  for (const double value : known.value_SI) {
+    const double whole = is_angle && std::abs(value) > units::turn ? std::remainder(value, units::turn) : value;  // no device shows more
+    values.push_back(std::round(whole / kRounding_SI) * kRounding_SI);
+  }
   return {table};
 }
 
@@ -160,7 +167,7 @@ void AddUnnamed(const Accepted& accepted, const DiagnosisRun& run, const std::st
   std::vector<EffectSettings> signals = SignalsOf(accepted, run.run);
   for (EffectSettings& signal : signals) {
     signal.finding.provenance = provenance;
-    signal.finding.probability = run.diagnosis.unknown.probability;
+    signal.finding.probability = std::min(run.diagnosis.unknown.probability, 1.0);
     scenario.effects.push_back(std::move(signal));
   }
   if (!signals.empty()) return;

@@ -169,10 +169,13 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   run.patterns = {{"angle", Eigen::VectorXd::Ones(1)}};
   encoder.setups = SetUpIndicators(run.schedule.setup);
   run.nuisance = encoder.SetUpsAlone();
+  run.residual = encoder.error_rad = comparison.error_rad;
   run.observed = run.schedule.reference_rad + comparison.error_rad;
+  encoder.glitches = FindGlitches(run);
+  Bridge(encoder.glitches, encoder.error_rad);
+  Bridge(encoder.glitches, run.observed);
   encoder.used = AsFollowed(used, run.schedule);
-  encoder.error_rad = comparison.error_rad;
-  encoder.offset_rad = SetUpMeans(encoder.setups, comparison.error_rad);
+  encoder.offset_rad = SetUpMeans(encoder.setups, encoder.error_rad);
   const ErrorOfTwin followed = FollowTwin(encoder, scenario, follow);
   encoder.offset_rad = followed.offset_rad;
   run.residual = encoder.error_rad - followed.error_rad;

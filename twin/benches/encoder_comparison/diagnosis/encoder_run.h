@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "twin/benches/encoder_comparison/diagnosis/glitches.h"
 #include "twin/benches/encoder_comparison/diagnosis/signals.h"
 #include "twin/model/follow.h"
 
@@ -12,7 +13,8 @@ namespace twinbench::diagnose::encoder {
 struct EncoderRun {
   LinearRun run;  // one channel, "angle", in deg; one unknown a set-up: its offset
   SignalContext context;
-  int left_out = 0;  // readings without a value
+  int left_out = 0;   // readings without a value
+  Glitches glitches;  // bridged in all that follows
 
   std::vector<Reading> used;   // as the twin follows them
   Eigen::VectorXd error_rad;   // measured - reference

@@ -19,6 +19,29 @@ double Unwrap(double angle_rad, double last_rad) {
   return angle_rad - turn_rad * std::round((angle_rad - last_rad) / turn_rad);
 }
 
+/// Takes whole turns out of one difference after the other. A few readings that are far off (a glitch, a table that was
+/// interpolated across the wrap) lead to no other turn: where those behind them are back, they are where they were.
+class Continued {
+ public:
+  double Next(double difference_rad) {
+    last_rad_ = Unwrap(difference_rad, last_rad_);
+    const double back_rad = Unwrap(difference_rad, level_rad_);
+    const bool is_back = std::abs(back_rad - level_rad_) < kNear_rad;
+    if (is_back) last_rad_ = back_rad;
+    away_ = is_back || is_first_ || away_ == kLongest ? 0 : away_ + 1;
+    if (away_ == 0) level_rad_ = last_rad_;
+    is_first_ = false;
+    return last_rad_;
+  }
+
+ private:
+  static constexpr double kNear_rad = 0.5 * units::kPi;
+  static constexpr int kLongest = 5;  // readings
+  double last_rad_ = 0.0, level_rad_ = 0.0;
+  int away_ = 0;
+  bool is_first_ = true;
+};
+
 Eigen::VectorXd WithoutSetUpMeans(const AngleComparison& comparison, const std::vector<Reading>& readings) {
   std::map<int, std::pair<double, int>> sums;
   const auto setup_of = [&](Eigen::Index i) { return readings[comparison.used[i]].setup; };
@@ -49,13 +72,11 @@ double MeanInDirection(const Eigen::VectorXd& rest_rad, const AngleComparison& c
 AngleComparison CompareAngles(const std::vector<Reading>& readings) {
   AngleComparison comparison;
   std::vector<double> error_rad;
-  std::map<int, double> last_rad;  // by set-up
+  std::map<int, Continued> continued;  // by set-up
   for (std::size_t i = 0; i < readings.size(); ++i) {
     const Reading& reading = readings[i];
     if (!Usable(reading)) continue;
-    double& last = last_rad[reading.setup];
-    last = Unwrap(reading.measured_rad - reading.reference_rad, last);
-    error_rad.push_back(last);
+    error_rad.push_back(continued[reading.setup].Next(reading.measured_rad - reading.reference_rad));
     comparison.used.push_back(static_cast<int>(i));
   }
   comparison.left_out = static_cast<int>(readings.size() - comparison.used.size());

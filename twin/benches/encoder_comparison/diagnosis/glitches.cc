@@ -1,0 +1,167 @@
+#include "twin/benches/encoder_comparison/diagnosis/glitches.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/core/distributions.h"
+#include "twin/diagnose/conclusion.h"
+#include "twin/diagnose/recurrence.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+constexpr int kBeside = 7;         // readings on either side
+constexpr int kLongest = 5;        // glitch
+constexpr double kFar = 12.0;      // in medians of absolute distances: eight deviations of normal noise
+constexpr double kHalfFar = 6.0;
+constexpr double kMostShare = 0.05;
+
+/// Rows from `first` to `last` that are of i's mounting, but not i.
+std::vector<double> Around(const LinearRun& run, int i, int first, int last) {
+  std::vector<double> values;
+  for (int k = std::max(0, first); k <= std::min(run.schedule.Readings() - 1, last); ++k) {
+    if (k != i && run.schedule.setup[static_cast<std::size_t>(k)] == run.schedule.setup[static_cast<std::size_t>(i)])
+      values.push_back(run.residual[k]);
+  }
+  return values;
+}
+
+/// How far each reading is from the middle of those around it, in what these scatter by or usually do.
+std::vector<double> Farness(const LinearRun& run) {
+  std::vector<double> away, scatter;
+  for (int i = 0; i < run.schedule.Readings(); ++i) {
+    std::vector<double> around = Around(run, i, i - kBeside, i + kBeside);
+    const double middle = around.empty() ? run.residual[i] : Median(around);
+    for (double& x : around) x = std::abs(x - middle);
+    away.push_back(std::abs(run.residual[i] - middle));
+    scatter.push_back(around.empty() ? 0.0 : Median(std::move(around)));
+  }
+  const double usual = Median(scatter);
+  for (std::size_t i = 0; i < away.size(); ++i) away[i] = usual > 0.0 ? away[i] / std::max(usual, scatter[i]) : 0.0;
+  return away;
+}
+
+/// A servo that is sent far is far behind, and no worse for that.
+bool GoesOnAsUsual(const Schedule& s, int begin, int end, double usual_step_rad) {
+  constexpr double kLeap = 3.0;
+  for (int i = begin; i <= std::min(end, s.Readings() - 1); ++i) {
+    if (std::abs(s.reference_rad[i] - s.reference_rad[i - 1]) > kLeap * usual_step_rad) return false;
+  }
+  return true;
+}
+
+/// Those before rows [begin, end) and those behind agree, as they do not beside a step.
+bool Returns(const LinearRun& run, int begin, int end) {
+  constexpr std::size_t kFewest = 3;
+  constexpr double kAgree = 0.5;
+  const std::vector<double> before = Around(run, begin, begin - kBeside, begin - 1),
+                            behind = Around(run, begin, end, end + kBeside - 1);
+  if (before.size() < kFewest || behind.size() < kFewest) return false;
+  const double a = Median(before), b = Median(behind);
+  for (int i = begin; i < end; ++i) {
+    if (std::abs(a - b) > kAgree * std::abs(run.residual[i] - 0.5 * (a + b))) return false;
+  }
+  return true;
+}
+
+double UsualStep_rad(const Schedule& s) {
+  std::vector<double> steps_rad;
+  for (int i = 1; i < s.Readings(); ++i) steps_rad.push_back(std::abs(s.reference_rad[i] - s.reference_rad[i - 1]));
+  return Median(std::move(steps_rad));
+}
+
+double MiddleBeside(const Eigen::VectorXd& rows, const std::vector<int>& left_out, int i) {
+  std::vector<double> values;
+  for (int k = std::max(0, i - kBeside); k <= std::min(static_cast<int>(rows.size()) - 1, i + kBeside); ++k) {
+    if (!std::ranges::binary_search(left_out, k)) values.push_back(rows[k]);
+  }
+  return Median(std::move(values));
+}
+
+/// "631, 640 to 642".
+std::string Places(const Glitches& glitches, const std::vector<int>& reading) {
+  constexpr std::size_t kMost = 8;
+  std::string text;
+  std::size_t told = 0;
+  for (std::size_t k = 0; k < glitches.rows.size(); ++told) {
+    std::size_t end = k + 1;
+    while (end < glitches.rows.size() && glitches.rows[end] == glitches.rows[end - 1] + 1) ++end;
+    const int first = reading[static_cast<std::size_t>(glitches.rows[k])], last = reading[static_cast<std::size_t>(glitches.rows[end - 1])];
+    if (told < kMost) text += fmt::format("{}{}{}", text.empty() ? "" : ", ", first, last > first ? fmt::format(" to {}", last) : "");
+    k = end;
+  }
+  return told > kMost ? text + ", ..." : text;
+}
+
+double SumOfSquares(const Cause& outliers, double readings) {
+  const auto value = [&](const char* name) { return std::ranges::find(outliers.parameters, name, &ParameterEstimate::name)->value; };
+  return value("fraction") * readings * std::pow(value("size"), 2);
+}
+
+}  // namespace
+
+Glitches FindGlitches(const LinearRun& run) {
+  const Schedule& s = run.schedule;
+  const double usual_step_rad = UsualStep_rad(s);
+  if (!(usual_step_rad > 0.0)) return {};  // places that are read again and again
+  const std::vector<double> farness = Farness(run);
+  Glitches found;
+  std::vector<int> begins;
+  for (int i = 1; i < s.Readings(); ++i) {
+    int end = i;
+    while (end < s.Readings() && farness[static_cast<std::size_t>(end)] > kFar) ++end;
+    if (end == i) continue;
+    if (end - i <= kLongest && GoesOnAsUsual(s, i, end, usual_step_rad) && Returns(run, i, end)) {
+      begins.push_back(i);
+      for (int k = i; k < end; ++k) found.rows.push_back(k);
+    }
+    i = end;
+  }
+  const auto half_far = std::ranges::count_if(farness, [](double f) { return f > kHalfFar && f <= kFar; });
+  const auto count = std::ssize(found.rows);
+  if (2 * half_far > count || static_cast<double>(count) > kMostShare * s.Readings()) return {};
+  if (!RecurrenceOf(begins, run).empty()) return {};
+  found.size_rad.resize(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const int row = found.rows[static_cast<std::size_t>(k)];
+    found.size_rad[k] = run.residual[row] - MiddleBeside(run.residual, found.rows, row);
+  }
+  return found;
+}
+
+void Bridge(const Glitches& glitches, Eigen::VectorXd& rows) {
+  for (Eigen::Index k = 0; k < glitches.size_rad.size(); ++k) rows[glitches.rows[static_cast<std::size_t>(k)]] -= glitches.size_rad[k];
+}
+
+void TellGlitches(const Glitches& glitches, DiagnosisRun& result) {
+  if (glitches.rows.empty()) return;
+  Diagnosis& d = result.diagnosis;
+  const auto readings = static_cast<double>(result.run.schedule.Readings());
+  NoiseCause far;
+  far.log_bayes = 0.5 * kFar * kFar * static_cast<double>(glitches.rows.size());
+  far.outliers = glitches.rows;
+  double squares = glitches.size_rad.squaredNorm();
+  const auto other = std::ranges::find(d.causes, "outliers", &Cause::effect);
+  double others = 0.0;
+  if (other != d.causes.end()) {
+    others = std::round(readings * std::ranges::find(other->parameters, "fraction", &ParameterEstimate::name)->value);
+    squares += SumOfSquares(*other, readings);
+    d.causes.erase(other);
+  }
+  const double count = others + static_cast<double>(glitches.rows.size());
+  far.outlier_size = std::sqrt(squares / count) / result.run.sigma.mean();
+  Cause cause = OutlierCause(far, result.run);
+  ParameterEstimate& fraction = *std::ranges::find(cause.parameters, "fraction", &ParameterEstimate::name);
+  fraction.value = count / readings;
+  fraction.u = fraction.value / std::sqrt(count);
+  d.causes.push_back(std::move(cause));
+  if (d.verdict == Verdict::kNone) d.verdict = Verdict::kNamed;
+  d.alarm_p = std::min(d.alarm_p, std::exp(-far.log_bayes));
+  d.notes.push_back(fmt::format("readings far from all around them, by up to {:.3g} {}: {}; everything else was found without them",
+                                glitches.size_rad.cwiseAbs().maxCoeff() / result.run.to_SI, result.run.unit,
+                                Places(glitches, result.run.schedule.reading)));
+}
+
+}  // namespace twinbench::diagnose::encoder

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "twin/diagnose/diagnose.h"
+
+/// Readings so far from all around them that nothing else could be fitted beside them.
+namespace twinbench::diagnose::encoder {
+
+struct Glitches {
+  std::vector<int> rows;    // in their order
+  Eigen::VectorXd size_rad;  // of each: how far it is from the middle of its neighbours
+};
+
+/// One reading, or a few in a row, far outside of what the readings before and behind them scatter by, while these agree with
+/// each other and the reference goes on as usual. Finds none where many readings lie half as far (then the noise has heavy
+/// tails), where stops are read again and again (what settles looks so), or where the far ones come back at one angle.
+/// @param run  Its residual is looked at.
+Glitches FindGlitches(const LinearRun& run);
+
+/// What the readings beside a glitch show is put in its place.
+void Bridge(const Glitches& glitches, Eigen::VectorXd& rows);
+
+/// As outliers, with their places; those that the search has found besides are counted with them.
+void TellGlitches(const Glitches& glitches, DiagnosisRun& result);
+
+}  // namespace twinbench::diagnose::encoder
