@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 
@@ -5,8 +7,10 @@
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/equal_steps.h"
+#include "twin/benches/encoder_comparison/diagnosis/glitches.h"
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
+#include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
 #include "twin/benches/encoder_comparison/diagnosis/speed_limit.h"
 #include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
 #include "twin/benches/encoder_comparison/diagnosis/wander.h"
@@ -33,6 +37,16 @@ std::vector<Reading> AnglesOf(const std::vector<Reading>& readings) {
   return separate::encoder::HaveStamps(readings) ? separate::encoder::AsComparison(readings) : readings;
 }
 
+std::vector<Reading> LookedAt(const std::vector<Reading>& recorded) {
+  return diagnose::encoder::PartOf(AnglesOf(recorded));
+}
+
+void TellPart(std::size_t looked_at, std::size_t recorded, diagnose::Diagnosis& diagnosis) {
+  if (looked_at == recorded) return;
+  diagnosis.notes.push_back(fmt::format("{} of {} readings were looked at, in groups of neighbours: where something began is known to a group",
+                                        looked_at, recorded));
+}
+
 /// Of causes that were taken out before the search, which the conclusion did not see.
 void TellNextMeasurements(std::vector<diagnose::Cause>& causes) {
   for (diagnose::Cause& cause : causes)
@@ -44,7 +58,8 @@ void TellNextMeasurements(std::vector<diagnose::Cause>& causes) {
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  std::vector<Reading> readings = AnglesOf(recorded);
+  std::vector<Reading> readings = LookedAt(recorded);
+  const std::size_t looked_at = readings.size();
   std::optional<diagnose::encoder::SpeedLimit> limit;
   if (!options.design_only) limit = diagnose::encoder::SpeedLimitOf(readings, scenario, FollowRecord);
   if (limit) readings = limit->allowed;
@@ -60,7 +75,9 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
   diagnose::encoder::AddErrorsOfTargets(large, result);
   diagnose::encoder::TellEqualSteps(result);
   diagnose::encoder::TellWander(result);
+  diagnose::encoder::TellGlitches(large.first->encoder.glitches, result);
   if (limit) diagnose::encoder::TellSpeedLimit(*limit, result);
+  TellPart(looked_at, AnglesOf(recorded).size(), result.diagnosis);
   result.diagnosis.left_out = (limit ? limit->asked : searched.encoder).left_out;
   result.diagnosis.harmonics =
       diagnose::encoder::HarmonicTable(large.first->encoder, {searched.encoder.run.sigma, {}});
@@ -70,7 +87,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
-  return diagnose::encoder::BuildRun(AnglesOf(readings), scenario, FollowRecord).run;
+  return diagnose::encoder::BuildRun(LookedAt(readings), scenario, FollowRecord).run;
 }
 
 }  // namespace twinbench::benches::encoder

@@ -76,8 +76,11 @@ int LeastOrder(const SignalContext& context) {
 }
 
 int LargestOrder(const SignalContext& context) {
-  constexpr int kMost = 720;  // teeth of a worm wheel, poles of a motor
-  return model::HighestOrder(FinestSpacing_rad(context), kMost);
+  // Teeth of a worm wheel, poles of a motor; of a part of a turn as many that it tells apart, which reach as much farther.
+  constexpr double kMost = 720.0, kLeastPart = 0.05;
+  const double range_rad = context.reference_rad.maxCoeff() - context.reference_rad.minCoeff();
+  const double part = std::clamp(range_rad / units::turn, kLeastPart, 1.0);
+  return model::HighestOrder(FinestSpacing_rad(context), static_cast<int>(kMost / part));
 }
 
 std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::string>& excluded) {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "twin/benches/encoder_comparison/diagnosis/large_search.h"
-#include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
 #include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
+#include "twin/benches/encoder_comparison/diagnosis/twin_fit.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -54,22 +54,54 @@ LargeCauses OrWithoutLoops(LargeCauses found, const std::vector<Reading>& readin
   if (!HasLoop(found) || !found.first->encoder.context.Moves()) return found;
   options.excluded.insert(options.excluded.end(), kLoops.begin(), kLoops.end());
   options.excluded.emplace_back("slip");  // an onset is no plainer than a reversal
-  std::optional<LargeCauses> plain = LargeSearch(readings, scenario, options, follow, {}).Go({}, kNearly * found.left);
+  std::optional<LargeCauses> plain = LargeSearch(readings, scenario, options, follow, {}).Go(kNearly * found.left);
   return plain && IsBetterNamed(*plain, found) ? *std::move(plain) : std::move(found);
+}
+
+/// A scale that errs, where a straight line leaves little of what is seen at some targets: these have then no more errors of
+/// their own than lie beside it. How well it is known is a matter of the targets, not of the readings.
+std::optional<LargeCause> LineThroughTargets(const TwinFit& fit, Eigen::Index targets) {
+  constexpr double kLittle = 0.1;
+  const LinearRun& run = fit.Run().run;
+  const auto family = std::ranges::find(fit.Families(), "scale", &Family::effect);
+  if (family == fit.Families().end()) return {};
+  const FittedCauses line =
+      fit.Fit({LedBy({CauseFrom(*family, 0, run.residual, run.sigma, fit.projector())}, 0, run.bench)});
+  const double all = fit.PowerOf(run.residual);
+  if (line.causes.empty() || line.power > kLittle * all) return {};
+  LargeCause scale = line.causes.front();
+  scale.explained = all - line.power;
+  scale.shown = fit.Shown({scale.effect});
+  const double more = std::sqrt(static_cast<double>(run.Rows()) / static_cast<double>(targets));
+  for (auto& [parameter, u] : scale.effect.finding.u) u *= more;
+  for (ParameterEstimate& p : scale.causes.front().parameters) p.u *= more;
+  return IsHeld(scale.effect) ? std::optional(std::move(scale)) : std::nullopt;
+}
+
+/// With the errors of the targets free beside a scale that is held: what it shows is told of the readings as they are.
+LargeCauses BesideLine(LargeCause line, LargeCauses plain, LargeCauses found) {
+  if (!found.last) found.last = std::move(found.first);
+  found.first = std::move(plain.first);
+  found.causes.insert(found.causes.begin(), std::move(line));
+  return found;
 }
 
 }  // namespace
 
 LargeCauses FindLargeCauses(const std::vector<Reading>& readings, const Scenario& scenario,
                             const DiagnoseOptions& options, const model::FollowMaker& follow) {
-  const std::vector<Reading> part = PartOf(readings);
-  std::vector<LargeCause> known;
-  if (part.size() < readings.size()) known = LargeSearch(part, scenario, options, follow, {}).Look();
-  LargeCauses plain = OrWithoutLoops(*LargeSearch(readings, scenario, options, follow, {}).Go(known), readings, scenario,
-                                     options, follow);
+  LargeCauses plain =
+      OrWithoutLoops(*LargeSearch(readings, scenario, options, follow, {}).Go(), readings, scenario, options, follow);
   const Eigen::MatrixXd targets = Targets(plain.first->encoder.context);
   if (targets.size() == 0 || !LeaveErrorsOfTargets(plain, targets)) return plain;
-  return *LargeSearch(readings, scenario, options, follow, targets).Go(known);
+  const TwinFit fit(plain, scenario, follow);
+  std::optional<LargeCause> line = LineThroughTargets(fit, targets.cols());
+  if (!line) return *LargeSearch(readings, scenario, options, follow, targets).Go();
+  const Scenario with_line = fit.With({line->effect});
+  DiagnoseOptions others = options;
+  others.excluded.emplace_back("scale");
+  LargeCauses found = *LargeSearch(readings, with_line, others, follow, targets).Go();
+  return BesideLine(*std::move(line), std::move(plain), std::move(found));
 }
 
 }  // namespace twinbench::diagnose::encoder

@@ -70,29 +70,18 @@ LargeSearch::LargeSearch(const std::vector<Reading>& readings, const Scenario& s
   large_.targets = targets;
 }
 
-std::optional<LargeCauses> LargeSearch::Go(std::vector<LargeCause> known, double most_left) {
-  Begin(known.empty() ? kFewCauses : 0);
-  if (!TakeKnown(std::move(known))) TakeSignals();
+std::optional<LargeCauses> LargeSearch::Go(double most_left) {
+  Begin();
+  TakeSignals();
   TakeLarge();
   if (power_ - kFewCauses * kLarge * kLarge > most_left) return std::nullopt;  // what is not large has yet to be taken
   while (SearchOn()) TakeLarge();
   LeaveToLarge();
-  DropNeedless();
-  EndTies();
-  MoveBesideTheRest();
+  Review();
   JudgeUnsure();
   TellWhatEachShows();
   TellWhatNamesLeave();
   return std::move(large_);
-}
-
-std::vector<LargeCause> LargeSearch::Look() {
-  null_ = NullCalibration{std::vector<double>(10, 0.0)};  // what is large is far above any threshold
-  how_.null = &null_;
-  Begin(kFewCauses);
-  TakeSignals();
-  TakeLarge();
-  return large_.causes;
 }
 
 AnalysisOptions LargeSearch::For(int most_causes) const {
@@ -102,33 +91,27 @@ AnalysisOptions LargeSearch::For(int most_causes) const {
   return how;
 }
 
-void LargeSearch::Begin(int most_causes) {
+void LargeSearch::Begin() {
   EncoderRun begin = BuildRun(readings_, scenario_, follow_);
   LeaveFree(large_.targets, begin);
-  large_.first = SearchIn(std::move(begin), options_.excluded, For(most_causes));
-  most_searched_ = most_causes;
+  large_.first = SearchIn(std::move(begin), options_.excluded, For(kFewCauses));
+  most_searched_ = kFewCauses;
   null_ = large_.first->analysis.null;
   how_.null = &null_;
   fit_.emplace(large_, scenario_, follow_);
   power_ = fit_->PowerOf(fit_->Run().run.residual);
 }
 
-/// Where something began is not known of readings that were left out: onsets are looked for among all.
-/// @return false if there was none.
-bool LargeSearch::TakeKnown(std::vector<LargeCause> known) {
-  std::erase_if(known, [](const LargeCause& cause) { return cause.effect.name == "slip"; });
-  if (known.empty()) return false;
-  const AskedAgain asked = fit_->Ask(known);
-  if (!(fit_->PowerOf(asked.left) < power_)) return false;
-  double power = power_;
-  for (std::size_t k = 0; k < known.size(); ++k) {
-    const std::vector<EffectSettings> first(asked.effects.begin(), asked.effects.begin() + std::ptrdiff_t(k) + 1);
-    const double left = fit_->PowerOf(large_.first->encoder.run.residual - fit_->Shown(first));
-    known[k].explained = std::max(0.0, power - left);
-    power = left;
+/// What was held until all moved together beside the rest, and is anybody's guess then, has to go.
+void LargeSearch::Review() {
+  constexpr int kMostRounds = 3;
+  constexpr double kGuess = 2.0;
+  const auto is_guess = [](const LargeCause& cause) { return Deviations(cause.effect) < kGuess; };
+  for (int round = 0; round < kMostRounds && (round == 0 || std::ranges::any_of(large_.causes, is_guess)); ++round) {
+    DropNeedless();
+    EndTies();
+    MoveBesideTheRest();
   }
-  Accept(asked, std::move(known), kFewCauses);
-  return true;
 }
 
 /// Signals that are cut off have all their faults at once: none of them is found alone.

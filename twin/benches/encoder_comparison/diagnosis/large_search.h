@@ -17,13 +17,8 @@ class LargeSearch {
   LargeSearch(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options,
               const model::FollowMaker& follow, const Eigen::MatrixXd& targets);
 
-  /// @param known      Large causes that a part of the readings has shown.
   /// @param most_left  Power that the large causes may leave, or the rest is not looked into.
-  std::optional<LargeCauses> Go(std::vector<LargeCause> known,
-                                double most_left = std::numeric_limits<double>::infinity());
-
-  /// The large causes alone, to begin with; what they leave is not looked into.
-  std::vector<LargeCause> Look();
+  std::optional<LargeCauses> Go(double most_left = std::numeric_limits<double>::infinity());
 
  private:
   /// An angle device may well have an error of many orders. As long as something large is found, the first few are
@@ -31,8 +26,7 @@ class LargeSearch {
   static constexpr int kMostCauses = 8, kFewCauses = 3;
 
   AnalysisOptions For(int most_causes) const;
-  void Begin(int most_causes);
-  bool TakeKnown(std::vector<LargeCause> known);
+  void Begin();
   void TakeSignals();
   void TakeLarge();
   bool TakeNext();
@@ -45,6 +39,7 @@ class LargeSearch {
   std::unique_ptr<Searched> SearchWith(const AskedAgain& asked, const std::vector<LargeCause>& causes,
                                        const AnalysisOptions& how) const;
 
+  void Review();
   void LeaveToLarge();
   double LeastExplained() const;
   Eigen::VectorXd Left() const;

@@ -53,7 +53,7 @@ std::vector<Product> StepsOf(const Eigen::VectorXd& course, const std::vector<in
 
 /// Half way between neighbouring readings, all turns on one; thinned evenly.
 std::vector<double> Spots_rad(const Eigen::VectorXd& device_rad) {
-  constexpr std::size_t kMost = 2500;
+  constexpr std::size_t kMost = 1000;
   std::vector<double> within;
   for (const double angle_rad : device_rad)
     within.push_back(angle_rad - units::turn * std::floor(angle_rad / units::turn));
@@ -82,7 +82,8 @@ std::vector<double> PassedAgain(Passing passing, const Eigen::VectorXd& device_r
   std::erase_if(spots_rad, [&](double spot_rad) {
     const Passing jumps = passing == Passing::kCatchesUp ? Passing::kComesBack : passing;
     const Eigen::VectorXd course = CourseOf(jumps, device_rad, spot_rad);
-    return StepsOf(course, std::vector<int>(static_cast<std::size_t>(course.size()))).size() < 2 ||
+    const Eigen::Index later = course.size() - 1;
+    return (course.tail(later).array() != course.head(later).array()).count() < 2 ||
            (passing == jumps && IsLikeDrift(course));
   });
   return spots_rad;

@@ -12,8 +12,8 @@ bool BeginsPass(const std::vector<Reading>& readings, std::size_t i) {
 }  // namespace
 
 std::vector<Reading> PartOf(const std::vector<Reading>& readings) {
-  if (readings.size() < 2 * kEnoughReadings) return readings;
-  const std::size_t every = readings.size() / kEnoughReadings;
+  const std::size_t every = (readings.size() + kEnoughReadings / 2) / kEnoughReadings;
+  if (every < 2) return readings;
   std::vector<Reading> part;
   std::size_t in_pass = 0;
   for (std::size_t i = 0; i < readings.size(); ++i) {

@@ -51,13 +51,21 @@ class Period {
   }
   double MeanError(const Faults& at) const { return OfSignals(at).mean(); }
 
-  /// Of free waves of the first four orders and a delay.
+  /// Of free waves of the first four orders and a delay, by which the waves are late as well.
   double LeftByWaves() const {
-    Eigen::MatrixXd columns(phase_.size(), 9);
-    for (int order = 1; order <= 4; ++order) columns.middleCols(2 * order - 2, 2) = model::Wave(order * phase_);
-    columns.col(8) = way_;
-    columns -= free_ * (free_.transpose() * columns);
-    return (error_ - columns * SolveShortest(columns, error_)).squaredNorm();
+    constexpr int kSteps = 5;
+    double later = 0.0, left = error_.squaredNorm();
+    for (int step = 0; step < kSteps; ++step) {
+      const Eigen::VectorXd phase = phase_ - later * way_;
+      Eigen::MatrixXd columns(phase.size(), 9);
+      for (int order = 1; order <= 4; ++order) columns.middleCols(2 * order - 2, 2) = model::Wave(order * phase);
+      columns.col(8) = way_;
+      columns -= free_ * (free_.transpose() * columns);
+      const Eigen::VectorXd sizes = SolveShortest(columns, error_);
+      left = std::min(left, (error_ - columns * sizes).squaredNorm());
+      later = -sizes[8];
+    }
+    return left;
   }
 
  private:

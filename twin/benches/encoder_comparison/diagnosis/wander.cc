@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "twin/benches/encoder_comparison/diagnosis/memory.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/cause_groups.h"
+#include "twin/diagnose/engine/base.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose::encoder {
@@ -112,6 +117,49 @@ double SquaresAboutMean(const Eigen::VectorXd& rows) {
   return (rows.array() - rows.mean()).matrix().squaredNorm();
 }
 
+/// Whose size the search has fitted: not those of the twin.
+bool IsLinear(const Accepted& accepted) {
+  return accepted.family.kind == Kind::kNamed && accepted.family.parameters && accepted.columns.cols() == accepted.amplitudes.size();
+}
+
+void TakeSizes(const Accepted& accepted, const Eigen::MatrixXd& cov, const Eigen::VectorXd& before, std::vector<Cause>& causes) {
+  const std::vector<ParameterEstimate> was = accepted.family.parameters(accepted.shape, before, cov);
+  const auto cause = std::ranges::find_if(causes, [&](const Cause& c) {
+    return c.effect == accepted.family.effect && c.where == accepted.family.where && c.parameters.size() >= was.size() &&
+           std::ranges::equal(was, std::span(c.parameters).first(was.size()), {}, &ParameterEstimate::value, &ParameterEstimate::value);
+  });
+  if (cause != causes.end()) cause->parameters = accepted.family.parameters(accepted.shape, accepted.amplitudes, cov);
+}
+
+/// Beside a walk, noise that remembers some readings tells the size of a slow wave badly: from differences of neighbours, in
+/// which it hardly shows. Least squares of the readings as they are tell it as well as the walk lets them.
+/// A shape in time without a name is a piece of the walk.
+void FitBesideWalk(DiagnosisRun& result) {
+  const LinearRun& run = result.run;
+  std::erase_if(result.accepted, [](const Accepted& accepted) {
+    return accepted.family.kind == Kind::kUnknown && accepted.family.goes_by_time;
+  });
+  const Eigen::MatrixXd free = run.nuisance.jacobian.toDense();
+  Eigen::MatrixXd all = free;
+  Eigen::VectorXd rows = run.residual;
+  for (const Accepted& accepted : result.accepted) {
+    if (IsLinear(accepted)) all = HStack(all, accepted.columns);
+    else rows -= accepted.columns * accepted.amplitudes;
+  }
+  if (all.cols() == free.cols()) return;
+  const Eigen::VectorXd sizes = SolveShortest(all, rows), left = rows - all * sizes;
+  const Eigen::MatrixXd inverse = GeneralInverseOf(all.transpose() * all) * left.squaredNorm() / static_cast<double>(run.Rows());
+  Eigen::Index at = free.cols();
+  for (Accepted& accepted : result.accepted) {
+    if (!IsLinear(accepted)) continue;
+    const Eigen::Index count = accepted.amplitudes.size();
+    const Eigen::VectorXd before = std::exchange(accepted.amplitudes, sizes.segment(at, count));
+    const double memory = std::max(1.0, MemoryAlong(accepted.columns * accepted.amplitudes, left));
+    TakeSizes(accepted, memory * inverse.block(at, at, count, count), before, result.diagnosis.causes);
+    at += count;
+  }
+}
+
 /// Those that are as sure as what is accepted: it, and what ties with it. Of several of one name the first that is not
 /// in `done`, which it joins.
 CauseGroup GroupOf(const Accepted& accepted, const std::vector<Cause>& causes, std::vector<bool>& done) {
@@ -149,8 +197,9 @@ double GiveToWander(DiagnosisRun& result, const Walk& walk, Eigen::VectorXd& wan
 void TellWander(DiagnosisRun& result) {
   const LinearRun& run = result.run;
   if (run.Channels() != 1 || run.Rows() < kFewest) return;
+  if (!IsWalk(WalkOf(result), run.sigma.minCoeff())) return;
+  FitBesideWalk(result);
   const Walk walk = WalkOf(result);
-  if (!IsWalk(walk, run.sigma.minCoeff())) return;
   Diagnosis& d = result.diagnosis;
   Eigen::VectorXd wander = walk.left;
   const double named = GiveToWander(result, walk, wander);
