@@ -74,6 +74,7 @@ TEST(EncoderRecordings, OneReadingFarOffTakesNothingFromTheOthers) {
 
 TEST(EncoderRecordings, ATableInterpolatedAcrossItsWrapIsNoSlip) {
   ExpectOrdersAsWithoutGlitches(WithGlitches({{297, 270.0}, {298, 180.0}, {299, 90.0}}, 3), {297, 298, 299});
+  ExpectOrdersAsWithoutGlitches(WithGlitches({{597, 90.0}, {598, 180.0}, {599, 270.0}}, 4), {597, 598, 599});
 }
 
 TEST(EncoderRecordings, WholeTurnsAreContinuedBehindAGlitch) {
@@ -98,8 +99,24 @@ TEST(EncoderRecordings, APartOfATurnShowsOneOrderHoweverHighItIs) {
     }));
     SCOPED_TRACE(answer.Words());
     EXPECT_EQ(answer.run.diagnosis.causes.size(), 1u);
-    EXPECT_NEAR(answer.Value("periodic", "order"), order, 0.1 * 360.0 / travel_deg) << "of what the travel resolves";
+    EXPECT_NEAR(answer.Value("periodic", "order"), order, 0.1 * 360.0 / travel_deg)
+        << "of what the travel resolves";
     EXPECT_NEAR(answer.Value("periodic", "amplitude"), 0.01, 0.0005);
+    EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
+  }
+}
+
+/// A wave and a fault whose signature begins with it: what is told has a size, and the file has it.
+TEST(EncoderRecordings, AnOrderFourBesideLargerOnesHasASize) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise_deg(0.0, 0.02);
+    const Answer answer = Ask(Listed(0.0, 360.0, 588, 1, [&](int, double angle_deg) {
+      return angle_deg + 2.0 * FirstTwoOrders_deg(angle_deg) + 0.07 * std::cos((4.0 * angle_deg + 130.0) * kDeg) +
+             noise_deg(random);
+    }));
+    SCOPED_TRACE(answer.Words());
+    EXPECT_NEAR(answer.Value("periodic", "amplitude"), 0.07, 0.006);
     EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
   }
 }

@@ -23,8 +23,8 @@ bool IsAccepted(const Cause& cause, const DiagnosisRun& run) {
   });
 }
 
-/// Causes of a verdict "named" are all at work. Of a tie or beside the unknown it is those that the search took in, and
-/// single disturbed readings, which it leaves out and which tie with nothing.
+/// Causes of a verdict "named" are all at work. Of a tie or beside the unknown it is those that the search took in,
+/// and single disturbed readings, which it leaves out and which tie with nothing.
 bool IsAtWork(const Cause& cause, const DiagnosisRun& run) {
   const bool is_disturbed = cause.effect == "outliers" && cause.probability > 0.5;
   return run.diagnosis.verdict == Verdict::kNamed || is_disturbed || IsAccepted(cause, run);
@@ -85,7 +85,8 @@ std::vector<EmpiricalSettings> TableOf(const Known& known, const std::string& ch
   std::vector<double>& values = ValuesOf(table, FormatOf(run.bench).signal);
   const bool is_angle = FormatOf(run.bench).signal == SignalKind::kAngle;
   for (const double value : known.value_SI) {
-    const double whole = is_angle && std::abs(value) > units::turn ? std::remainder(value, units::turn) : value;  // no device shows more
+    const double whole = is_angle && std::abs(value) > units::turn ? std::remainder(value, units::turn)
+                                                                   : value;  // no device shows more
     values.push_back(std::round(whole / kRounding_SI) * kRounding_SI);
   }
   return {table};

@@ -69,7 +69,9 @@ std::optional<PerTurn> PowerOfTwo(const std::vector<double>& reference, const st
     const double off = std::abs(following.gain) - 1.0;
     if (std::abs(off) > kSame || !(std::abs(following.correlation) > kClearly)) continue;
     const std::string scale =
-        std::abs(off) > kToBeSaid ? fmt::format("; {:+.2g} % that it is off are taken for an error of its scale", 100.0 * off) : "";
+        std::abs(off) > kToBeSaid
+            ? fmt::format("; {:+.2g} % that it is off are taken for an error of its scale", 100.0 * off)
+            : "";
     return PerTurn{std::ldexp(1.0, bits), "the power of two at which it follows" + scale};
   }
   return std::nullopt;
@@ -98,7 +100,9 @@ std::optional<PerTurn> ByGear(const std::vector<double>& reference, const std::v
     if (!best || gear.Unusual() < best->Unusual()) best = gear;
   }
   if (!best) return std::nullopt;
-  return PerTurn{best->Counts(), fmt::format("at which it follows: taken as a motor's behind a gear, {:g}:1 of {:g} counts", best->turns, best->per_motor_turn)};
+  return PerTurn{best->Counts(),
+                 fmt::format("at which it follows: taken as a motor's behind a gear, {:g}:1 of {:g} counts",
+                             best->turns, best->per_motor_turn)};
 }
 
 std::optional<PerTurn> FoundPerTurn(const Column& column, const std::vector<double>& other) {
@@ -190,12 +194,13 @@ bool TakeCounts(const std::string& target, const Column& column, const Track& tr
       stated ? PerTurn{*stated, "as the file states"} : FoundPerTurn(column, OtherAngle(target, track, map));
   if (!per_turn) return false;
   map.columns.push_back({target, fmt::format("[{}] * 360 / {:.17g}", column.name, per_turn->counts), "deg", ""});
-  remarks.push_back(fmt::format("{} is taken from \"{}\", {:.17g} counts per turn, {}", target, column.name, per_turn->counts, per_turn->why));
+  remarks.push_back(fmt::format("{} is taken from \"{}\", {:.17g} counts per turn, {}", target, column.name,
+                                per_turn->counts, per_turn->why));
   return true;
 }
 
-void TakeCountsBesideAngle(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, Map& map,
-                           std::vector<std::string>& remarks) {
+void TakeCountsBesideAngle(const std::vector<std::string>& compared, const std::vector<Recording>& recordings,
+                           Map& map, std::vector<std::string>& remarks) {
   for (const std::string& target : compared) {
     const auto mapped = std::ranges::find(map.columns, target, &MappedColumn::column);
     if (mapped == map.columns.end() || !mapped->where.empty()) continue;

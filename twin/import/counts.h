@@ -8,16 +8,16 @@
 
 namespace twinbench::imports {
 
-/// Takes a column of an encoder's counts for an angle, if it is one: how many make a turn is stated in its name, or above
-/// the rows ("counts per turn = 4096", "CPR: 4096", "4096 counts/rev"), or it is the power of two, or the usual counts of a
-/// motor behind a gear, at which the column follows a reference that the map has already.
+/// Takes a column of an encoder's counts for an angle, if it is one: how many make a turn is stated in its name, or
+/// above the rows ("counts per turn = 4096", "CPR: 4096", "4096 counts/rev"), or it is the power of two, or the
+/// usual counts of a motor behind a gear, at which the column follows a reference that the map has already.
 /// @return false if it is none, or nothing says how many.
 bool TakeCounts(const std::string& target, const Column& column, const Track& track, Map& map,
                 std::vector<std::string>& remarks);
 
 /// The same for a column called counts that was taken before it was known which angle it is compared with.
-void TakeCountsBesideAngle(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, Map& map,
-                           std::vector<std::string>& remarks);
+void TakeCountsBesideAngle(const std::vector<std::string>& compared, const std::vector<Recording>& recordings,
+                           Map& map, std::vector<std::string>& remarks);
 
 /// Reference and device in whole numbers from 0 up to more than 1000, neither with a unit, as servos on a bus have them: taken
 /// as counts of the power of four above them (1024, 4096, 16384, 65536), of which nothing but the sizes of angles depends. So

@@ -78,18 +78,21 @@ std::string LagText(const std::string& name, const std::string& reference, const
 double GearOf(double ratio) {
   constexpr double kExact = 5e-3, kLargest = 400.0;
   const double whole = std::round(ratio);
-  const bool is_gear = whole >= 2.0 && whole <= kLargest && std::abs(ratio / whole - 1.0) < kExact && MeaningOfGain(ratio).empty();
+  const bool is_gear =
+      whole >= 2.0 && whole <= kLargest && std::abs(ratio / whole - 1.0) < kExact && MeaningOfGain(ratio).empty();
   return is_gear ? whole : 0.0;
 }
 
 Alignment AgainstReference(const std::string& name, const std::string& by, const Map& map) {
-  return {1.0, -1.0, fmt::format("{} counts against {}: taken with the other sign, as --column '{}=-{}' has it", name, by, KeyOf(map, name),
-                                 ExpressionOf(map, name))};
+  return {1.0, -1.0,
+          fmt::format("{} counts against {}: taken with the other sign, as --column '{}=-{}' has it", name, by,
+                      KeyOf(map, name), ExpressionOf(map, name))};
 }
 
 }  // namespace
 
-Alignment AlignmentOf(const Session& session, const std::vector<double>& reference, const BenchFormat& bench, const Map& map) {
+Alignment AlignmentOf(const Session& session, const std::vector<double>& reference, const BenchFormat& bench,
+                      const Map& map) {
   const std::string &name = bench.compared->shown, &by = bench.compared->reference;
   const auto [low, high] = std::ranges::minmax(session.value.at(name));
   if (low == high) return {};
@@ -99,11 +102,17 @@ Alignment AlignmentOf(const Session& session, const std::vector<double>& referen
   const double size = std::abs(now.gain), sense = now.gain < 0.0 ? -1.0 : 1.0;
   const std::string against = sense < 0.0 ? ", in the other sense" : "";
   if (const double gear = GearOf(size); gear > 0.0)
-    return {1.0, sense / gear, fmt::format("{0} goes {1:g} times as far as {2}{3}: taken as a motor in front of a gear {1:g}:1 and divided by it",
-                                           name, gear, by, against)};
+    return {
+        1.0, sense / gear,
+        fmt::format(
+            "{0} goes {1:g} times as far as {2}{3}: taken as a motor in front of a gear {1:g}:1 and divided by it",
+            name, gear, by, against)};
   if (const double gear = GearOf(1.0 / size); gear > 0.0)
-    return {1.0 / gear, sense, fmt::format("{0} goes {1:g} times as far as {2}{3}: taken as a motor in front of a gear {1:g}:1 and divided by it",
-                                           by, gear, name, against)};
+    return {
+        1.0 / gear, sense,
+        fmt::format(
+            "{0} goes {1:g} times as far as {2}{3}: taken as a motor in front of a gear {1:g}:1 and divided by it",
+            by, gear, name, against)};
   return {};
 }
 

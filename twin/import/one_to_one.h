@@ -17,9 +17,10 @@ struct Alignment {
   bool IsNeeded() const { return !said.empty(); }
 };
 
-/// A device that follows on a line, but counts against its reference, or a whole number of times as far: a motor in front
-/// of a gear. A ratio that is that of two units is no gear.
-Alignment AlignmentOf(const Session& session, const std::vector<double>& reference, const BenchFormat& bench, const Map& map);
+/// A device that follows on a line, but counts against its reference, or a whole number of times as far: a motor in
+/// front of a gear. A ratio that is that of two units is no gear.
+Alignment AlignmentOf(const Session& session, const std::vector<double>& reference, const BenchFormat& bench,
+                      const Map& map);
 
 /// Refuses a device that does not follow its reference, at once or later, or that is in another unit or sense, with the likely
 /// reason and the line to write.

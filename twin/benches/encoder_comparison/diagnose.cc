@@ -43,8 +43,9 @@ std::vector<Reading> LookedAt(const std::vector<Reading>& recorded) {
 
 void TellPart(std::size_t looked_at, std::size_t recorded, diagnose::Diagnosis& diagnosis) {
   if (looked_at == recorded) return;
-  diagnosis.notes.push_back(fmt::format("{} of {} readings were looked at, in groups of neighbours: where something began is known to a group",
-                                        looked_at, recorded));
+  diagnosis.notes.push_back(fmt::format(
+      "{} of {} readings were looked at, in groups of neighbours: where something began is known to a group",
+      looked_at, recorded));
 }
 
 /// Of causes that were taken out before the search, which the conclusion did not see.

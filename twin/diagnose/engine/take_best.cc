@@ -176,9 +176,12 @@ Term TakeBest(const SearchProblem& problem, const Deflation& others, Evidence& e
   }
   if (of_unknown_size.empty()) return term;
   // Beside another name it is a rival: that its size and its shape stand for each other does not tell the two
-  // apart.
+  // apart. More than a rival it is not: the answer would have no size.
   const bool is_named = problem.scanner.Families()[static_cast<std::size_t>(term.family)].kind == Kind::kNamed;
-  for (const auto& [family, log_bayes] : of_unknown_size) evidence.log_bayes(family, 0) = log_bayes;
+  const double of_taken = evidence.log_bayes(term.family, 0) + problem.log_priors[term.family];
+  for (const auto& [family, log_bayes] : of_unknown_size)
+    evidence.log_bayes(family, 0) =
+        is_named ? std::min(log_bayes, of_taken - problem.log_priors[family]) : log_bayes;
   (is_named ? term.log_posterior : term.log_with_unsized) = LogPosterior(problem, evidence);
   return term;
 }

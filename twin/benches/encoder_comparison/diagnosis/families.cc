@@ -76,7 +76,8 @@ int LeastOrder(const SignalContext& context) {
 }
 
 int LargestOrder(const SignalContext& context) {
-  // Teeth of a worm wheel, poles of a motor; of a part of a turn as many that it tells apart, which reach as much farther.
+  // Teeth of a worm wheel, poles of a motor; of a part of a turn as many that it tells apart, which reach as much
+  // farther.
   constexpr double kMost = 720.0, kLeastPart = 0.05;
   const double range_rad = context.reference_rad.maxCoeff() - context.reference_rad.minCoeff();
   const double part = std::clamp(range_rad / units::turn, kLeastPart, 1.0);

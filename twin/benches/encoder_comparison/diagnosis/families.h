@@ -30,8 +30,8 @@ double FinestSpacing_rad(const SignalContext& context);
 /// The least whole order of which the run shows enough of a period to know one: 1 of a whole turn.
 int LeastOrder(const SignalContext& context);
 
-/// The largest whole order that readings of this spacing can tell from lower ones; at most 720 of a turn, of a part of one as
-/// much more.
+/// The largest whole order that readings of this spacing can tell from lower ones; at most 720 of a turn, of a part
+/// of one as much more.
 int LargestOrder(const SignalContext& context);
 
 }  // namespace twinbench::diagnose::encoder

@@ -12,9 +12,9 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-constexpr int kBeside = 7;         // readings on either side
-constexpr int kLongest = 5;        // glitch
-constexpr double kFar = 12.0;      // in medians of absolute distances: eight deviations of normal noise
+constexpr int kBeside = 7;     // readings on either side
+constexpr int kLongest = 5;    // glitch
+constexpr double kFar = 12.0;  // in medians of absolute distances: eight deviations of normal noise
 constexpr double kHalfFar = 6.0;
 constexpr double kMostShare = 0.05;
 
@@ -22,7 +22,8 @@ constexpr double kMostShare = 0.05;
 std::vector<double> Around(const LinearRun& run, int i, int first, int last) {
   std::vector<double> values;
   for (int k = std::max(0, first); k <= std::min(run.schedule.Readings() - 1, last); ++k) {
-    if (k != i && run.schedule.setup[static_cast<std::size_t>(k)] == run.schedule.setup[static_cast<std::size_t>(i)])
+    if (k != i &&
+        run.schedule.setup[static_cast<std::size_t>(k)] == run.schedule.setup[static_cast<std::size_t>(i)])
       values.push_back(run.residual[k]);
   }
   return values;
@@ -52,13 +53,18 @@ bool GoesOnAsUsual(const Schedule& s, int begin, int end, double usual_step_rad)
   return true;
 }
 
-/// Those before rows [begin, end) and those behind agree, as they do not beside a step.
-bool Returns(const LinearRun& run, int begin, int end) {
+/// Those before rows [begin, end) and those behind agree, as they do not beside a step. Where a recording ends (or
+/// begins) with very few that are very far off there is one side only.
+bool Returns(const LinearRun& run, const std::vector<double>& farness, int begin, int end) {
   constexpr std::size_t kFewest = 3;
-  constexpr double kAgree = 0.5;
+  constexpr double kAgree = 0.5, kVeryFar = 5.0 * kFar;
   const std::vector<double> before = Around(run, begin, begin - kBeside, begin - 1),
                             behind = Around(run, begin, end, end + kBeside - 1);
-  if (before.size() < kFewest || behind.size() < kFewest) return false;
+  const auto is_very_far = [&](int i) { return farness[static_cast<std::size_t>(i)] > kVeryFar; };
+  bool are_very_far = end - begin <= static_cast<int>(kFewest);
+  for (int i = begin; i < end; ++i) are_very_far = are_very_far && is_very_far(i);
+  if (before.empty() || behind.empty()) return are_very_far;
+  if (std::min(before.size(), behind.size()) < kFewest && !are_very_far) return false;
   const double a = Median(before), b = Median(behind);
   for (int i = begin; i < end; ++i) {
     if (std::abs(a - b) > kAgree * std::abs(run.residual[i] - 0.5 * (a + b))) return false;
@@ -88,15 +94,20 @@ std::string Places(const Glitches& glitches, const std::vector<int>& reading) {
   for (std::size_t k = 0; k < glitches.rows.size(); ++told) {
     std::size_t end = k + 1;
     while (end < glitches.rows.size() && glitches.rows[end] == glitches.rows[end - 1] + 1) ++end;
-    const int first = reading[static_cast<std::size_t>(glitches.rows[k])], last = reading[static_cast<std::size_t>(glitches.rows[end - 1])];
-    if (told < kMost) text += fmt::format("{}{}{}", text.empty() ? "" : ", ", first, last > first ? fmt::format(" to {}", last) : "");
+    const int first = reading[static_cast<std::size_t>(glitches.rows[k])],
+              last = reading[static_cast<std::size_t>(glitches.rows[end - 1])];
+    if (told < kMost)
+      text +=
+          fmt::format("{}{}{}", text.empty() ? "" : ", ", first, last > first ? fmt::format(" to {}", last) : "");
     k = end;
   }
   return told > kMost ? text + ", ..." : text;
 }
 
 double SumOfSquares(const Cause& outliers, double readings) {
-  const auto value = [&](const char* name) { return std::ranges::find(outliers.parameters, name, &ParameterEstimate::name)->value; };
+  const auto value = [&](const char* name) {
+    return std::ranges::find(outliers.parameters, name, &ParameterEstimate::name)->value;
+  };
   return value("fraction") * readings * std::pow(value("size"), 2);
 }
 
@@ -113,7 +124,7 @@ Glitches FindGlitches(const LinearRun& run) {
     int end = i;
     while (end < s.Readings() && farness[static_cast<std::size_t>(end)] > kFar) ++end;
     if (end == i) continue;
-    if (end - i <= kLongest && GoesOnAsUsual(s, i, end, usual_step_rad) && Returns(run, i, end)) {
+    if (end - i <= kLongest && GoesOnAsUsual(s, i, end, usual_step_rad) && Returns(run, farness, i, end)) {
       begins.push_back(i);
       for (int k = i; k < end; ++k) found.rows.push_back(k);
     }
@@ -132,7 +143,8 @@ Glitches FindGlitches(const LinearRun& run) {
 }
 
 void Bridge(const Glitches& glitches, Eigen::VectorXd& rows) {
-  for (Eigen::Index k = 0; k < glitches.size_rad.size(); ++k) rows[glitches.rows[static_cast<std::size_t>(k)]] -= glitches.size_rad[k];
+  for (Eigen::Index k = 0; k < glitches.size_rad.size(); ++k)
+    rows[glitches.rows[static_cast<std::size_t>(k)]] -= glitches.size_rad[k];
 }
 
 void TellGlitches(const Glitches& glitches, DiagnosisRun& result) {
@@ -146,7 +158,8 @@ void TellGlitches(const Glitches& glitches, DiagnosisRun& result) {
   const auto other = std::ranges::find(d.causes, "outliers", &Cause::effect);
   double others = 0.0;
   if (other != d.causes.end()) {
-    others = std::round(readings * std::ranges::find(other->parameters, "fraction", &ParameterEstimate::name)->value);
+    others =
+        std::round(readings * std::ranges::find(other->parameters, "fraction", &ParameterEstimate::name)->value);
     squares += SumOfSquares(*other, readings);
     d.causes.erase(other);
   }
@@ -159,9 +172,10 @@ void TellGlitches(const Glitches& glitches, DiagnosisRun& result) {
   d.causes.push_back(std::move(cause));
   if (d.verdict == Verdict::kNone) d.verdict = Verdict::kNamed;
   d.alarm_p = std::min(d.alarm_p, std::exp(-far.log_bayes));
-  d.notes.push_back(fmt::format("readings far from all around them, by up to {:.3g} {}: {}; everything else was found without them",
-                                glitches.size_rad.cwiseAbs().maxCoeff() / result.run.to_SI, result.run.unit,
-                                Places(glitches, result.run.schedule.reading)));
+  d.notes.push_back(fmt::format(
+      "readings far from all around them, by up to {:.3g} {}: {}; everything else was found without them",
+      glitches.size_rad.cwiseAbs().maxCoeff() / result.run.to_SI, result.run.unit,
+      Places(glitches, result.run.schedule.reading)));
 }
 
 }  // namespace twinbench::diagnose::encoder

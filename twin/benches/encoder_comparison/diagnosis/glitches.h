@@ -9,13 +9,14 @@
 namespace twinbench::diagnose::encoder {
 
 struct Glitches {
-  std::vector<int> rows;    // in their order
+  std::vector<int> rows;     // in their order
   Eigen::VectorXd size_rad;  // of each: how far it is from the middle of its neighbours
 };
 
-/// One reading, or a few in a row, far outside of what the readings before and behind them scatter by, while these agree with
-/// each other and the reference goes on as usual. Finds none where many readings lie half as far (then the noise has heavy
-/// tails), where stops are read again and again (what settles looks so), or where the far ones come back at one angle.
+/// One reading, or a few in a row, far outside of what the readings before and behind them scatter by, while these
+/// agree with each other and the reference goes on as usual. Finds none where many readings lie half as far (then
+/// the noise has heavy tails), where stops are read again and again (what settles looks so), or where the far ones
+/// come back at one angle.
 /// @param run  Its residual is looked at.
 Glitches FindGlitches(const LinearRun& run);
 

@@ -58,8 +58,8 @@ LargeCauses OrWithoutLoops(LargeCauses found, const std::vector<Reading>& readin
   return plain && IsBetterNamed(*plain, found) ? *std::move(plain) : std::move(found);
 }
 
-/// A scale that errs, where a straight line leaves little of what is seen at some targets: these have then no more errors of
-/// their own than lie beside it. How well it is known is a matter of the targets, not of the readings.
+/// A scale that errs, where a straight line leaves little of what is seen at some targets: these have then no more
+/// errors of their own than lie beside it. How well it is known is a matter of the targets, not of the readings.
 std::optional<LargeCause> LineThroughTargets(const TwinFit& fit, Eigen::Index targets) {
   constexpr double kLittle = 0.1;
   const LinearRun& run = fit.Run().run;
@@ -78,7 +78,8 @@ std::optional<LargeCause> LineThroughTargets(const TwinFit& fit, Eigen::Index ta
   return IsHeld(scale.effect) ? std::optional(std::move(scale)) : std::nullopt;
 }
 
-/// With the errors of the targets free beside a scale that is held: what it shows is told of the readings as they are.
+/// With the errors of the targets free beside a scale that is held: what it shows is told of the readings as they
+/// are.
 LargeCauses BesideLine(LargeCause line, LargeCauses plain, LargeCauses found) {
   if (!found.last) found.last = std::move(found.first);
   found.first = std::move(plain.first);
@@ -90,8 +91,8 @@ LargeCauses BesideLine(LargeCause line, LargeCauses plain, LargeCauses found) {
 
 LargeCauses FindLargeCauses(const std::vector<Reading>& readings, const Scenario& scenario,
                             const DiagnoseOptions& options, const model::FollowMaker& follow) {
-  LargeCauses plain =
-      OrWithoutLoops(*LargeSearch(readings, scenario, options, follow, {}).Go(), readings, scenario, options, follow);
+  LargeCauses plain = OrWithoutLoops(*LargeSearch(readings, scenario, options, follow, {}).Go(), readings, scenario,
+                                     options, follow);
   const Eigen::MatrixXd targets = Targets(plain.first->encoder.context);
   if (targets.size() == 0 || !LeaveErrorsOfTargets(plain, targets)) return plain;
   const TwinFit fit(plain, scenario, follow);

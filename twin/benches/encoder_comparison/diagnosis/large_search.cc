@@ -107,7 +107,8 @@ void LargeSearch::Review() {
   constexpr int kMostRounds = 3;
   constexpr double kGuess = 2.0;
   const auto is_guess = [](const LargeCause& cause) { return Deviations(cause.effect) < kGuess; };
-  for (int round = 0; round < kMostRounds && (round == 0 || std::ranges::any_of(large_.causes, is_guess)); ++round) {
+  for (int round = 0; round < kMostRounds && (round == 0 || std::ranges::any_of(large_.causes, is_guess));
+       ++round) {
     DropNeedless();
     EndTies();
     MoveBesideTheRest();

@@ -14,8 +14,8 @@ namespace {
 
 using model::Wave;
 
-/// Whole orders, closer than the part of a turn that was gone through can tell them apart: what lies between two would be
-/// told as both.
+/// Whole orders, closer than the part of a turn that was gone through can tell them apart: what lies between two
+/// would be told as both.
 std::vector<double> WholeOrders(const SignalContext& c, int first, int last) {
   const int apart = std::max(1, LeastOrder(c) / 12);
   std::vector<double> orders;

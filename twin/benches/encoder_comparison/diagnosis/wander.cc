@@ -119,21 +119,26 @@ double SquaresAboutMean(const Eigen::VectorXd& rows) {
 
 /// Whose size the search has fitted: not those of the twin.
 bool IsLinear(const Accepted& accepted) {
-  return accepted.family.kind == Kind::kNamed && accepted.family.parameters && accepted.columns.cols() == accepted.amplitudes.size();
+  return accepted.family.kind == Kind::kNamed && accepted.family.parameters &&
+         accepted.columns.cols() == accepted.amplitudes.size();
 }
 
-void TakeSizes(const Accepted& accepted, const Eigen::MatrixXd& cov, const Eigen::VectorXd& before, std::vector<Cause>& causes) {
+void TakeSizes(const Accepted& accepted, const Eigen::MatrixXd& cov, const Eigen::VectorXd& before,
+               std::vector<Cause>& causes) {
   const std::vector<ParameterEstimate> was = accepted.family.parameters(accepted.shape, before, cov);
   const auto cause = std::ranges::find_if(causes, [&](const Cause& c) {
-    return c.effect == accepted.family.effect && c.where == accepted.family.where && c.parameters.size() >= was.size() &&
-           std::ranges::equal(was, std::span(c.parameters).first(was.size()), {}, &ParameterEstimate::value, &ParameterEstimate::value);
+    return c.effect == accepted.family.effect && c.where == accepted.family.where &&
+           c.parameters.size() >= was.size() &&
+           std::ranges::equal(was, std::span(c.parameters).first(was.size()), {}, &ParameterEstimate::value,
+                              &ParameterEstimate::value);
   });
-  if (cause != causes.end()) cause->parameters = accepted.family.parameters(accepted.shape, accepted.amplitudes, cov);
+  if (cause != causes.end())
+    cause->parameters = accepted.family.parameters(accepted.shape, accepted.amplitudes, cov);
 }
 
-/// Beside a walk, noise that remembers some readings tells the size of a slow wave badly: from differences of neighbours, in
-/// which it hardly shows. Least squares of the readings as they are tell it as well as the walk lets them.
-/// A shape in time without a name is a piece of the walk.
+/// Beside a walk, noise that remembers some readings tells the size of a slow wave badly: from differences of
+/// neighbours, in which it hardly shows. Least squares of the readings as they are tell it as well as the walk lets
+/// them. A shape in time without a name is a piece of the walk.
 void FitBesideWalk(DiagnosisRun& result) {
   const LinearRun& run = result.run;
   std::erase_if(result.accepted, [](const Accepted& accepted) {
@@ -143,12 +148,15 @@ void FitBesideWalk(DiagnosisRun& result) {
   Eigen::MatrixXd all = free;
   Eigen::VectorXd rows = run.residual;
   for (const Accepted& accepted : result.accepted) {
-    if (IsLinear(accepted)) all = HStack(all, accepted.columns);
-    else rows -= accepted.columns * accepted.amplitudes;
+    if (IsLinear(accepted))
+      all = HStack(all, accepted.columns);
+    else
+      rows -= accepted.columns * accepted.amplitudes;
   }
   if (all.cols() == free.cols()) return;
   const Eigen::VectorXd sizes = SolveShortest(all, rows), left = rows - all * sizes;
-  const Eigen::MatrixXd inverse = GeneralInverseOf(all.transpose() * all) * left.squaredNorm() / static_cast<double>(run.Rows());
+  const Eigen::MatrixXd inverse =
+      GeneralInverseOf(all.transpose() * all) * left.squaredNorm() / static_cast<double>(run.Rows());
   Eigen::Index at = free.cols();
   for (Accepted& accepted : result.accepted) {
     if (!IsLinear(accepted)) continue;

@@ -19,8 +19,9 @@ double Unwrap(double angle_rad, double last_rad) {
   return angle_rad - turn_rad * std::round((angle_rad - last_rad) / turn_rad);
 }
 
-/// Takes whole turns out of one difference after the other. A few readings that are far off (a glitch, a table that was
-/// interpolated across the wrap) lead to no other turn: where those behind them are back, they are where they were.
+/// Takes whole turns out of one difference after the other. A few readings that are far off (a glitch, a table that
+/// was interpolated across the wrap) lead to no other turn: where those behind them are back, they are where they
+/// were.
 class Continued {
  public:
   double Next(double difference_rad) {

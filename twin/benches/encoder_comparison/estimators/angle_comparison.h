@@ -23,7 +23,8 @@ struct AngleComparison {
 /// Takes the difference of both devices, with the turns that one of them may not count taken out: it stays
 /// continuous from reading to reading within a set-up, and the first lies within half a turn of zero.
 ///
-/// Five readings at most that are far off leave no trace in those behind them. A device that loses half a turn or more between two readings is not told from one that wraps.
+/// Five readings at most that are far off leave no trace in those behind them. A device that loses half a turn or
+/// more between two readings is not told from one that wraps.
 AngleComparison CompareAngles(const std::vector<Reading>& readings);
 
 }  // namespace twinbench::measure
