@@ -29,8 +29,20 @@ std::vector<double> Around(const LinearRun& run, int i, int first, int last) {
   return values;
 }
 
-/// How far each reading is from the middle of those around it, in what these scatter by or usually do.
+/// What nearly all readings lie within: a signal that is cut off or a code that is missing leaves it by no more
+/// than that.
+double UsualRange(const LinearRun& run) {
+  constexpr double kOutside = 0.05;
+  std::vector<double> values(run.residual.begin(), run.residual.end());
+  std::ranges::sort(values);
+  const auto outside = static_cast<std::size_t>(kOutside * static_cast<double>(values.size()));
+  return values[values.size() - 1 - outside] - values[outside];
+}
+
+/// How far each reading is from the middle of those around it, in what these scatter by or usually do; 0 of one
+/// that lies no farther than all of them do.
 std::vector<double> Farness(const LinearRun& run) {
+  const double range = UsualRange(run);
   std::vector<double> away, scatter;
   for (int i = 0; i < run.schedule.Readings(); ++i) {
     std::vector<double> around = Around(run, i, i - kBeside, i + kBeside);
@@ -40,7 +52,10 @@ std::vector<double> Farness(const LinearRun& run) {
     scatter.push_back(around.empty() ? 0.0 : Median(std::move(around)));
   }
   const double usual = Median(scatter);
-  for (std::size_t i = 0; i < away.size(); ++i) away[i] = usual > 0.0 ? away[i] / std::max(usual, scatter[i]) : 0.0;
+  for (std::size_t i = 0; i < away.size(); ++i) {
+    const bool is_far = usual > 0.0 && away[i] > range;
+    away[i] = is_far ? away[i] / std::max(usual, scatter[i]) : 0.0;
+  }
   return away;
 }
 
