@@ -31,12 +31,6 @@ bool SameBits(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
-double MeanOfPower(const std::vector<float>& values, int power) {
-  double sum = 0.0;
-  for (const float v : values) sum += std::pow(static_cast<double>(v), power);
-  return sum / static_cast<double>(values.size());
-}
-
 double NormalDistribution(double x) {
   return 0.5 * std::erfc(-x / std::sqrt(2.0));
 }
@@ -54,12 +48,6 @@ double KolmogorovStatistic(std::vector<double> values, double (*distribution)(do
 }
 
 constexpr double kRare = 1.95;  // exceeded with probability 1e-3
-
-double Correlation(const std::vector<float>& a, const std::vector<float>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += static_cast<double>(a[i]) * b[i];
-  return sum / static_cast<double>(a.size());
-}
 
 TEST(Philox, GivesThePublishedAnswers) {
   // The three vectors that Salmon et al. publish with their library for philox4x32, 10 rounds.
@@ -142,27 +130,6 @@ TEST(Stream, UniformsFillTheUnitIntervalEvenlyAndNormalsInDoublePassKolmogorov) 
   std::vector<double> values(100000);
   for (double& v : values) v = normal.Normal();
   EXPECT_LT(KolmogorovStatistic(values, NormalDistribution), kRare);
-}
-
-TEST(FillNormals, PassesKolmogorovAndHasTheMomentsOfANormal) {
-  constexpr int kN = 1000000;
-  const std::vector<float> values = Normals(Stream(6, "moments"), kN);
-  EXPECT_LT(KolmogorovStatistic({values.begin(), values.end()}, NormalDistribution), kRare);
-  // Mean of x^k over many, and the variance of one: (E x^2k - (E x^k)^2).
-  const std::tuple<int, double, double> moments[] = {{1, 0, 1}, {2, 1, 2}, {3, 0, 15}, {4, 3, 96}, {6, 15, 10170}};
-  for (const auto& [power, mean, variance] : moments)
-    EXPECT_NEAR(MeanOfPower(values, power), mean, 4.0 * std::sqrt(variance / kN)) << power;
-}
-
-TEST(FillNormals, GivesIndependentNeighboursAndStreams) {
-  constexpr std::size_t kN = 1000000;
-  const std::vector<float> a = Normals(Stream(9, "psd_a.noise"), kN), b = Normals(Stream(9, "psd_b.noise"), kN);
-  const std::vector<float> c = Normals(Stream(10, "psd_a.noise"), kN);
-  const double bound = 4.0 / std::sqrt(static_cast<double>(kN));  // a correlation's sd is 1 / sqrt(n)
-  EXPECT_NEAR(Correlation(a, b), 0.0, bound);
-  EXPECT_NEAR(Correlation(a, c), 0.0, bound);
-  for (const int lag : {1, 2, 3, 4, 16, 64})
-    EXPECT_NEAR(Correlation({a.begin(), a.end() - lag}, {a.begin() + lag, a.end()}), 0.0, bound) << "lag " << lag;
 }
 
 TEST(FillNormals, EqualsItselfCutIntoBlocks) {

@@ -110,22 +110,6 @@ TEST(AdaptiveStack, GivesTheSameBitsHoweverOftenItIsLookedAt) {
   }
 }
 
-TEST(RestDecay, IsTheMotionItStandsFor) {
-  const StackParameters p;
-  const StackPropagator propagator(p);
-  const RestDecay decay(p, propagator);
-  RestDecay::Distance distance = RestDecay::Distance::Zero();
-  distance[SpinIndex(0)] = 1e-6;
-  distance[0] = 1e-7;
-  RestDecay::Distance by_steps = distance;
-  for (int k = 0; k < 137; ++k) by_steps = decay.After(by_steps, 1);
-  EXPECT_LT((decay.After(distance, 137) - by_steps).norm(), 1e-12 * distance.norm());
-  const std::int64_t gone = decay.Gone(distance);
-  EXPECT_GT(gone, 256);  // 0.13 s: e^-10 of 1e-6 are left
-  EXPECT_LT(gone, 4096);
-  EXPECT_EQ(decay.After(distance, std::int64_t{1} << 40), RestDecay::Distance(RestDecay::Distance::Zero()));
-}
-
 // Added up column by column, on every processor as Eigen does it here.
 TEST(StackPropagator, StepsByTheBitsOfItsMatrices) {
   const StackPropagator propagator(CrookedStack());

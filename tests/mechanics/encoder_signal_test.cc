@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
 #include <stdexcept>
 
 #include "tests/mechanics/test_units.h"
@@ -13,31 +12,6 @@ namespace {
 
 SignalState Faults() {
   return {.offset_sin = 0.1, .offset_cos = -0.15, .ratio = 0.2, .quadrature_rad = 0.3};
-}
-
-/// Amplitude of an order of the signals' period.
-double Line(const SignalState& state, int order) {
-  constexpr int kPhases = 256;
-  std::complex<double> sum = 0.0;
-  for (int i = 0; i < kPhases; ++i) {
-    const double p = 2.0 * kPi * (i + 0.3) / kPhases;
-    sum += SignalError_rad(state, p) * std::polar(2.0 / kPhases, -order * p);
-  }
-  return std::abs(sum);
-}
-
-TEST(EncoderSignal, OffsetsErrOncePerLineClippingFourTimesAndTheOthersTwice) {
-  SignalState offset, ratio, quadrature, clipped;
-  offset.offset_sin = ratio.ratio = quadrature.quadrature_rad = 1e-3;
-  // Heydemann, first order: offset, ratio / 2 and quadrature / 2; the square of a thousandth is left out.
-  EXPECT_NEAR(Line(offset, 1), 1e-3, 2e-6);
-  EXPECT_NEAR(Line(ratio, 2), 0.5e-3, 2e-6);
-  EXPECT_NEAR(Line(quadrature, 2), 0.5e-3, 2e-6);
-  EXPECT_LT(Line(offset, 2), 2e-6);
-  EXPECT_LT(Line(ratio, 1), 1e-12);
-  clipped.clip_level = 0.9;
-  EXPECT_GT(Line(clipped, 4), 0.01);
-  for (const int order : {1, 2, 3}) EXPECT_LT(Line(clipped, order), 1e-3) << order;
 }
 
 TEST(EncoderSignal, FindsThePhaseThatShowsAnAngle) {

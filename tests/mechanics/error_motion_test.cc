@@ -17,17 +17,6 @@ std::function<double()> Normals(unsigned seed) {
   };
 }
 
-TEST(RotorToBase, TurnsTheCrossAxisPairsAndLeavesTheAxis) {
-  const PoseError base = RotorToBase({1, 0, 3, 0, 5, 6}, 90.0 * kDegree);
-  // cos(pi/2) is 6e-17
-  EXPECT_NEAR(base.ex_rad, 0.0, 1e-15);
-  EXPECT_NEAR(base.ey_rad, 1.0, 1e-15);
-  EXPECT_EQ(base.ez_rad, 3.0);
-  EXPECT_NEAR(base.dx_m, -5.0, 1e-15);
-  EXPECT_NEAR(base.dy_m, 0.0, 1e-15);
-  EXPECT_EQ(base.dz_m, 6.0);
-}
-
 TEST(ErrorMotion, SumsHarmonicsOfAnyOrderAndUnwrappedAngle) {
   const std::vector<Harmonic> harmonics = {{0, 1, 2e-5, 0.3},  {0, 2, 1e-5, -1.0},   {2, 12, 3e-6, 2.0},
                                            {2, 13, 1e-6, 0.1}, {4, 7.25, 2e-6, 0.5}, {5, 0, 4e-6, 0.7},

@@ -93,25 +93,6 @@ void GoTo(FeedDrive& drive, double time_s) {
   while (drive.time_s() < time_s) drive.Step(time_s);
 }
 
-/// Radius of the path where the command is at an angle.
-double RadiusAt(FeedDrive& x, FeedDrive& y, double angle_rad) {
-  for (FeedDrive* drive : {&x, &y}) GoTo(*drive, (angle_rad + 0.25 * kPi) / drive->motion().rate_rad_s());
-  return std::hypot(x.State().slide_m, y.State().slide_m);
-}
-
-TEST(FeedDrive, UnequalGainsMakeAnEllipseAt45Degrees) {
-  FeedDriveParameters of_x = FreeDrive(), of_y = FreeDrive();
-  of_x.feed_forward = of_y.feed_forward = 0.0;
-  of_y.position_gain_1_s = 51.0;
-  FeedDrive x(Fidelity::kBullet, of_x, CircleAxis::kX), y(Fidelity::kBullet, of_y, CircleAxis::kY);
-  x.Begin(CircleAt(kFast_m_s));
-  y.Begin(CircleAt(kFast_m_s));
-  const double at_45_m = RadiusAt(x, y, 0.25 * kPi), at_135_m = RadiusAt(x, y, 0.75 * kPi);
-  // (R/2) sin 2c times the difference of the phases: half axes differ by speed x difference of the lags, 6.5 um.
-  // The ellipse is turned back by the lag, 0.003 rad, whose square is lost.
-  EXPECT_NEAR(at_45_m - at_135_m, kFast_m_s * (of_x.Lag_s() - of_y.Lag_s()), 1e-4 * 6.5 * kUm);
-}
-
 TEST(FeedDrive, ReversalOfFrictionMakesTheSpikeOfTheClosedForm) {
   FeedDriveParameters p = FreeDrive();
   p.axial_stiffness_N_m = 5e10;

@@ -54,15 +54,6 @@ std::complex<double> Coefficient(int order, const RingEncoder& encoder) {
   return Coefficient(order, [&](double th) { return Error_rad(encoder, th); });
 }
 
-TEST(RingEncoder, WithoutErrorsShowsTheShaftFromTheMarkOn) {
-  Ring ring = GoodRing();
-  ring.mounting_rad = 0.3;
-  const RingEncoder encoder(ring, {1.1, 0.02, 0.0});
-  EXPECT_DOUBLE_EQ(encoder.MarkAtShaft_rad(), 0.8);
-  for (const double th : {-20.0, -1.0, 0.0, 0.8, 3.9, 50.0})
-    EXPECT_NEAR(encoder.Scale_rad(th), th - 0.8, kRounding_rad) << th;
-}
-
 TEST(RingEncoder, EccentricityFollowsTheSineTheorem) {
   Ring ring = GoodRing();
   const double a = 0.08, phi = 0.9;  // 4 mm: an exact formula needs no small error
@@ -70,17 +61,6 @@ TEST(RingEncoder, EccentricityFollowsTheSineTheorem) {
   const RingEncoder encoder(ring, {0.5, 0.0, 0.0});
   for (double th = 0.0; th < 13.0; th += 0.37)
     EXPECT_NEAR(Error_rad(encoder, th), std::asin(a * std::sin(th + phi - 0.5)), kRounding_rad) << th;
-}
-
-TEST(RingEncoder, TwoHeadsFaceToFaceCancelOddOrders) {
-  const Ring ring = BadRing();
-  const RingEncoder near(ring, {0.2, 0.0, 0.0}), far(ring, {0.2 + kPi, 0.0, 0.0});
-  const auto mean = [&](double th) { return 0.5 * (Error_rad(near, th) + Error_rad(far, th)); };
-  // Errors of 3e-3 act on each other: their products are of even order, those of three 1e-8.
-  for (const int order : {1, 3, 5, 7}) EXPECT_LT(std::abs(Coefficient(order, mean)), 3e-7) << order;
-  EXPECT_GT(std::abs(Coefficient(1, near)), 1e-3);
-  // Order 2 stays: the ellipse's lines, half of 90 um / 50 mm, and tilts and products of 1e-5
-  EXPECT_NEAR(std::abs(Coefficient(2, mean)), 0.5 * 90e-6 / kRadius_m, 2e-5);
 }
 
 TEST(RingEncoder, ATiltMovesTheRingUnderAHeadThatIsHigher) {
@@ -148,15 +128,6 @@ TEST(RingEncoder, GraduationIsAnErrorInTheScalesOwnAngle) {
   const RingEncoder encoder(ring, {2.0, 0.0, 0.0});
   for (double th = 0.0; th < 6.0; th += 0.5)
     EXPECT_NEAR(Error_rad(encoder, th), 5.0 * kArcsec * std::cos(3.0 * (th - 1.1) + 0.4), kRounding_rad);
-}
-
-TEST(RingEncoder, HeadThatGoesRoundShiftsTheErrorByItsAngle) {
-  const Ring ring = BadRing();
-  for (const double by : {0.7, kPi, -2.1}) {
-    const RingEncoder before(ring, {0.3, 0.004, 1e-4}), after(ring, {0.3 + by, 0.004, 1e-4});
-    for (double th = 0.0; th < 6.3; th += 0.41)
-      EXPECT_NEAR(Error_rad(after, th), Error_rad(before, th - by), kRounding_rad);
-  }
 }
 
 TEST(RingEncoder, RingThatGoesRoundBackwardsDoesTheSameAndBothTogetherNothing) {

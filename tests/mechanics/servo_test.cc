@@ -35,16 +35,6 @@ TEST(LuGreFriction, SlipsAtTheCoulombTorqueAndSticksLikeASpring) {
   EXPECT_NEAR(sticking.Torque(1e-6, 1e-3), -0.2 / 50e-6 * 1e-9, 1e-4 * 4e-6);
 }
 
-TEST(LuGreFriction, BreakawayExceedsCoulomb) {
-  FrictionParameters p;
-  p.coulomb_Nm = 0.2;
-  LuGreFriction friction(p, 0.1);
-  double largest = 0.0;
-  for (int i = 0; i < 20000; ++i)
-    largest = std::max(largest, -friction.Torque(1e-4, 1e-3));  // far below Stribeck speed
-  EXPECT_NEAR(largest, 1.2 * 0.2, 0.01 * 0.24);                 // exp(-0.01) of the excess
-}
-
 TEST(LuGreFriction, IsStableForStepsFarLongerThanItsBristles) {
   FrictionParameters p;
   p.coulomb_Nm = 0.5;
@@ -54,24 +44,6 @@ TEST(LuGreFriction, IsStableForStepsFarLongerThanItsBristles) {
   EXPECT_NEAR(friction.Torque(1.0, 0.1), -0.5, 1e-9);
   friction.Torque(-1.0, 0.1);
   EXPECT_NEAR(friction.Torque(-1.0, 0.1), 0.5, 1e-9);
-}
-
-TEST(Backlash, KeepsTheRotorUntilTheGapIsCrossedAndOfZeroWidthIsTheEncoder) {
-  Backlash play(2e-5);
-  EXPECT_DOUBLE_EQ(play.Follow(1.0), 1.0 - 1e-5);
-  EXPECT_DOUBLE_EQ(play.Follow(1.0 - 1.5e-5), 1.0 - 1e-5);  // within the gap
-  EXPECT_DOUBLE_EQ(play.Follow(0.5), 0.5 + 1e-5);
-  Backlash none(0.0);
-  EXPECT_EQ(none.Follow(0.123), 0.123);
-  EXPECT_FALSE(none.active());
-  EXPECT_DOUBLE_EQ(play.Follow(1.0), 1.0 - 1e-5);
-}
-
-TEST(QuinticProfile, RestsExactlyBeforeAndAfterTheMove) {
-  const QuinticProfile profile(0.1, 0.3, 0.6);
-  EXPECT_EQ(profile.At(-1.0).position_rad, 0.1);
-  EXPECT_EQ(profile.At(0.6).position_rad, 0.3);
-  EXPECT_EQ(profile.At(9.0).velocity_rad_s, 0.0);
 }
 
 /// Speed and acceleration are the derivatives. Central differences: h^2/6 times a third derivative below
@@ -90,6 +62,9 @@ TEST(QuinticProfile, IsThePolynomialOfFifthDegreeWithItsDerivatives) {
   const QuinticProfile profile(0.1, -0.3, 0.6);
   for (double s = 0.0; s <= 1.0; s += 0.05)  // whose speed and acceleration vanish at both ends
     EXPECT_NEAR(profile.At(0.6 * s).position_rad, 0.1 - 0.4 * s * s * s * (10.0 - 15.0 * s + 6.0 * s * s), 1e-15);
+  EXPECT_EQ(profile.At(-1.0).position_rad, 0.1);  // rests before it and behind it
+  EXPECT_EQ(profile.At(0.6).position_rad, -0.3);
+  EXPECT_EQ(profile.At(9.0).velocity_rad_s, 0.0);
   ExpectDerivatives(profile, {0.05, 0.2, 0.3, 0.55});
   // The peak of the speed and, by 10 / sqrt(3), that of the acceleration.
   EXPECT_NEAR(profile.At(0.3).velocity_rad_s, 15.0 / 8.0 * -0.4 / 0.6, 1e-14);
@@ -118,27 +93,6 @@ TEST(QuinticProfile, RefusesADurationThatIsNotPositive) {
   for (const double duration_s : {0.0, -1.0})
     EXPECT_THROW(QuinticProfile(0.0, 1.0, duration_s), std::invalid_argument);
   EXPECT_THROW(QuinticProfile(0.0, std::nan(""), 1.0), std::invalid_argument);
-}
-
-TEST(LinearModel, FollowsBulletsVibrationOfADisplacedBearing) {
-  StackParameters p = EccentricStack();
-  p.gravity_m_s2 = 0.0;  // the linear model counts from the static deflection
-  const LinearModel model(p);
-  StackDynamics dynamics(p);
-  Vector12 q = Vector12::Zero();
-  q << 1e-7, -2e-7, 3e-7, 1e-7, 2e-7, 0.0, -1e-7, 1e-7, 2e-7, -3e-7, 1e-7, 0.0;
-  q *= 0.01;  // the rotors, held by nothing, drift by the square of the vibration: 1e-5 of it at this size
-  Vector12 qd = Vector12::Zero();
-  LinearModel::State state;
-  state << q, qd;
-  for (int i = 0; i < 40; ++i) {  // 20 ms
-    for (int k = 0; k < 40; ++k) dynamics.Step(Integrator::kRungeKutta4, 12.5e-6, {0.0, 0.0}, q, qd);
-    state = model.Step(state, LinearModel::Input::Zero());
-  }
-  // Fourth-order steps of 0.067 rad of the stiffest mode err by 1e-8 each over 1600 steps: 2e-5 at most.
-  const double scale = q.cwiseAbs().maxCoeff();
-  EXPECT_GT(scale, 1e-10);
-  EXPECT_LT((state.head<kCoordinates>() - q).cwiseAbs().maxCoeff(), 1e-4 * scale);
 }
 
 TEST(MoveResponse, ScaledAndAddedIsTheResponseToTheMove) {

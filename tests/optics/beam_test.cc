@@ -15,19 +15,6 @@ double Average(const BeamNodes& nodes, double (*f)(const BeamNode&)) {
   return sum;
 }
 
-TEST(GaussHermite, IntegratesPolynomialsOfTheNormalDistribution) {
-  for (int n = 1; n <= 8; ++n) {
-    const Quadrature rule = GaussHermite(n);
-    double expected = 1.0;  // E x^2k = (2k - 1)!!
-    for (int k = 0; 2 * k <= 2 * n - 1; ++k) {
-      double moment = 0.0;
-      for (std::size_t i = 0; i < rule.node.size(); ++i) moment += rule.weight[i] * std::pow(rule.node[i], 2 * k);
-      EXPECT_NEAR(moment / expected, 1.0, 1e-13);  // eigenvalues to a few roundings, raised to the 14th power
-      expected *= 2 * k + 1;
-    }
-  }
-}
-
 TEST(GaussianBundle, HasTheMomentsOfTheBeamAndSpreadsAsItDoes) {
   const BeamNodes nodes = GaussianBundle(0.5e-3, 1e-3, 3);
   EXPECT_EQ(nodes.size(), 81u);
@@ -55,15 +42,6 @@ IrradianceMap Slope() {
       map.irradiance_W_m2.push_back(static_cast<float>(1 + column + 2 * row));
   }
   return map;
-}
-
-TEST(ProfileBundle, KeepsTheCentroidOfTheMap) {
-  const IrradianceMap map = Slope();
-  const BeamNodes nodes = ProfileBundle(map, 0.4e-3, 100);
-  EXPECT_LE(nodes.size(), 400u);
-  EXPECT_NEAR(Average(nodes, [](const BeamNode& n) { return n.x_m; }), Centroid(map).u_m, 1e-17);
-  EXPECT_NEAR(Average(nodes, [](const BeamNode& n) { return n.y_m; }), Centroid(map).v_m, 1e-17);
-  EXPECT_NEAR(Average(nodes, [](const BeamNode&) { return 1.0; }), 1.0, 1e-13);
 }
 
 TEST(ProfileBundle, RefusesADarkMap) {

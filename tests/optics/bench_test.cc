@@ -46,17 +46,6 @@ TEST(RotaryOptics, AgreesWithTheIndependentOracleToOneNanometre) {
   }
 }
 
-TEST(RotaryOptics, ShowsPublishedSensitivityToRotationAboutTheGrooves) {
-  RotaryOpticsParameters parameters = ExampleBench();
-  parameters.psd_a.distance_m = 0.150;
-  const RotaryOptics optics(parameters);
-  const double step = 1.0 * kArcsec;
-  const double u = optics.Trace(Rz(step), ExampleSource()).a.u_m;
-  EXPECT_NEAR(std::abs(u), 1.517e-6, 0.5e-9);  // um per arcsec at 150 mm, four digits given
-  // d beta = d gamma (1 + sec beta): the order turns by more than twice the angle.
-  EXPECT_NEAR(std::abs(u), 0.150 * step * (1.0 + 1.0 / std::sqrt(1.0 - 0.39 * 0.39)), 2e-11);
-}
-
 TEST(RotaryOptics, ResolvesAMicroArcsecond) {
   const RotaryOptics optics(ExampleBench());
   const double step = 1e-6 * kArcsec;

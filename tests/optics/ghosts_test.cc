@@ -37,16 +37,6 @@ std::vector<Deposit> Select(const std::vector<Deposit>& all, int detector, int o
   return some;
 }
 
-TEST(TraceGhosts, WithoutReflectionsLeavesOneDirectSpotPerDetector) {
-  const std::vector<Deposit> all = Set().Trace();
-  ASSERT_EQ(all.size(), 2u);
-  for (const Deposit& d : all) {
-    EXPECT_NEAR(d.u_m, 0.0, 1e-16);
-    EXPECT_NEAR(d.power_W, 0.339, 1e-15);
-    EXPECT_EQ(d.reflections, 0);
-  }
-}
-
 TEST(TraceGhosts, ShiftsTheSpotByATiltedPlate) {
   const auto shift = [](double tilt_rad) {
     Set set;

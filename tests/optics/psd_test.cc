@@ -101,15 +101,6 @@ TEST(Respond, WeighsPatchesWithTheirPowerAndTakesAPointAsAPatch) {
   EXPECT_EQ(a.power_W, b.power_W);
 }
 
-TEST(PsdPose, IsTheBenchFrameOfFormats) {
-  const double angle = std::asin(0.39);
-  const Eigen::Isometry3d b = PsdPose(ExamplePsd(), -angle);
-  EXPECT_NEAR(b.translation().x(), -0.12 * 0.39, 1e-17);
-  EXPECT_LT((b.linear().col(0) - Eigen::Vector3d(std::cos(angle), std::sin(angle), 0)).norm(), 1e-16);
-  EXPECT_LT((b.linear().col(2) + b.translation() / 0.12).norm(), 1e-15);  // looks at the grating
-  EXPECT_NEAR(b.linear().determinant(), 1.0, 1e-15);
-}
-
 TEST(Psd, RefusesMissingParameters) {
   EXPECT_THROW(Validate(PsdParameters{}), std::invalid_argument);
   PsdParameters psd = ExamplePsd();
