@@ -4,7 +4,9 @@
 #include <complex>
 #include <nlohmann/json.hpp>
 
+#include "tests/core/input_error.h"
 #include "tests/sim/encoder_run.h"
+#include "tests/support/kept_text.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/encoder_comparison/twin/twin.h"
 #include "twin/core/errors.h"
@@ -12,8 +14,14 @@
 namespace twinbench {
 namespace {
 
-using test::EncoderScenario, test::RunEncoderTwin;
+using test::EncoderEffect, test::EncoderScenario, test::ReadingsWith, test::RunEncoderTwin;
 using units::deg;
+
+constexpr double kTiny_rad = 1e-11;  // rounding of angles of some turns
+
+double Error_rad(const Reading& reading) {
+  return reading.measured_rad - reading.reference_rad;
+}
 
 TEST(AngleSchedule, GoesThroughTheSameStopsInBothDirections) {
   const auto readings = procedure::AngleSchedule(EncoderOf(EncoderScenario()).encoder_procedure);
@@ -58,6 +66,8 @@ TEST(EncoderTwin, WithoutNoiseAndEffectsShowsTheReferencesAngle) {
     for (const Reading& r : RunEncoderTwin(EncoderScenario(kind)).readings)
       EXPECT_NEAR(r.measured_rad, r.reference_rad, 1e-12);
   }
+  EXPECT_TRUE(std::isnan(RunEncoderTwin(EncoderScenario()).readings.front().temperature_degC))
+      << "where the room does not change nobody looks";
 }
 
 Scenario Noisy(const std::string& kind = "stops") {
@@ -121,7 +131,7 @@ TEST(EncoderTwin, AddsAnEmpiricalSignalToTheReadingsItNames) {
 
 TEST(EncoderTwin, TellsItsTruth) {
   Scenario scenario = EncoderScenario();
-  scenario.effects.push_back(test::EncoderEffect("latency"));
+  scenario.effects.push_back(EncoderEffect("latency"));
   const nlohmann::json truth = sim::EncoderTwin(scenario).Truth();
   EXPECT_EQ(truth.at("effects").at(0).at("effect"), "latency");
   EXPECT_EQ(truth.at("effects").at(0).at("parameters_SI").at("delay"), 0.001);
@@ -131,7 +141,7 @@ TEST(EncoderTwin, ReadsItsRingWithSeveralHeadsAtOneInstant) {
   Scenario scenario = EncoderScenario();
   EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 90.0 * deg};
   EncoderOf(scenario).encoder_procedure.mounting_rad = {0.0, 10.0 * deg};
-  scenario.effects = {test::EncoderEffect("eccentricity", {{"amplitude", 0.1 * deg}})};
+  scenario.effects = {EncoderEffect("eccentricity", {{"amplitude", 0.1 * deg}})};
   const auto readings = RunEncoderTwin(scenario).readings;
   ASSERT_EQ(readings.size(), 2u * 2u * 576u);
   for (std::size_t i = 0; i < readings.size(); i += 2) {
@@ -191,11 +201,11 @@ double Amplitude_arcsec(const nlohmann::json& curve, int order) {
 
 TEST(EncoderTwin, TellsWhatRepeatsWithTheAnglesOfDeviceAndReference) {
   Scenario scenario = EncoderScenario();
-  scenario.effects = {test::EncoderEffect("eccentricity", {{"amplitude", 0.5 * deg}}),
-                      test::EncoderEffect("reference_fault", {{"order", 3.0}, {"amplitude", 0.02 * deg}}),
-                      test::EncoderEffect("signal_offset", {{"offset_sin", 0.0}, {"offset_cos", 0.01}}),
-                      test::EncoderEffect("drift"), test::EncoderEffect("outliers", {{"fraction", 0.5}}),
-                      test::EncoderEffect("slip", {{"at_reading", 0.0}}), test::EncoderEffect("backlash")};
+  scenario.effects = {EncoderEffect("eccentricity", {{"amplitude", 0.5 * deg}}),
+                      EncoderEffect("reference_fault", {{"order", 3.0}, {"amplitude", 0.02 * deg}}),
+                      EncoderEffect("signal_offset", {{"offset_sin", 0.0}, {"offset_cos", 0.01}}),
+                      EncoderEffect("drift"), EncoderEffect("outliers", {{"fraction", 0.5}}),
+                      EncoderEffect("slip", {{"at_reading", 0.0}}), EncoderEffect("backlash")};
   EncoderOf(scenario).device.signal_periods = 4;
   const nlohmann::json truth = sim::EncoderTwin(scenario).Truth();
   // What is 1e-9 of 1800 arcsec is rounding.
@@ -205,6 +215,35 @@ TEST(EncoderTwin, TellsWhatRepeatsWithTheAnglesOfDeviceAndReference) {
       << "offset over amplitude, a quarter of it on the turn; next term 0.01^2 / 2";
   EXPECT_NEAR(Amplitude_arcsec(truth.at("reference"), 3), 72.0, 1e-6);
   EXPECT_NEAR(Amplitude_arcsec(truth.at("reference"), 1), 0.0, 1e-6);
+}
+
+// What an effect does to the readings is the course of its family: tests/diagnose/named_families_test.cc.
+
+TEST(EncoderEffects, InterpolationNeedsTheLinesOfTheScale) {
+  EXPECT_KEPT(MessageOf([] { ReadingsWith(EncoderScenario(), EncoderEffect("interpolation")); }));
+}
+
+TEST(EncoderEffects, SignalsThatBeginLaterErrLater) {
+  const auto clipped = [](double zero_rad) {
+    return ReadingsWith(EncoderScenario(), EncoderEffect("signal_clipping", {{"level", 0.5}, {"zero", zero_rad}}));
+  };
+  const auto here = clipped(0.0), later = clipped(5.0 * deg);  // the distance of two stops
+  for (std::size_t i = 1; i < 144; ++i) EXPECT_NEAR(Error_rad(later[i]), Error_rad(here[i - 1]), kTiny_rad);
+}
+
+TEST(EncoderEffects, OutliersHitTheirShareOfTheReadings) {
+  int hits = 0;
+  const auto readings =
+      ReadingsWith(EncoderScenario("sweep"), EncoderEffect("outliers", {{"fraction", 0.1}, {"size", 0.02}}));
+  for (const Reading& r : readings) {
+    const double size_rad = std::abs(Error_rad(r));
+    if (size_rad < kTiny_rad) continue;
+    ++hits;
+    EXPECT_GE(size_rad, 0.5 * 0.02 - kTiny_rad);
+    EXPECT_LE(size_rad, 1.5 * 0.02 + kTiny_rad);
+  }
+  // Binomial: deviation sqrt(0.1 * 0.9 / 4320) = 0.0046; three of these.
+  EXPECT_NEAR(hits / static_cast<double>(readings.size()), 0.1, 0.014);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <chrono>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/world.h"
 #include "twin/benches/names.h"
-#include "twin/core/device_fault.h"
 
 namespace twinbench {
 namespace {
@@ -65,16 +64,6 @@ TEST(HobTwin, EveryDeviceSchedulesEvents) {
   for (const char* device : {"fixture", "counters", "drive"}) EXPECT_GT(world.Scheduled().at(device), 0U) << device;
 }
 
-TEST(HobTwin, ShowsTheTransmissionErrorByTheTablesAngle) {
-  Scenario s = QuietMachine();
-  HobOf(s).hob_procedure.passes = {1};
-  HobOf(s).transmission.harmonics = {{Component::kEz, 3.0, 7.0 * arcsec, 0.5}};
-  const auto readings = HobReadings(s);
-  const auto m_arcsec = Differences_arcsec(readings, HobOf(s).transmission.Ratio());
-  for (std::size_t i = 0; i < m_arcsec.size(); ++i)
-    EXPECT_NEAR(m_arcsec[i], 7.0 * std::cos(3.0 * readings[i].measured_rad + 0.5), 1e-3);
-}
-
 TEST(HobTwin, InterferometerSeesTheMachineAndHasErrorsOfItsOwn) {
   Scenario s = QuietMachine();
   HobOf(s).transmission.harmonics = {{Component::kEz, 3.0, 7.0 * arcsec, 0.5}};
@@ -117,28 +106,6 @@ TEST(HobTwin, InterferometerSeesWhatTheTableDoesAndNotWhatItsCountersGetWrong) {
   }
 }
 
-/// Order 1 of what one head sees.
-std::complex<double> OrderOne_arcsec(const Scenario& s) {
-  const auto readings = HobReadings(s);
-  const auto m_arcsec = Differences_arcsec(readings, HobOf(s).transmission.Ratio());
-  std::complex<double> sum = 0.0;
-  for (std::size_t i = 0; i < readings.size(); ++i)
-    sum += m_arcsec[i] * std::polar(2.0 / static_cast<double>(readings.size()), -readings[i].measured_rad);
-  return sum;
-}
-
-TEST(HobTwin, EncodersErrorMovesWithItsHead) {
-  Scenario s = QuietMachine();
-  HobOf(s).table_encoder.eccentricity_m = 2.0e-6;
-  HobOf(s).table_encoder.eccentricity_azimuth_rad = 70.0 * deg;
-  const double amplitude_arcsec = 2.0e-6 / HobOf(s).table_encoder.radius_m / arcsec;
-  const std::complex<double> at_zero = OrderOne_arcsec(s);
-  EXPECT_NEAR(std::abs(at_zero), amplitude_arcsec, 1e-3);
-  HobOf(s).hob_procedure.heads_rad = {50.0 * deg};
-  const std::complex<double> at_50 = OrderOne_arcsec(s);
-  EXPECT_NEAR(std::abs(at_50 - at_zero * std::polar(1.0, -50.0 * deg)), 0.0, 1e-3) << "psi(th - head)";
-}
-
 TEST(HobTwin, CountsFromTheMarkIfToldSo) {
   Scenario s = QuietMachine();
   HobOf(s).hob_procedure.heads_rad = {50.0 * deg};
@@ -146,14 +113,6 @@ TEST(HobTwin, CountsFromTheMarkIfToldSo) {
   HobOf(s).hob_procedure.encoder_zero = "reference_mark";
   const auto from_mark = HobReadings(s);
   EXPECT_NEAR(from_origin[0].measured_rad - from_mark[0].measured_rad, 50.0 * deg, 1e-12);
-}
-
-TEST(HobTwin, EndsWithAFaultWhenTheFifoRunsFull) {
-  Scenario s = QuietMachine();
-  HobOf(s).hob_procedure.fifo_samples = 4;
-  HobOf(s).hob_procedure.poll_s = 2.0;  // 14 samples come meanwhile
-  EXPECT_THAT([&] { HobReadings(s); },
-              testing::Throws<DeviceFault>(testing::Property(&DeviceFault::kind, FaultKind::kOverrun)));
 }
 
 }  // namespace

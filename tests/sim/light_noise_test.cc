@@ -174,7 +174,7 @@ double SquareOfMeans_V2(int scans, int channel) {
   double squares_V2 = 0.0;
   for (int k = 0; k < blocks; ++k) {
     squares_V2 += std::pow(twin.Bench().adc.Acquire(scans, false).channel[channel].mean_V, 2) / blocks;
-    twin.Bench().clock.Wait(FromSeconds(17.3));
+    twin.Bench().clock.Wait(FromSeconds(1.73));
   }
   return squares_V2;
 }

@@ -22,16 +22,6 @@ std::array<double, kChannels> ReadOnce(Twin& twin) {
   return {block.channel[0].mean_V, block.channel[1].mean_V, block.channel[2].mean_V, block.channel[3].mean_V};
 }
 
-TEST(Twin, AFifoThatIsNotDrainedOverruns) {
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).adc.fifo_samples = 1024;
-  RotaryOf(scenario).adc.drain_rate_Hz = 100e3;
-  Twin twin(scenario);
-  // The FIFO fills at 250 - 100 = 150 kS/s: full after 1024 / 150e3 = 6.8 ms = 427 scans.
-  EXPECT_EQ(twin.Bench().adc.Acquire(400, false).status, ReadingStatus::kOk);
-  EXPECT_EQ(twin.Bench().adc.Acquire(500, false).status, ReadingStatus::kOverrun);
-}
-
 TEST(Twin, MovesAndBlocksTakeTheirTimeOnTheVirtualClock) {
   Scenario scenario = Quiet();
   Twin twin(scenario);
