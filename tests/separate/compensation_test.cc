@@ -94,7 +94,7 @@ struct Outcome {
 Outcome Measure(const std::vector<ReadingPlan>& plans, int highest_told) {
   const std::vector<ReadingPlan> checks = {Between(1)};
   Outcome outcome;
-  for (int seed = 1; seed <= test::ByNight(200, 60); ++seed) {
+  for (int seed = 1; seed <= test::ByNight(200, 25); ++seed) {
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     SpectrumBench bench = DrawBench(random, 5);
     const IndexErrors first = bench.Read(plans, random);

@@ -94,15 +94,6 @@ TEST(Fourier, IsTheDefinitionForEveryKindOfLength) {
   }
 }
 
-TEST(Fourier, FindsAWaveInAThousandsOfPointsOfPrimeNumber) {
-  const int n = 36007, order = 17;
-  Eigen::VectorXcd wave(n);
-  for (int i = 0; i < n; ++i) wave[i] = std::polar(1.0, units::turn * double(1LL * order * i % n) / n);
-  const Eigen::VectorXcd X = Fourier(n).Forward(wave);
-  EXPECT_NEAR(std::abs(X[order]), n, 1e-8);
-  EXPECT_LT(std::abs(X[order + 1]), 1e-8);
-}
-
 TEST(LargestPrimeFactor, IsThat) {
   EXPECT_EQ(LargestPrimeFactor(1), 1);
   EXPECT_EQ(LargestPrimeFactor(36000), 5);

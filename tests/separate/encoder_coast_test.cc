@@ -114,20 +114,6 @@ TEST(SeparateByTime, CoversTheRingOverSeedsAndTellsTheNoiseOfATime) {
   EXPECT_NEAR(published, 1.0, 0.4);
 }
 
-TEST(SeparateByTime, StatesTheVarianceOfTheClosedForm) {
-  Coast bench;
-  bench.noise_s = 5e-9;
-  bench.tau_s = 1e6;
-  const TimeReversal found = SeparateByTime(bench.Readings());
-  // Per speed both senses, 16 turns: C = (4 X_fast - X_slow) / 3, X_slow with half the deviation.
-  const double unit = 2.0 / 128 * std::pow(30.0 * 5e-9, 2) / 16;
-  const double closed = unit * (16.0 + 0.25) / 9.0;
-  double mean = 0.0;
-  for (int k = 1; k <= 63; ++k) mean += found.ring.At(k).cov(0, 0) / 63.0;
-  // 63 orders x 29 turns, 2 parts: 1.7 % of the deviation, 3.3 of the variance; four of these.
-  EXPECT_NEAR(mean / closed, 1.0, 0.13);
-}
-
 TEST(SeparateByTime, SaysWhyThereIsNoCurve) {
   Coast bench;
   bench.turns = 3;

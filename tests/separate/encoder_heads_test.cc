@@ -48,20 +48,15 @@ struct Ring {
 };
 
 TEST(SeparateHeads, AtEqualDivisionGiveAllOrdersButMultiplesOfTheirCount) {
-  const SeveralHeads found = SeparateHeads(Ring{}.Readings());
+  Ring bench;
+  bench.ring.push_back({4, 3.0, 0.0});  // which all heads share
+  const SeveralHeads found = SeparateHeads(bench.Readings());
   EXPECT_EQ(found.Highest(), 35);
+  EXPECT_TRUE(std::isnan(found.ring.At(4).value.real()));
   EXPECT_EQ(found.lost.orders, (std::vector{4, 8, 12, 16, 20, 24, 28, 32}));
   // The angle at which the ring is read is off by the errors: 4 arcsec x 9 x 0.2 arcsec is 4e-5 arcsec.
   EXPECT_LT(WorstOrder_arcsec(found.ring, Ring{}.ring), 1e-4);
   EXPECT_LT(WorstOrder_arcsec(found.reference, Ring{}.reference), 2e-4);
-}
-
-TEST(SeparateHeads, KnowNothingOfAnErrorThatAllHeadsShare) {
-  Ring bench;
-  bench.ring = {{4, 3.0, 0.0}, {5, 0.5, 0.3}};
-  const SeveralHeads found = SeparateHeads(bench.Readings());
-  EXPECT_TRUE(std::isnan(found.ring.At(4).value.real()));
-  EXPECT_LT(WorstOrder_arcsec(found.ring, bench.ring), 1e-4);
 }
 
 TEST(SeparateHeads, AtAnyAnglesGiveEveryOrderWithHeadsThatFailAndAShaftThatScatters) {
@@ -95,7 +90,7 @@ TEST(SeparateHeads, StateTheVarianceOfTheClosedForm) {
 }
 
 TEST(SeparateHeads, CoverRingAndReferenceOverSeeds) {
-  constexpr int kSeeds = 60;
+  constexpr int kSeeds = 30;
   double ring = 0.0, reference = 0.0, published = 0.0;
   for (int seed = 0; seed < kSeeds; ++seed) {
     Ring bench;
@@ -110,7 +105,7 @@ TEST(SeparateHeads, CoverRingAndReferenceOverSeeds) {
     reference += MeanOrderChi2(found.reference, bench.reference) / kSeeds;
     published += MeanOrderChi2(EqualDivision(readings).ring, bench.ring) / kSeeds;
   }
-  // 27 orders x 60 seeds, 2 parts each: 0.025; the variances are from 73 to 375 degrees of freedom each time.
+  // 27 orders x 30 seeds, 2 parts each: 0.035; the variances are from 73 to 375 degrees of freedom each time.
   EXPECT_NEAR(ring, 1.0, 0.1);
   EXPECT_NEAR(reference, 73.0 / 71.0, 0.1);
   EXPECT_NEAR(published, 89.0 / 87.0, 0.1);

@@ -4,11 +4,10 @@
 #include "tests/separate/hob_bench.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/hob_transmission/estimators/transmission_error.h"
+#include "twin/benches/hob_transmission/estimators/turn_fit.h"
 
 namespace twinbench::separate::hob {
 namespace {
-
-using testing::ElementsAre;
 
 /// Angles are taken at the encoder's reading, off by psi: order 44 of 1 arcsec moves by 44 x 1 x 1e-5 at 2 arcsec.
 constexpr double kSecondOrder_arcsec = 2e-3;
@@ -182,6 +181,49 @@ TEST(MeasurePositions, CountsTheUncertaintyOfTheDrift) {
   EXPECT_NEAR(sum2 / stated, 1.0, 0.26);
 }
 
+TEST(FitTurn, StatesTheVarianceTwoOverNOfRegularSamples) {
+  const Eigen::VectorXd all = Eigen::VectorXd::LinSpaced(100, 0.0, kTestTurn_rad * 0.99);
+  const TurnFit fit = FitTurn(all, Eigen::VectorXd::Zero(100), 0.0, 1, 40);
+  for (const Eigen::Matrix2d& cofactor : fit.cofactor)
+    EXPECT_LT((cofactor - 0.02 * Eigen::Matrix2d::Identity()).cwiseAbs().maxCoeff(), 1e-14);  // rounding
+  EXPECT_NEAR(fit.inflation, 1.0, 1e-12);
+}
+
+TEST(FitTurn, SaysHowMuchAGapCosts) {
+  const Eigen::VectorXd whole = Eigen::VectorXd::LinSpaced(400, 0.0, kTestTurn_rad * 399.0 / 400.0);
+  const auto inflation = [&](int missing) {
+    const Eigen::VectorXd rest = whole.head(400 - missing);
+    return FitTurn(rest, Eigen::VectorXd::Zero(rest.size()), 0.0, 1, 30).inflation;
+  };
+  // Gaps well below pi / 30 = 6.7 samples cost little more than their samples, twice that much costs the turn.
+  EXPECT_LT(inflation(3), 1.2);
+  EXPECT_GT(inflation(40), 4.0);
+}
+
+/// The same problem with cosines and sines and a plain inverse.
+Eigen::MatrixXd PlainInverse(const Eigen::VectorXd& angle_rad, int max_order) {
+  Eigen::MatrixXd design(angle_rad.size(), 2 * max_order + 1);
+  design.col(0).setOnes();
+  for (int k = 1; k <= max_order; ++k) {
+    design.col(2 * k - 1) = (k * angle_rad.array()).cos();
+    design.col(2 * k) = -(k * angle_rad.array()).sin();
+  }
+  return (design.transpose() * design).inverse();
+}
+
+TEST(FitTurn, StatesTheCovarianceOfIrregularSamples) {
+  Stream stream(3, "angles");
+  Eigen::VectorXd angle_rad(53);
+  for (int i = 0; i < 53; ++i) angle_rad[i] = kTestTurn_rad * (i + 0.8 * stream.Uniform()) / 60;
+  const TurnFit fit = FitTurn(angle_rad, Eigen::VectorXd::Zero(53), 0.0, 1, 15);
+  const Eigen::MatrixXd expected = PlainInverse(angle_rad, 15);
+  for (int k = 1; k <= 15; ++k) {
+    const Eigen::Matrix2d block = expected.block<2, 2>(2 * k - 1, 2 * k - 1);
+    const Eigen::Matrix2d& stated = fit.cofactor[static_cast<std::size_t>(k - 1)];
+    EXPECT_LT((stated - block).norm(), 1e-9 * block.norm()) << k;  // rounding times the condition
+  }
+}
+
 TEST(MeasurePositions, CountsFromTheReferenceMarkIfTold) {
   HobMachine machine = Machine();
   std::vector<HobSample> samples = Samples(machine, Heads({37.0}));
@@ -208,13 +250,6 @@ TEST(ResampledUncertainty, IsTheRootOfTheOrdersVariances) {
   const Eigen::VectorXd u_rad = ResampledUncertainty(positions.at(0).series, 36);
   // 60 orders of variance 2 sigma^2 / (4 x 1440) each, whatever the angle; scatter known to some per cent.
   EXPECT_NEAR(u_rad.mean() / kArcsec, 0.5 * std::sqrt(60 * 2.0 / (4 * 1440)), 0.01);
-}
-
-TEST(FindLines, ListsTheLinesOfTheTransmissionAndNoOthers) {
-  HobMachine machine = Machine();
-  machine.noise_arcsec = 0.5;  // u = 0.009 arcsec an order
-  const auto positions = MeasurePositions(Samples(machine, Heads({20.0})), OrdersUpTo(60));
-  EXPECT_THAT(FindLines(positions.at(0).series), ElementsAre(1, 2, 3, 22, 44));
 }
 
 TEST(FindLines, RaisesFalseAlarmsAsOftenAsAsked) {

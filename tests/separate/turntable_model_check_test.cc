@@ -162,56 +162,25 @@ TEST(CheckModel, LeavesNothingOfAKnownCurveWithoutNoise) {
   EXPECT_NEAR(check.position_rad[3], 8 * deg, 1e-5);  // to a millionth of a turn
 }
 
-/// Over many seeds, [arcsec].
-struct Outcome {
-  double range_before = 0.0;   // mean of the peak-to-valley at the check positions
-  double largest_after = 0.0;  // mean of the largest deviation at the check positions
-  int within_2 = 0;            // seeds whose largest deviation is at most that
-  double over_expected = 0.0;  // mean of rms over expected rms
-  double worst_truth = 0.0;    // worst seed's largest true error left, at 144 even positions
-};
-
-/// The published experiment: 72 positions, two tilts, model of the order with the least AICc, 144 check stops.
-Outcome TakeModelOut(double u_rad, int passes, int seeds) {
-  Outcome outcome;
-  for (int seed = 0; seed < seeds; ++seed) {
-    Stream stream(static_cast<std::uint64_t>(seed), "test.turntable");
-    const TrueBench bench = PublishedBench(u_rad, stream);
-    IndexingOptions options;
-    options.u_multitooth_rad = 0.3 * arcsec;
-    const auto found = SeparateIndexing(ReadCircles(bench, TwoTilts(), 72, stream, passes), options);
-    const HarmonicModel model = FitHarmonics(found.turntable, ChooseHighestOrder(found.turntable));
-    const auto check = CheckModel(model, CheckStops(bench, TwoTilts()[0], passes, stream), found.roll,
-                                         {u_rad, 0.3 * arcsec});
-    outcome.range_before += check.before.peak_to_valley_rad / arcsec / seeds;
-    outcome.largest_after += check.after.largest_rad / arcsec / seeds;
-    outcome.within_2 += check.after.largest_rad <= 2.0 * arcsec;
-    outcome.over_expected += check.after.rms_rad / check.expected_rms_rad / seeds;
-    for (int i = 0; i < 144; ++i) {
-      const double left_rad = bench.turntable.At(i * 2.5 * deg) - model.At(i * 2.5 * deg).value_rad;
-      outcome.worst_truth = std::max(outcome.worst_truth, std::abs(left_rad) / arcsec);
+// The published experiment: 72 positions, two tilts, model of the order with the least AICc, 144 check stops. How far
+// it comes below two arcsec is asked of whole runs: tests/scenarios.
+TEST(CheckModel, ExpectsWhatIsLeftOfThePublishedTurntable) {
+  constexpr int kSeeds = 50;
+  for (const auto& [u_rad, passes] : {std::pair(0.2 * arcsec, 1), {0.5 * arcsec, 4}}) {
+    double over_expected = 0.0;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      Stream stream(static_cast<std::uint64_t>(seed), "test.turntable");
+      const TrueBench bench = PublishedBench(u_rad, stream);
+      IndexingOptions options;
+      options.u_multitooth_rad = 0.3 * arcsec;
+      const auto found = SeparateIndexing(ReadCircles(bench, TwoTilts(), 72, stream, passes), options);
+      const HarmonicModel model = FitHarmonics(found.turntable, ChooseHighestOrder(found.turntable));
+      const auto check = CheckModel(model, CheckStops(bench, TwoTilts()[0], passes, stream), found.roll,
+                                    {u_rad, 0.3 * arcsec});
+      over_expected += check.after.rms_rad / check.expected_rms_rad / kSeeds;
     }
+    EXPECT_NEAR(over_expected, 1.0, 0.05);  // a run's rms of 144 scatters by 6 %; u_unmodelled is never below zero
   }
-  return outcome;
-}
-
-TEST(CheckModel, BringsThePublishedTurntableBelowTwoArcsec) {
-  const Outcome o = TakeModelOut(0.2 * arcsec, 1, 100);
-  EXPECT_NEAR(o.range_before, 17.82, 0.8);  // 17.82 arcsec and, at its two extremes, noise and teeth
-  EXPECT_EQ(o.within_2, 100);               // asked for by the task
-  EXPECT_LT(o.largest_after, 1.4);          // 144 normal values of rms 0.43: 2.7 times that
-  EXPECT_NEAR(o.over_expected, 1.0, 0.05);  // a run's rms of 144 scatters by 6 %; u_unmodelled is never below zero
-  EXPECT_LT(o.worst_truth, 1.2);
-}
-
-TEST(CheckModel, NeedsRepeatsWithTheNoisiestAutocollimator) {
-  // 0.5 arcsec in every check reading beside 0.3 of its tooth: 2 arcsec are 3.1 standard deviations, 144 times.
-  const Outcome once = TakeModelOut(0.5 * arcsec, 1, 100);
-  EXPECT_LT(once.within_2, 90);
-  EXPECT_LT(once.worst_truth, 1.5);  // it is the check that is noisy, not the model
-  const Outcome four_times = TakeModelOut(0.5 * arcsec, 4, 100);
-  EXPECT_EQ(four_times.within_2, 100);
-  EXPECT_NEAR(four_times.over_expected, 1.0, 0.05);  // as above
 }
 
 /// Errors of 150 arcsec, so that an autocollimator that bends by 20 arcsec at 410 shows.
