@@ -19,37 +19,6 @@ namespace {
 
 using units::deg, units::kPi;
 
-/// Amplitude of sin(order p) in the error of clipped signals, by the midpoint rule over one period.
-double ClippingOrder(double level, int order) {
-  constexpr int kPoints = 200000;
-  const Eigen::VectorXd p =
-      (Eigen::VectorXd::LinSpaced(kPoints, 0.0, kPoints - 1.0).array() + 0.5) * 2.0 * kPi / kPoints;
-  return 2.0 / kPoints * ClippingError_rad(p, level).dot((order * p.array()).sin().matrix());
-}
-
-/// The same from the closed form of the error in the piece where only the cosine is cut off, |p| < arccos(level):
-/// atan(sin p / level) - p, which the other seven pieces repeat; Simpson's rule.
-double ClippingOrderByPieces(double level, int order) {
-  const double edge = std::acos(level);
-  constexpr int kSteps = 2000;
-  double sum = 0.0;
-  for (int i = 0; i <= kSteps; ++i) {
-    const double p = edge * i / kSteps, weight = i == 0 || i == kSteps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
-    sum += weight * (std::atan(std::sin(p) / level) - p) * std::sin(order * p);
-  }
-  return 8.0 * sum * edge / kSteps / 3.0 / kPi;
-}
-
-TEST(ClippingError, HasOrders4And8And12InRatiosThatFollowFromTheLevel) {
-  for (const double level : {0.98, 0.95, 0.9, 0.8}) {
-    for (const int order : {4, 8, 12})
-      EXPECT_NEAR(ClippingOrder(level, order), ClippingOrderByPieces(level, order), 1e-8) << level << " " << order;
-    for (const int order : {1, 2, 3, 5, 6, 10}) EXPECT_NEAR(ClippingOrder(level, order), 0.0, 1e-12) << order;
-  }
-  // Shallow clipping errs in narrow pairs of opposite blips, whose orders grow with their number: 8 / 4.
-  EXPECT_NEAR(ClippingOrder(0.9999, 8) / ClippingOrder(0.9999, 4), 2.0, 0.05);
-}
-
 SignalContext Steps(const std::vector<double>& angle_deg, const std::vector<int>& direction) {
   const auto n = std::ssize(angle_deg);
   Schedule s = PlainSchedule(static_cast<int>(n));
@@ -92,16 +61,6 @@ TEST(Travel, BeginsAnewWhereTheShaftWentBack) {
   SignalContext returned = Steps({20, 10, 0, 20, 10}, {-1, -1, -1, -1, -1});
   EXPECT_TRUE(TravelSinceReversal_rad(returned).isApprox(deg * (Eigen::VectorXd(5) << 0, 10, 20, 0, 10).finished()))
       << "on the way back to 20 it was driven the other way";
-}
-
-TEST(Relaxation, GoesOverToTheSenseExponentially) {
-  const SignalContext c = Steps({0, 20, 40, 20}, {1, 1, 1, -1});
-  const Eigen::MatrixXd states = Relaxation(c, 20.0 * deg, 0.0);
-  const double e = std::exp(-1.0);
-  EXPECT_NEAR(states(1, 0), 1.0 - e, 1e-12);
-  EXPECT_NEAR(states(2, 0), 1.0 - e * e, 1e-12);
-  EXPECT_NEAR(states(3, 0), -1.0 + (1.0 - e * e + 1.0) * e, 1e-12);
-  EXPECT_NEAR(states(3, 1), e * e * e, 1e-12) << "an unknown first state dies out with the way";
 }
 
 TEST(Relaxation, CountsTheRunUpToAStop) {

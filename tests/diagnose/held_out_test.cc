@@ -68,13 +68,6 @@ TEST(HeldOut, FractionIsRightOnAverageAlsoWhereTheNoiseIsLargerThanTheCause) {
   }
 }
 
-TEST(HeldOut, FractionIsExactWhereTheCauseIsLarge) {
-  for (const double explained : {1.0, 0.7, 0.3}) {
-    const Held held{.power = 1e6, .explained = explained};
-    EXPECT_NEAR(Over(held, true).mean, held.fraction(), 1e-3) << explained;
-  }
-}
-
 TEST(HeldOut, NoiseThatIsOnlyEstimatedDoesNotCountAsRemovedOrLeft) {
   // With a noise that is 10 % larger than stated 0.21 * 600 would be left of 150: a fraction of 0.54.
   for (const double noise : {0.9, 1.1}) {

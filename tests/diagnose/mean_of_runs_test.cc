@@ -46,13 +46,6 @@ TEST(Grouping, TakesTheMeanOfEveryChannelByItself) {
   EXPECT_EQ(groups.MeanOfRows(rows).col(0), (Eigen::Vector4d(2.0, 20.0, 7.0, 70.0)));
 }
 
-// A mean over k readings that are 2 x of phase apart leaves sin(k x) / (k sin x) of a wave.
-TEST(Grouping, LeavesOfAWaveWhatTheMeanDoes) {
-  const Schedule s = ThereAndBack(360);
-  const Grouping groups = GroupsOf(s, 4);
-  EXPECT_NEAR(KeptByMean(30.0 * s.target_rad, groups), std::sin(60.0 * deg) / (4.0 * std::sin(15.0 * deg)), 1e-9);
-}
-
 TEST(Grouping, IsAsLargeAsLeavesTheLineFourFifths) {
   const Schedule s = ThereAndBack(360);
   // x = 15 deg: 0.911 of three, 0.837 of four, 0.746 of five.

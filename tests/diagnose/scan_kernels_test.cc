@@ -1,14 +1,17 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <Eigen/QR>
+#include <cmath>
+#include <complex>
 
 #include "tests/diagnose/support/synthetic_run.h"
+#include "twin/core/units.h"
 #include "twin/diagnose/engine/bundle.h"
 #include "twin/diagnose/engine/known_products.h"
 #include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/engine/scan_kernels.h"
 #include "twin/diagnose/engine/vector_math.h"
+#include "twin/model/wave_sums.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -42,23 +45,18 @@ Eigen::MatrixXd ApplyDense(const Nuisance& nuisance, const Eigen::MatrixXd& Y) {
   return Y - J * stacked.householderQr().solve(data);
 }
 
+// Also where rows touch two blocks: taking each row's neighbour out, as noise that is correlated from reading to reading
+// asks for, joins them.
 TEST(Projector, AgreesWithAnOrthogonalFactorisationOfAllUnknowns) {
-  const Nuisance nuisance = ArrowNuisance();
-  const Projector projector(nuisance.jacobian, nuisance);
-  const Eigen::MatrixXd Y = RandomMatrix("data", kRows, 5);
-  EXPECT_LT((projector.Apply(Y) - ApplyDense(nuisance, Y)).cwiseAbs().maxCoeff(), 1e-9);
-}
-
-/// Taking each row's neighbour out, as noise that is correlated from reading to reading asks for, joins the blocks.
-TEST(Projector, AgreesWithTheOrthogonalFactorisationWhereRowsTouchTwoBlocks) {
-  Nuisance nuisance = ArrowNuisance();
-  const Eigen::MatrixXd J = nuisance.jacobian;
-  Eigen::MatrixXd joined = J;
-  joined.bottomRows(kRows - 1) -= 0.4 * J.topRows(kRows - 1);
-  nuisance.jacobian = joined.sparseView();
-  const Projector projector(nuisance.jacobian, nuisance);
-  const Eigen::MatrixXd Y = RandomMatrix("data", kRows, 5);
-  EXPECT_LT((projector.Apply(Y) - ApplyDense(nuisance, Y)).cwiseAbs().maxCoeff(), 1e-9);
+  for (const double neighbour : {0.0, 0.4}) {
+    Nuisance nuisance = ArrowNuisance();
+    const Eigen::MatrixXd J = nuisance.jacobian;
+    Eigen::MatrixXd joined = J;
+    joined.bottomRows(kRows - 1) -= neighbour * J.topRows(kRows - 1);
+    nuisance.jacobian = joined.sparseView();
+    const Eigen::MatrixXd Y = RandomMatrix("data", kRows, 5);
+    EXPECT_LT((Projector(nuisance.jacobian, nuisance).Apply(Y) - ApplyDense(nuisance, Y)).cwiseAbs().maxCoeff(), 1e-9);
+  }
 }
 
 TEST(Projector, GivesTheQuadraticFormWithoutFormingTheProjection) {
@@ -182,17 +180,9 @@ void ExpectProducts(bool shared, Eigen::Index kept) {
   }
 }
 
-TEST(Bundle, MultipliesSeriesWithoutWritingThemOutOnEveryChannel) {
-  ExpectProducts(true, 1'000'000'000);
-}
-
-TEST(Bundle, MultipliesSignaturesOfAFamilyOfItsOwn) {
+TEST(Bundle, MultipliesSeriesWithoutWritingThemOutSignaturesOfAFamilyOfItsOwnAndWhatItMayNotKeep) {
+  for (const Eigen::Index kept : {1'000'000'000, 10'000, 0}) ExpectProducts(true, kept);
   ExpectProducts(false, 1'000'000'000);
-}
-
-TEST(Bundle, MakesAgainWhatItMayNotKeep) {
-  ExpectProducts(true, 0);
-  ExpectProducts(true, 10'000);
 }
 
 TEST(Bundle, TakesNoMoreMemoryThanGranted) {
@@ -230,6 +220,46 @@ TEST(KnownProducts, AreThoseOfColumnsThatComeAgainInAnotherOrder) {
           << b << " " << g;
     }
   }
+}
+
+/// Against a sine a reading a wave. Phases of some 1e4 rad have no more than 12 digits.
+void ExpectDirectSums(const Eigen::VectorXd& phase_rad, double first, double step, int count) {
+  Eigen::MatrixXd y(phase_rad.size(), 2);
+  y << RandomMatrix("y", phase_rad.size(), 1), Eigen::VectorXd::Ones(phase_rad.size());
+  const Eigen::MatrixXcd sums = model::WaveSums(phase_rad, first, step, count).Of(y);
+  ASSERT_EQ(sums.rows(), count);
+  const Eigen::RowVectorXd sizes = y.cwiseAbs().colwise().sum();
+  for (int g = 0; g < count; g += 1 + count / 40) {
+    for (int j = 0; j < 2; ++j) {
+      std::complex<double> direct = 0.0;
+      for (Eigen::Index i = 0; i < y.rows(); ++i)
+        direct += y(i, j) * std::polar(1.0, (first + g * step) * phase_rad[i]);
+      EXPECT_LT(std::abs(sums(g, j) - direct), 1e-11 * sizes[j]) << "wave " << g << " of " << count;
+    }
+  }
+}
+
+constexpr int kPhases = 500;
+
+TEST(WaveSums, AreThoseOfEvenPhases) {
+  const Eigen::VectorXd turn_rad = Eigen::VectorXd::LinSpaced(kPhases, 0.0, 2.0 * units::turn);
+  for (const int count : {1, 2, 24, 720}) ExpectDirectSums(turn_rad, 1.0, 1.0, count);
+}
+
+TEST(WaveSums, AreThoseOfUnevenPhasesOfManyTurnsEitherWay) {
+  const Eigen::VectorXd phase_rad = 20.0 * RandomMatrix("phase", kPhases, 1);
+  ExpectDirectSums(phase_rad, 0.3, 0.013, 1500);
+  ExpectDirectSums(phase_rad, -40.0, 1.0, 81);
+}
+
+TEST(WaveSums, AreThoseOfPhasesThatLieTogether) {
+  Eigen::VectorXd phase_rad = 1e-6 * RandomMatrix("phase", kPhases, 1);
+  phase_rad.tail(kPhases / 2).array() += units::turn;  // the end of the grid and its beginning are neighbours
+  for (const int count : {3, 100}) ExpectDirectSums(phase_rad, 1.0, 1.0, count);
+}
+
+TEST(WaveSums, OfOneReadingAreItsWaves) {
+  ExpectDirectSums(Eigen::VectorXd::Constant(1, 0.7), 2.0, 1.0, 30);
 }
 
 }  // namespace

@@ -38,11 +38,8 @@ DiagnosisRun FoundAsRead() {
 }
 
 /// A bench whose written file shows so much of the direction.
-AgainstScenario Showing(const DiagnosisRun& found, double share, std::vector<std::string>* effects = nullptr) {
-  return [&found, share, effects](const std::vector<Reading>&, const Scenario& scenario, Estimator) {
-    if (effects) {
-      for (const EffectSettings& effect : scenario.effects) effects->push_back(effect.name);
-    }
+AgainstScenario Showing(const DiagnosisRun& found, double share) {
+  return [&found, share](const std::vector<Reading>&, const Scenario& scenario, Estimator) {
     LinearRun left = found.run;
     if (scenario.effects.empty()) return left;
     left.residual -= share * found.accepted.front().columns * found.accepted.front().amplitudes;
@@ -53,13 +50,6 @@ AgainstScenario Showing(const DiagnosisRun& found, double share, std::vector<std
 Diagnosis Judged(DiagnosisRun found, const AgainstScenario& against) {
   JudgeByFile({}, twinbench::test::SmallNoiseFree(), {}, against, found);
   return found.diagnosis;
-}
-
-TEST(JudgeByFile, ReadsTheWrittenScenarioBack) {
-  const DiagnosisRun found = FoundAsRead();
-  std::vector<std::string> effects;
-  Judged(found, Showing(found, 1.0, &effects));
-  EXPECT_THAT(effects, testing::ElementsAre("psd_gain"));
 }
 
 TEST(JudgeByFile, AFileThatShowsAllGainsAll) {

@@ -58,12 +58,6 @@ Motion Measured(const Reading& reading, const Calibration& calibration = {}) {
   return Measure({reading}, Bench(), calibration, Estimator::kRigorous).at(0);
 }
 
-TEST(Measure, ReturnsTheMotionThatMadeTheReading) {
-  const Motion m = Measured(OneReading());
-  EXPECT_EQ(m.status, ReadingStatus::kOk);
-  EXPECT_LT((m.Values() - kMotion).cwiseAbs().maxCoeff(), 1e-13);  // the stopping rule of the solution
-}
-
 TEST(Measure, NeverGivesANumberForAReadingThatHasNone) {
   std::vector<Reading> readings(3, OneReading());
   readings[0].status = ReadingStatus::kSaturated;

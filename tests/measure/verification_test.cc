@@ -81,19 +81,6 @@ TEST(SummariseVerification, HasNoNumbersWithFewerThanTwoReadingsAndRefusesThoseO
   EXPECT_THROW(SummariseVerification(ThreeStops().motions, {}, 1.0), std::logic_error);
 }
 
-TEST(SummariseVerification, FindsTheScaleErrorOfAWrongDistance) {
-  // What the published estimator does: readings 13.27 % too large over a sweep of +-300 arcsec.
-  Record record;
-  double squares = 0.0;
-  for (int k = -6; k <= 6; ++k) {
-    const double angle_rad = 50.0 * units::arcsec * k, extra_rad = 0.1327 * angle_rad;
-    Add(record, angle_rad, {extra_rad, 0.0});
-    squares += extra_rad * extra_rad;
-  }
-  EXPECT_NEAR(Summarise(record).rms_yaw_rad, std::sqrt(squares / 12.0), 1e-16);  // rounding
-  EXPECT_NEAR(Summarise(record).max_yaw_rad, 0.1327 * 300 * units::arcsec, 1e-16);
-}
-
 const Vector4 kStep(2 * units::arcsec, -1 * units::arcsec, 3 * units::arcsec, 0.5 * units::um);
 const Vector4 kNoise(0.3 * units::arcsec, 0.2 * units::arcsec, 0.9 * units::arcsec, 0.1 * units::um);
 

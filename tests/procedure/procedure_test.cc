@@ -123,26 +123,6 @@ TEST(FullCircle, ApproachesEveryStopInTheDirectionOfItsPass) {
   for (int k = 7; k < 11; ++k) EXPECT_LT(log.target.moves_deg[k], log.target.moves_deg[k - 1]);
 }
 
-TEST(FullCircle, CounterRotatesTheReferenceFromItsShift) {
-  LogBench log;
-  for (const Reading& r : CarryOutOn(log, FullCircleOnly(12, {0, 5}, {1}))) {
-    EXPECT_NEAR(r.reference_rad + r.target_rad, r.setup * 5 * 30 * kDegree, 1e-12);
-  }
-}
-
-TEST(FullCircle, ReclampTurnsTheGratingAndReseatTurnsTheBody) {
-  Scenario scenario = FullCircleOnly(12, {0, 5}, {1});
-  for (const char* clamping : {"reclamp", "reseat"}) {
-    LogBench log;
-    RotaryOf(scenario).procedure.clamping = clamping;
-    CarryOutOn(log, scenario);
-    ASSERT_EQ(log.mountings.size(), 2u);
-    const bool reclamp = RotaryOf(scenario).procedure.clamping == "reclamp";
-    EXPECT_NEAR(log.mountings[1].clamp_deg, reclamp ? 150.0 : 0.0, 1e-9);
-    EXPECT_NEAR(log.mountings[1].reseat_deg, reclamp ? 0.0 : -150.0, 1e-9);
-  }
-}
-
 TEST(Calibration, SweepsYawThenTiltThereAndBack) {
   LogBench log;
   Scenario scenario = With({"calibration"});

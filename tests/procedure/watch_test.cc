@@ -274,20 +274,6 @@ TEST(RealBench, WaitsForNoMountingThatAPersonSaysIsDone) {
   }
 }
 
-TEST(RealBench, FindsItsOriginAgainAfterARestartOfTheController) {
-  ScriptedBench scripted;
-  test::MemoryLog log;
-  const auto restarts = [&] {
-    scripted.target.state.referenced = false;
-    scripted.target.state.encoder_rad = 0.0;
-  };
-  EXPECT_EQ(EndOn(scripted.Bench(), TwoSetups(), log, {.before = OnceAfterFive(log, restarts)}), "none");
-  EXPECT_EQ(scripted.target.homes, 1);
-  EXPECT_EQ(scripted.reference.homes, 0);
-  EXPECT_EQ(log.attempts.size(), 1u);
-  EXPECT_EQ(log.attempts[0].fault, "restarted");
-}
-
 TEST(RealBench, KeepsNoReadingAboutWhichATableHadLostItsOrigin) {
   for (const char* asked_last : {"thermometer", "adc"}) {  // before the look before the block, and the one behind it
     ScriptedBench scripted;
