@@ -5,8 +5,17 @@
 #include <vector>
 
 #include "tests/sim/encoder_run.h"
+#include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
+#include "twin/benches/encoder_comparison/twin/factory.h"
 #include "twin/core/linear_algebra.h"
+
+/// Readings as a diagnosis takes them, against the twin that follows them.
+namespace twinbench::diagnose::encoder {
+inline EncoderRun RunOf(const std::vector<Reading>& readings, const Scenario& scenario) {
+  return BuildRun(readings, scenario, benches::encoder::FollowRecord);
+}
+}  // namespace twinbench::diagnose::encoder
 
 /// Fits single families to noise-free runs of the twin: what each leaves of the effect that it is made for.
 namespace twinbench::diagnose::test {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/core/input_error.h"
-#include "tests/diagnose/twin_runs.h"
+#include "tests/diagnose/encoder_fit.h"
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "tests/diagnose/twin_runs.h"
+#include "tests/diagnose/encoder_fit.h"
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/core/linear_algebra.h"

@@ -45,8 +45,8 @@ Eigen::MatrixXd ApplyDense(const Nuisance& nuisance, const Eigen::MatrixXd& Y) {
   return Y - J * stacked.householderQr().solve(data);
 }
 
-// Also where rows touch two blocks: taking each row's neighbour out, as noise that is correlated from reading to reading
-// asks for, joins them.
+// Also where rows touch two blocks: taking each row's neighbour out, as noise that is correlated from reading to
+// reading asks for, joins them.
 TEST(Projector, AgreesWithAnOrthogonalFactorisationOfAllUnknowns) {
   for (const double neighbour : {0.0, 0.4}) {
     Nuisance nuisance = ArrowNuisance();
@@ -55,7 +55,8 @@ TEST(Projector, AgreesWithAnOrthogonalFactorisationOfAllUnknowns) {
     joined.bottomRows(kRows - 1) -= neighbour * J.topRows(kRows - 1);
     nuisance.jacobian = joined.sparseView();
     const Eigen::MatrixXd Y = RandomMatrix("data", kRows, 5);
-    EXPECT_LT((Projector(nuisance.jacobian, nuisance).Apply(Y) - ApplyDense(nuisance, Y)).cwiseAbs().maxCoeff(), 1e-9);
+    const Projector projector(nuisance.jacobian, nuisance);
+    EXPECT_LT((projector.Apply(Y) - ApplyDense(nuisance, Y)).cwiseAbs().maxCoeff(), 1e-9);
   }
 }
 

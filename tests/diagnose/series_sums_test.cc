@@ -5,7 +5,7 @@
 #include <set>
 
 #include "tests/diagnose/support/synthetic_run.h"
-#include "tests/diagnose/twin_runs.h"
+#include "tests/diagnose/encoder_fit.h"
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/diagnose/engine/noise_model.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/mechanics/eccentric_stack.h"
 #include "tests/mechanics/plant_runs.h"
 
 namespace twinbench::mechanics {

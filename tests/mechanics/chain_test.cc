@@ -4,8 +4,7 @@
 
 #include "mechanics/chain.h"
 #include "mechanics/sag.h"
-#include "tests/mechanics/eccentric_stack.h"
-#include "tests/mechanics/test_units.h"
+#include "tests/mechanics/plant_runs.h"
 
 namespace twinbench::mechanics {
 namespace {

@@ -5,14 +5,23 @@
 #include <cmath>
 
 #include "mechanics/plant.h"
+#include "mechanics/stack.h"
 #include "tests/mechanics/test_units.h"
 
-/// What the tests of plants compare.
+/// What the tests of plants share and compare.
 namespace twinbench::mechanics {
 
 inline constexpr std::array<Fidelity, 3> kAll = {Fidelity::kKinematic, Fidelity::kLinear, Fidelity::kBullet};
 inline constexpr std::array<Fidelity, 2> kBodies = {Fidelity::kLinear, Fidelity::kBullet};
 inline constexpr double kTenDegrees = 10.0 * kDegree;
+
+/// The default stack with 1.5 kg at 40 mm from the reference's axis.
+inline StackParameters EccentricStack() {
+  StackParameters p;
+  p.payload.mass_kg = 1.5;
+  p.payload.radius_m = 0.040;
+  return p;
+}
 
 inline std::array<double, 14> Numbers(const StackState& s) {
   const BearingPose &t = s.target_bearing, &r = s.reference_bearing;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "mechanics/sag.h"
-#include "tests/mechanics/eccentric_stack.h"
 #include "tests/mechanics/plant_runs.h"
 
 namespace twinbench::mechanics {

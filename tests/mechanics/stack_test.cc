@@ -7,8 +7,7 @@
 #include <stdexcept>
 
 #include "mechanics/sag.h"
-#include "tests/mechanics/eccentric_stack.h"
-#include "tests/mechanics/test_units.h"
+#include "tests/mechanics/plant_runs.h"
 
 namespace twinbench::mechanics {
 namespace {

@@ -6,6 +6,7 @@
 #include "tests/separate/index_spectrum.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/night.h"
+#include "twin/separate/line_search.h"
 
 namespace twinbench::separate {
 namespace {
@@ -146,6 +147,126 @@ TEST(Compensate, PredictsTheUncertaintyOfItsOwnLinesToo) {
     mean_ratio += CheckCompensation(first, compensation, bench.Read({EvenPositions()}, random)).Ratio() / kSeeds;
   }
   EXPECT_NEAR(mean_ratio, 1.0, 0.04);  // 0.86 without it
+}
+
+std::vector<int> OrdersOf(const LineFit& fit) {
+  std::vector<int> orders;
+  for (const IndexLine& line : fit.lines) orders.push_back(line.order);
+  return orders;
+}
+
+TEST(FindLines, FindsKnownLinesAndTheirPhasesWithoutNoise) {
+  std::mt19937_64 random(1);
+  const std::vector<SpectrumLine> lines = {{1, 7 * arcsec, 0.4}, {18, 1 * arcsec, 2.0}, {90, 0.5 * arcsec, -1.0}};
+  const LineFit fit = FindLines(BenchWith(lines, 0.0).Read({EvenPositions(), Between(1)}, random));
+  ASSERT_EQ(OrdersOf(fit), (std::vector<int>{1, 18, 90}));
+  for (std::size_t i = 0; i < 3; ++i) {
+    // Second order of the error itself: the table stands where its error has brought it.
+    EXPECT_NEAR(fit.lines[i].cos_rad, lines[i].amplitude_rad * std::cos(lines[i].phase_rad), 1e-4 * arcsec);
+    EXPECT_NEAR(fit.lines[i].sin_rad, -lines[i].amplitude_rad * std::sin(lines[i].phase_rad), 1e-4 * arcsec);
+    EXPECT_TRUE(fit.lines[i].is_certain);
+  }
+}
+
+TEST(FindLines, FindsNothingInNoise) {
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    std::mt19937_64 random(seed);
+    found += static_cast<int>(FindLines(BenchWith({}, 0.3 * arcsec).Read({EvenPositions()}, random)).lines.size());
+  }
+  // Odds of 20 : 1 for a line and a prior that makes lines rare: one in a hundred spectra is expected at most.
+  EXPECT_LE(found, 3);
+}
+
+TEST(FindLines, DoesNotTakeOrder90ForOrder18At72Positions) {
+  std::mt19937_64 random(2);
+  const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}, {90, 1 * arcsec, 2.0}}, 0.1 * arcsec);
+  const LineFit even = FindLines(bench.Read({EvenPositions()}, random));
+  ASSERT_EQ(OrdersOf(even), (std::vector<int>{1, 18}));
+  EXPECT_TRUE(even.lines[0].is_certain);
+  EXPECT_FALSE(even.lines[1].is_certain);
+  std::vector<int> alike;
+  for (const AlikeOrder& other : even.lines[1].alike) alike.push_back(other.order);
+  EXPECT_EQ(alike, (std::vector<int>{54, 90, 126, 162, 198}));  // 72 m +- 18
+  const LineFit between = FindLines(bench.Read({EvenPositions(), Between(2)}, random));
+  ASSERT_EQ(OrdersOf(between), (std::vector<int>{1, 90}));
+  EXPECT_TRUE(between.lines[1].is_certain);
+}
+
+TEST(FindLines, SaysWhichOrdersThePlacesDoNotShow) {
+  std::mt19937_64 random(3);
+  const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}}, 0.1 * arcsec);
+  const LineFit even = FindLines(bench.Read({EvenPositions()}, random));
+  EXPECT_EQ(even.unseen, (std::vector<int>{36, 72, 108, 144, 180}));
+  EXPECT_EQ(std::ssize(even.doubled), 198);  // all but 72 and 144, which look like a constant
+  const LineFit degrees = FindLines(bench.Read({EvenPositions(), Between(1)}, random));
+  EXPECT_EQ(degrees.unseen, (std::vector<int>{180}));  // its sine is 0 at whole degrees
+  EXPECT_EQ(degrees.doubled.front(), 160);             // looks like 200
+  EXPECT_EQ(std::ssize(degrees.doubled), 40);
+}
+
+TEST(FindLines, IsNotCertainOfALineThatIsHalfSeen) {
+  std::mt19937_64 random(4);
+  const SpectrumBench bench = BenchWith({{180, 1 * arcsec, 0.3}}, 0.1 * arcsec);
+  const LineFit fit = FindLines(bench.Read({EvenPositions(), Between(1)}, random));
+  ASSERT_EQ(OrdersOf(fit), (std::vector<int>{180}));
+  EXPECT_TRUE(fit.lines[0].is_half_seen);
+  EXPECT_FALSE(fit.lines[0].is_certain);
+}
+
+TEST(FindLines, StatesAnUncertaintyThatMatchesItsScatter) {
+  constexpr int kRuns = 200;
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    std::mt19937_64 random(seed);
+    const SpectrumBench bench = BenchWith({{2, 3 * arcsec, 0.0}}, 0.3 * arcsec);
+    const LineFit fit = FindLines(bench.Read({EvenPositions()}, random));
+    ASSERT_FALSE(fit.lines.empty());
+    sum += std::pow((fit.lines[0].sin_rad) / fit.lines[0].u_rad, 2);
+  }
+  // chi-squared of one degree of freedom: mean 1, standard deviation sqrt(2 / 200) = 0.1.
+  EXPECT_NEAR(sum / kRuns, 1.0, 0.3);
+}
+
+TEST(FindLines, RefusesFewPlaces) {
+  IndexErrors errors = MeansByPlace({{0, 0.0, 1.0}, {0, 1.0, 2.0}});
+  EXPECT_KEPT(MessageOf([&] { FindLines(errors); }));
+}
+
+TEST(MeansByPlace, TakesTheConstantsOfSetUpsFromCommonPlaces) {
+  // Value = place + set-up, exactly; the third set-up meets the second at one place only.
+  const auto value = [](int setup, double angle_deg) { return angle_deg + 1000.0 * setup * setup; };
+  std::vector<IndexReading> readings;
+  for (const double at : {0.0, 90.0, 180.0}) readings.push_back({0, at * deg, value(0, at)});
+  for (const double at : {90.0, 180.0, 270.0}) readings.push_back({1, at * deg, value(1, at)});
+  for (const double at : {270.0, 300.0}) readings.push_back({2, (at - 360.0) * deg, value(2, at)});
+  const IndexErrors errors = MeansByPlace(readings);
+  ASSERT_EQ(errors.Count(), 5);
+  const std::vector<double> places_deg = {0.0, 90.0, 180.0, 270.0, 300.0};
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_NEAR(errors.position_rad[i], places_deg[i] * deg, 1e-7);
+    EXPECT_NEAR(errors.value_rad[static_cast<Eigen::Index>(i)] - errors.value_rad[0], places_deg[i], 1e-9);
+    EXPECT_EQ(errors.group[i], errors.group[0]);
+  }
+  EXPECT_EQ(errors.count, (std::vector<int>{1, 2, 2, 2, 1}));
+}
+
+TEST(MeansByPlace, KeepsSetUpsApartThatHaveNoPlaceInCommon) {
+  const IndexErrors errors = MeansByPlace({{0, 0.0, 1.0}, {0, 1.0, 3.0}, {4, 2.0, 100.0}, {4, 3.0, 104.0}});
+  EXPECT_EQ(errors.group[0], errors.group[1]);
+  EXPECT_EQ(errors.group[2], errors.group[3]);
+  EXPECT_NE(errors.group[0], errors.group[2]);
+  EXPECT_TRUE(AboutGroups(errors, errors.value_rad).isApprox(Eigen::Vector4d(-1.0, 1.0, -2.0, 2.0)));
+  EXPECT_TRUE(std::isnan(errors.u_reading_rad));  // nothing was read twice
+}
+
+TEST(MeansByPlace, StatesTheNoiseOfOneReading) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0.0, 0.3 * arcsec);
+  std::vector<IndexReading> readings;
+  for (int k = 0; k < 2000; ++k) readings.push_back({k % 2, (k / 4 % 100) * deg, 1e-5 * (k % 2) + normal(random)});
+  // 2000 readings less 100 places and one constant: 1.6 % of one standard deviation.
+  EXPECT_NEAR(MeansByPlace(readings).u_reading_rad, 0.3 * arcsec, 0.016 * 3.0 * 0.3 * arcsec);
 }
 
 }  // namespace

@@ -200,6 +200,12 @@ TEST(FitTurn, SaysHowMuchAGapCosts) {
   EXPECT_GT(inflation(40), 4.0);
 }
 
+TEST(FitTurn, IsNotDeterminedByTooFewSamples) {
+  const Eigen::VectorXd angle_rad = Eigen::VectorXd::LinSpaced(61, 0.0, kTestTurn_rad * 60.0 / 61.0);
+  EXPECT_FALSE(FitTurn(angle_rad.head(60), Eigen::VectorXd::Zero(60), 0.0, 1, 30).determined);
+  EXPECT_TRUE(FitTurn(angle_rad, Eigen::VectorXd::Zero(61), 0.0, 1, 29).determined);
+}
+
 /// The same problem with cosines and sines and a plain inverse.
 Eigen::MatrixXd PlainInverse(const Eigen::VectorXd& angle_rad, int max_order) {
   Eigen::MatrixXd design(angle_rad.size(), 2 * max_order + 1);

@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/bench.h"
-#include "tests/support/night.h"
 #include "tests/separate/shift_formulas.h"
+#include "tests/support/night.h"
 #include "twin/benches/rotary_4dof/estimators/harmonic_u.h"
+#include "twin/benches/rotary_4dof/estimators/prediction.h"
+#include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
 
 namespace twinbench::separate {
@@ -171,6 +173,175 @@ TEST(Separate, ScalesByWhatAllPassesOfASetUpRepeat) {
     EXPECT_GT(chi2, 0.5) << c.n << ", " << c.passes << ", " << c.highest;
     EXPECT_LT(chi2, 2.0) << c.n << ", " << c.passes << ", " << c.highest;
   }
+}
+
+void Lose(Motion& m, ReadingStatus status) {
+  m.status = status;
+  m.SetValues(Vector4::Constant(kNaN));
+}
+
+void ExpectTruth(const Separation& found, const ExactCircles& c) {
+  const auto tables = test::BothTables(found, c.truth);
+  for (const test::SeparatedTable& t : tables) {
+    // The chain's dz and the unseen dx enter in second order: 3 um / 0.1 m * 5 arcsec = 1e-4 arcsec, amplified
+    // by 30.
+    for (const Component k : {Component::kEx, Component::kEy, Component::kEz})
+      EXPECT_LT(t.RmsError(k), 0.005 * units::arcsec) << t.Name(k);
+  }
+  EXPECT_LT(tables[0].RmsError(Component::kDy), 0.005 * units::um);
+}
+
+TEST(Separate, DoesWithoutSomeReadings) {
+  ExactCircles c = ReadExactly(36, {0, 1, 7, 11}, Clamping::kReclamp);
+  for (const std::size_t i : {3u, 40u, 41u, 75u, 100u, 143u}) Lose(c.motions[i], ReadingStatus::kSaturated);
+  const Separation found = Separate(c.motions, Bench(), Options(36, Clamping::kReclamp));
+  ExpectTruth(found, c);
+  EXPECT_EQ(found.readings, 138);
+  EXPECT_TRUE(std::isnan(found.residuals[40][0]));
+}
+
+TEST(Separate, MarksAPositionThatNobodyVisited) {
+  ExactCircles c = ReadExactly(12, {0, 1, 4}, Clamping::kReseat);
+  for (Motion& m : c.motions) {
+    if (m.position == 5) Lose(m, ReadingStatus::kNoLight);
+  }
+  for (auto& column : c.truth.target.value) column[5] = kNaN;
+  const Separation found = Separate(c.motions, Bench(), Options(12, Clamping::kReseat));
+  EXPECT_TRUE(std::isnan(found.target.value[Component::kEz][5]));
+  EXPECT_TRUE(std::isfinite(found.target.value[Component::kEz][6]));
+  EXPECT_FALSE(found.notes.empty());
+  EXPECT_TRUE(ToJson(found)["target"]["ez_arcsec"][5].is_null());
+  ExpectTruth(found, c);
+}
+
+TEST(Separate, LosesEverythingThatATornRingLeavesOpen) {
+  // Two set-ups close one ring of n links; without one link its slope (the set-up's constant) is free.
+  ExactCircles c = ReadExactly(12, {0, 1}, Clamping::kReseat);
+  Lose(c.motions[4], ReadingStatus::kMissing);
+  const Separation found = Separate(c.motions, Bench(), Options(12, Clamping::kReseat));
+  int lost = 0;
+  for (const double v : found.target.value[Component::kEz]) lost += std::isnan(v) ? 1 : 0;
+  EXPECT_GE(lost, 11);  // one position may lie where the open slope crosses zero
+}
+
+TEST(Separate, RefusesAnglesOffTheGridAReferenceThatDoesNotTurnBackAndAnEmptyRecord) {
+  const std::vector<Motion> right = ReadExactly(12, {0, 1}, Clamping::kReseat).motions;
+  std::vector<Motion> off_grid = right, not_back = right;
+  off_grid[3].target_rad += 0.01;
+  for (Motion& m : not_back) m.reference_rad = m.target_rad;
+  for (const std::vector<Motion>& motions : {off_grid, not_back, {}})
+    EXPECT_THROW(Separate(motions, Bench(), Options(12, Clamping::kReseat)), InputError) << motions.size();
+}
+
+TEST(Separator, KnowsWhichMotionsFitItsLayout) {
+  ExactCircles c = ReadExactly(12, {0, 1, 4}, Clamping::kReseat);
+  const Separator separator(c.motions, Bench(), Options(12, Clamping::kReseat));
+  EXPECT_TRUE(separator.Fits(c.motions));
+  Lose(c.motions[7], ReadingStatus::kOverrun);
+  EXPECT_FALSE(separator.Fits(c.motions));
+  EXPECT_THROW(separator.Separate(c.motions), std::logic_error);
+}
+
+class NoNoiseStated : public testing::TestWithParam<Clamping> {};
+INSTANTIATE_TEST_SUITE_P(BothWays, NoNoiseStated, testing::Values(Clamping::kReclamp, Clamping::kReseat));
+
+TEST_P(NoNoiseStated, LosesNoPositionAndStatesAnUncertaintyOfTheSizeOfTheSecondOrderTerms) {
+  // Of tables that move in all six components.
+  ExactCircles run = ReadExactly(36, {0, 1, 7, 11}, GetParam(), 2);
+  for (Motion& m : run.motions) {
+    m.covariance_known = false;
+    m.cov.setConstant(kNaN);
+  }
+  const Separation found = Separate(run.motions, Bench(), Options(36, GetParam()));
+  EXPECT_EQ(found.notes.size(), 1u) << "that the noise is not known, and nothing else";
+  for (const test::SeparatedTable& t : test::BothTables(found, run.truth)) {
+    for (const Component c : t.estimate.components) {
+      for (const double v : t.estimate.value[c]) EXPECT_TRUE(std::isfinite(v));
+      // A measure of size that knows nothing of the terms' pattern: a factor of three. Index errors have none.
+      EXPECT_LT(t.ErrorOverU(c), 3.0) << t.Name(c);
+      EXPECT_GT(t.ErrorOverU(c), 0.02) << t.Name(c);
+    }
+  }
+}
+
+TEST(SecondOrder, IsNothingBesideRealNoise) {
+  const auto motions = ReadExactly(36, {0, 1, 7, 11}, Clamping::kReseat, 4).motions;
+  const Separation found = Separate(motions, Bench(), Options(36, Clamping::kReseat));
+  for (const Component c : found.target.components) {
+    const auto block = std::find(found.target.components.begin(), found.target.components.end(), c);
+    const auto row = 36 * (block - found.target.components.begin());
+    // (5 arcsec)^2 = 6e-10 rad beside 0.3 um / 0.23 m / sqrt(4 passes) = 5e-7 rad: a millionth of the variance.
+    EXPECT_NEAR(found.target.u[c][0] / std::sqrt(found.target.cov(row, row)), 1.0, 1e-5);
+  }
+}
+
+TEST(UnreadSecondOrder, IsTheSquareOfTheAnglesAndTheirProductsWithLengths) {
+  const Design design = MakeDesign(12, {0, 1, 4}, Clamping::kReseat, Bench());
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(design.Unknowns());
+  for (int i = 0; i < 12; ++i) {
+    for (const Series s : {Series::kTargetEx, Series::kTargetEy, Series::kTargetEz}) x[design.Column(s, i)] = 2e-5;
+    for (const Series s : {Series::kTargetDy, Series::kRefDy}) x[design.Column(s, i)] = 3e-6 / kLengthUnit_m;
+  }
+  // Three of six angular series: a^2 = 2e-10 rad^2, l = 3 um, lever 0.130 m.
+  const Vector4 u = UnreadSecondOrder(design, x);
+  EXPECT_NEAR(u[0], 2e-10, 1e-20);  // rounding
+  EXPECT_NEAR(u[3], 0.130 * 2e-10 + std::sqrt(2e-10) * 3e-6, 1e-20);
+}
+
+TEST(InvertNormal, FindsTheSameRankWhateverTheWeightsOfTheMotions) {
+  const auto motions = EmptyMotions(36, {0, 1, 7, 11}, 1, ReadingCovariance());
+  for (const Clamping clamping : {Clamping::kReclamp, Clamping::kReseat}) {
+    for (const Vector4& scale : {Vector4(1, 1, 1, 1), Vector4(1, 1e-4, 1e-4, 1), Vector4(1e-4, 1, 1, 1e-4)}) {
+      const WeightedStops stops = Weigh(motions, Layouts(36, clamping), scale);
+      EXPECT_EQ(InvertNormal(stops.layout.design, stops.weights.cells, stops.models, stops.Null()).extra_null.cols(), 0)
+          << scale.transpose();
+    }
+  }
+}
+
+TEST(InvertNormal, InvertsWhatTheReadingsDetermine) {
+  auto motions = EmptyMotions(12, {0, 1, 4}, 1, ReadingCovariance());
+  motions[5].status = motions[17].status = ReadingStatus::kMissing;
+  const WeightedStops stops = Weigh(motions, Layouts(12, Clamping::kReclamp));
+  const Eigen::MatrixXd normal = stops.Normal(), null = stops.Null();
+  const Eigen::MatrixXd inverse = InvertNormal(stops.layout.design, stops.weights.cells, stops.models, null).inverse;
+  // N G N = N is the definition; 1e-16 times the condition of these designs, 1e3.
+  EXPECT_LT((normal * inverse * normal - normal).cwiseAbs().maxCoeff(), 1e-11 * normal.maxCoeff());
+}
+
+Separation WithScatter(const Vector4& ratio) {
+  Separation result;
+  result.dof_of.setConstant(100.0);
+  result.dof = 400;
+  result.chi2 = 100.0 * ratio.cwiseAbs2();
+  result.second_order.setZero();
+  return result;
+}
+
+TEST(AssumedNoiseScale, FollowsTheResidualsButNotBelowAHundredthOfTheLargest) {
+  EXPECT_LT((AssumedNoiseScale(WithScatter({0.5, 2, 1, 0.1}), Bench()) - Vector4(0.5, 2, 1, 0.1)).norm(), 1e-14);
+  EXPECT_LT((AssumedNoiseScale(WithScatter({1e-7, 2, 1, 1e-3}), Bench()) - Vector4(0.02, 2, 1, 0.02)).norm(),
+            1e-14);  // rounding
+}
+
+TEST(AssumedNoiseScale, IsNotBelowTheSecondOrder) {
+  Separation result = WithScatter(Vector4::Constant(1e-6));
+  const Vector4 assumed = AssumedCovariance(Bench()).diagonal().cwiseSqrt();
+  result.second_order = 0.01 * assumed;
+  EXPECT_LT((AssumedNoiseScale(result, Bench()) - Vector4::Constant(0.01)).norm(), 1e-14);
+}
+
+TEST(Rescale, IsTheSameWithAndWithoutFactorisingAgain) {
+  const auto motions = EmptyMotions(12, {0, 1, 4}, 2, ReadingCovariance());
+  Separator at_once(motions, Bench(), Options(12, Clamping::kReclamp)), in_steps = at_once;
+  at_once.Rescale(motions, Vector4::Constant(3.0));
+  in_steps.Rescale(motions, {2, 6, 3, 1});
+  in_steps.Rescale(motions, {1.5, 0.5, 1, 3});
+  const Separation a = at_once.Separate(motions), b = in_steps.Separate(motions);
+  EXPECT_EQ(a.scale, b.scale);
+  const Eigen::MatrixXd cov = a.target.cov.ToDense();
+  EXPECT_LT((cov - b.target.cov.ToDense()).cwiseAbs().maxCoeff(), 1e-10 * cov.maxCoeff());  // rounding
+  EXPECT_LT((a.dof_of - b.dof_of).norm(), 1e-8);
 }
 
 }  // namespace

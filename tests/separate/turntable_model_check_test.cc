@@ -162,8 +162,8 @@ TEST(CheckModel, LeavesNothingOfAKnownCurveWithoutNoise) {
   EXPECT_NEAR(check.position_rad[3], 8 * deg, 1e-5);  // to a millionth of a turn
 }
 
-// The published experiment: 72 positions, two tilts, model of the order with the least AICc, 144 check stops. How far
-// it comes below two arcsec is asked of whole runs: tests/scenarios.
+// The published experiment: 72 positions, two tilts, model of the order with the least AICc, 144 check stops. How
+// far it comes below two arcsec is asked of whole runs: tests/scenarios.
 TEST(CheckModel, ExpectsWhatIsLeftOfThePublishedTurntable) {
   constexpr int kSeeds = 50;
   for (const auto& [u_rad, passes] : {std::pair(0.2 * arcsec, 1), {0.5 * arcsec, 4}}) {

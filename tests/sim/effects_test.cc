@@ -73,6 +73,20 @@ void MoveBoth(RotaryBench bench, double target_rad) {
   bench.reference.WaitSettled();
 }
 
+TEST(Effects, CalibrationFindsTheGainAndTheRollThatWereHidden) {
+  Scenario scenario = Quiet();
+  RotaryOf(scenario).procedure.phases = {"calibration"};
+  scenario.effects = {Effect("psd_gain", "psd_b_x", {{"gain_error", 0.01}}),
+                      Effect("psd_roll", "psd_a", {{"roll", 0.005}})};
+  const test::TwinRun run = test::RunTwin(scenario);
+  const auto found = measure::Calibrate(run.readings, measure::NominalGeometry(scenario));
+  // Its prior of 2 % pulls by (u / 0.02)^2, with u about 1e-5 for a stated autocollimator noise of 0.02 arcsec.
+  EXPECT_NEAR(found.gain[2], 1.01, 1e-5);
+  EXPECT_NEAR(found.gain[0], 1.00, 1e-5);
+  EXPECT_NEAR(found.roll_rad[0], 0.005, 1e-5);
+  EXPECT_NEAR(found.roll_rad[1], 0.0, 1e-5);
+}
+
 TEST(Effects, StretchOrPullTheSpotOfTheirDetectorOnly) {
   Twin plain(Quiet());
   kTurnGrating(plain.Bench());
@@ -108,6 +122,24 @@ TEST(Effects, ABackgroundPullsTheSpotByItsShareOfTheCurrentAsThePowerDriftsAndNo
     EXPECT_NEAR(plain[3], first[3], 1e-12);
     EXPECT_EQ(pulled[0], plain[0]);
     pair.Do([](RotaryBench bench) { bench.clock.Wait(std::chrono::hours(1)); });
+  }
+}
+
+// The front stands aslant by 2 h x / (half width)^2 where the beam meets it; orders follow as they follow a yaw
+// and, turned the other way along z by a saddle, a tilt.
+TEST(Effects, AGratingOfAnotherFormTurnsTheOrdersWhereTheBeamIsBesideItsMiddle) {
+  Scenario scenario = Quiet();
+  RotaryOf(scenario).laser.position_m.x() = 1.0 * units::mm;
+  RotaryOf(scenario).laser.position_m.z() = 0.5 * units::mm;
+  const double height_m = 600.0 * units::nm, half_m = 12.5 * units::mm;
+  const double x_slope = 2.0 * height_m * 1e-3 / (half_m * half_m), z_slope = 0.5 * x_slope;
+  for (const bool is_sphere : {true, false}) {
+    Pair pair(Effect("grating_form", is_sphere ? "sphere" : "astigmatism", {{"height", height_m}}), scenario);
+    const Volts d = pair.Difference();
+    for (const int psd : {0, 1}) {
+      EXPECT_NEAR(std::abs(d[2 * psd]) / kV_m, kYaw_m * x_slope, 0.02 * kYaw_m * x_slope) << is_sphere;
+      EXPECT_NEAR(std::abs(d[2 * psd + 1]) / kV_m, kTilt_m * z_slope, 0.02 * kTilt_m * z_slope) << is_sphere;
+    }
   }
 }
 
