@@ -250,7 +250,7 @@ TEST_F(Importing, TakesADeviceThatCountsTheOtherWayAndSaysSo) {
 }
 
 TEST_F(Importing, TakesAWholeNumberOfTurnsForAGearAndSaysSo) {
-  std::string motor = "output [deg],drive angle [deg]\n", against = "motor [deg],output [deg]\n";
+  std::string motor = "reference [deg],drive angle [deg]\n", against = "motor [deg],joint [deg]\n";
   for (int i = 0; i < 200; ++i) {
     motor += fmt::format("{},{}\n", 2 * i, 40.02 * i);
     against += fmt::format("{},{}\n", -10 * i, 2 * i);
@@ -260,7 +260,7 @@ TEST_F(Importing, TakesAWholeNumberOfTurnsForAGearAndSaysSo) {
   EXPECT_NEAR(imported.readings.back().reference_rad / units::deg, 398.0, 1e-6);
   EXPECT_NEAR(imported.readings.back().measured_rad / units::deg, 398.199, 1e-6) << "what a gear does not explain stays";
   EXPECT_LT(Worst_deg(turned.readings), 1e-9);
-  EXPECT_THAT(MessageOf([&] { Take("output [deg],drive [deg]\n0,0\n1,4.37\n2,8.74\n3,13.11\n"); }), HasSubstr("times 4.37"));
+  EXPECT_THAT(MessageOf([&] { Take("reference [deg],drive [deg]\n0,0\n1,4.37\n2,8.74\n3,13.11\n"); }), HasSubstr("times 4.37"));
 }
 
 TEST_F(Importing, NamesTheColumnsThereAreWhereItCannotChoose) {

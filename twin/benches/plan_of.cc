@@ -55,12 +55,13 @@ Interval BetweenAngles(double at_rest_s, const Reading& before, const Reading& h
   return at_rest_s > 0.0 ? AtRest(at_rest_s) : Interval{};
 }
 
-/// No slower than at the lowest speed, no faster than at the highest.
+/// No slower than at the lowest speed. Samples that a card latched may have the time at which they were fetched, which
+/// says nothing of how fast they came.
 Interval BetweenEdges(const HobSettings& s, const Reading& before, const Reading& here) {
-  const auto [slowest, fastest] = std::ranges::minmax(s.hob_procedure.hob_speeds_rad_s);
+  const double slowest = std::ranges::min(s.hob_procedure.hob_speeds_rad_s);
   const double way_rad =
       s.transmission.HobOrder() * std::remainder(here.measured_rad - before.measured_rad, units::turn);
-  return {InMotion(way_rad, fastest).least_s, InMotion(way_rad, slowest).usual_s};
+  return {0.0, InMotion(way_rad, slowest).usual_s};
 }
 
 Interval OnCircle(const CircularSettings& s, const Reading& before, const Reading& here) {
@@ -91,7 +92,7 @@ std::function<Interval(const Reading&, const Reading&)> IntervalOf(const Scenari
   return {};
 }
 
-/// Of the longest pass.
+/// Of the longest pass; 0 of a bench whose procedure is not known here.
 int PositionsOf(const Scenario& scenario) {
   if (scenario.bench == kRotaryBench) return RotaryOf(scenario).procedure.positions;
   if (scenario.bench == kTurntableBench) return TurntableOf(scenario).turntable_procedure.positions;
@@ -100,6 +101,7 @@ int PositionsOf(const Scenario& scenario) {
     return std::max(CircularOf(scenario).procedure.points, CircularOf(scenario).procedure.stops);
   if (scenario.bench == kHobBench)
     return HobOf(scenario).hob_procedure.turns * HobOf(scenario).hob_procedure.samples_per_turn;
+  if (scenario.bench != kEncoderBench) return 0;
   const EncoderProcedureSettings& procedure = EncoderOf(scenario).encoder_procedure;
   return static_cast<int>(std::lround(procedure.turns * procedure.stops));
 }

@@ -43,7 +43,8 @@ void CheckRange(const Channel& channel, double range, std::vector<Finding>& find
 /// Whether anything else was commanded or shown.
 bool AnythingElseMoved(const Reading& before, const Reading& here, const ReadingColumn& besides, const BenchFormat& bench) {
   return std::ranges::any_of(bench.columns, [&](const ReadingColumn& column) {
-    return column.number && column.MustBeThere() && column.name != besides.name && ValueOf(column, before) != ValueOf(column, here);
+    const bool is_judged_by = column.number && (column.MustBeThere() || column.may_be_absent) && column.name != besides.name;
+    return is_judged_by && std::isfinite(ValueOf(column, here)) && ValueOf(column, before) != ValueOf(column, here);
   });
 }
 

@@ -171,7 +171,7 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   run.nuisance = encoder.SetUpsAlone();
   run.residual = encoder.error_rad = comparison.error_rad;
   run.observed = run.schedule.reference_rad + comparison.error_rad;
-  encoder.glitches = FindGlitches(run);
+  encoder.glitches = FindGlitches(run, RelativeNoise(used));
   Bridge(encoder.glitches, encoder.error_rad);
   Bridge(encoder.glitches, run.observed);
   encoder.used = AsFollowed(used, run.schedule);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "twin/core/distributions.h"
+#include "twin/core/units.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/recurrence.h"
 
@@ -41,14 +42,14 @@ double UsualRange(const LinearRun& run) {
 
 /// How far each reading is from the middle of those around it, in what these scatter by or usually do; 0 of one
 /// that lies no farther than all of them do.
-std::vector<double> Farness(const LinearRun& run) {
+std::vector<double> Farness(const LinearRun& run, const Eigen::VectorXd& relative_noise) {
   const double range = UsualRange(run);
   std::vector<double> away, scatter;
   for (int i = 0; i < run.schedule.Readings(); ++i) {
     std::vector<double> around = Around(run, i, i - kBeside, i + kBeside);
     const double middle = around.empty() ? run.residual[i] : Median(around);
     for (double& x : around) x = std::abs(x - middle);
-    away.push_back(std::abs(run.residual[i] - middle));
+    away.push_back(std::abs(run.residual[i] - middle) / std::max(1.0, relative_noise[i]));
     scatter.push_back(around.empty() ? 0.0 : Median(std::move(around)));
   }
   const double usual = Median(scatter);
@@ -93,6 +94,19 @@ double UsualStep_rad(const Schedule& s) {
   return Median(std::move(steps_rad));
 }
 
+/// Two of them at one place of the turn, in two passes, are the place's.
+bool ComeBack(const std::vector<int>& begins, const Schedule& s, double usual_step_rad) {
+  constexpr double kSamePlace = 0.25;  // of the way from one reading to the next
+  for (const int a : begins) {
+    for (const int b : begins) {
+      const bool is_other_pass = s.pass[static_cast<std::size_t>(a)] != s.pass[static_cast<std::size_t>(b)];
+      const double apart_rad = std::remainder(s.reference_rad[a] - s.reference_rad[b], units::turn);
+      if (is_other_pass && std::abs(apart_rad) < kSamePlace * usual_step_rad) return true;
+    }
+  }
+  return false;
+}
+
 double MiddleBeside(const Eigen::VectorXd& rows, const std::vector<int>& left_out, int i) {
   std::vector<double> values;
   for (int k = std::max(0, i - kBeside); k <= std::min(static_cast<int>(rows.size()) - 1, i + kBeside); ++k) {
@@ -128,11 +142,11 @@ double SumOfSquares(const Cause& outliers, double readings) {
 
 }  // namespace
 
-Glitches FindGlitches(const LinearRun& run) {
+Glitches FindGlitches(const LinearRun& run, const Eigen::VectorXd& relative_noise) {
   const Schedule& s = run.schedule;
   const double usual_step_rad = UsualStep_rad(s);
   if (!(usual_step_rad > 0.0)) return {};  // places that are read again and again
-  const std::vector<double> farness = Farness(run);
+  const std::vector<double> farness = Farness(run, relative_noise);
   Glitches found;
   std::vector<int> begins;
   for (int i = 1; i < s.Readings(); ++i) {
@@ -148,7 +162,7 @@ Glitches FindGlitches(const LinearRun& run) {
   const auto half_far = std::ranges::count_if(farness, [](double f) { return f > kHalfFar && f <= kFar; });
   const auto count = std::ssize(found.rows);
   if (2 * half_far > count || static_cast<double>(count) > kMostShare * s.Readings()) return {};
-  if (!RecurrenceOf(begins, run).empty()) return {};
+  if (!RecurrenceOf(begins, run).empty() || ComeBack(begins, s, usual_step_rad)) return {};
   found.size_rad.resize(count);
   for (Eigen::Index k = 0; k < count; ++k) {
     const int row = found.rows[static_cast<std::size_t>(k)];

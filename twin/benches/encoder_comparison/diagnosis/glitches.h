@@ -18,7 +18,8 @@ struct Glitches {
 /// the noise has heavy tails), where stops are read again and again (what settles looks so), or where the far ones
 /// come back at one angle.
 /// @param run  Its residual is looked at.
-Glitches FindGlitches(const LinearRun& run);
+/// @param relative_noise  Of each reading, in that of the usual one: a mean of few samples may lie farther off.
+Glitches FindGlitches(const LinearRun& run, const Eigen::VectorXd& relative_noise);
 
 /// What the readings beside a glitch show is put in its place.
 void Bridge(const Glitches& glitches, Eigen::VectorXd& rows);
