@@ -7,7 +7,6 @@
 
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
-#include "twin/core/nearest_key.h"
 #include "twin/core/scenario_reader.h"
 #include "twin/core/scenario_values.h"
 #include "twin/core/signal_effect.h"
@@ -55,11 +54,7 @@ void RequireEmpirical(EmpiricalSettings empirical, const BenchFormat& bench) {
 FixtureSettings ReadFixture(const TomlValue& block) {
   FixtureSettings fixture;
   fixture.location = block.Where();
-  const std::vector<ScenarioKey> keys = KeysOf(fixture);
-  RefuseUnknown(block, kFixtureTable, KnownKeys(keys));
-  for (const ScenarioKey& key : keys) {
-    if (const auto value = Inside(block, key.Name())) ReadKey(key, *value);
-  }
+  ReadKeys(KeysOf(fixture), block, kFixtureTable);
   if (fixture.name.empty()) throw InputError(block.Where(), "the fixture has no name", "name = \"housing\"");
   if (std::isnan(fixture.box_m.x()) == fixture.mesh_file.empty())
     throw InputError(
@@ -73,11 +68,7 @@ FixtureSettings ReadFixture(const TomlValue& block) {
 EmpiricalSettings ReadEmpirical(const TomlValue& block, const std::string& bench) {
   EmpiricalSettings empirical;
   empirical.location = block.Where();
-  const std::vector<ScenarioKey> keys = KeysOf(empirical);
-  RefuseUnknown(block, kEmpiricalTable, KnownKeys(keys));
-  for (const ScenarioKey& key : keys) {
-    if (const auto value = Inside(block, key.Name())) ReadKey(key, *value);
-  }
+  ReadKeys(KeysOf(empirical), block, kEmpiricalTable);
   RequireEmpirical(empirical, FormatOf(bench));
   return empirical;
 }

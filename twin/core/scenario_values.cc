@@ -194,11 +194,7 @@ void FieldReader::operator()(const RecordList& list) const {
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const TomlValue entry = value.With(*entries.get(i));
     if (!entry.node().is_table()) Refuse(entry, key.Path(), Expected(key));
-    const std::vector<ScenarioKey> keys = list.keys_of(i);
-    RefuseUnknown(entry, "", KnownKeys(keys));
-    for (const ScenarioKey& inner : keys) {
-      if (const auto found = Inside(entry, inner.Name())) ReadKey(inner, *found);
-    }
+    ReadKeys(list.keys_of(i), entry, "");
   }
 }
 
@@ -276,6 +272,13 @@ std::string ReadText(const TomlValue& value, const std::string& key, const std::
 
 void ReadKey(const ScenarioKey& key, const TomlValue& value) {
   std::visit(FieldReader{key, value}, key.field);
+}
+
+void ReadKeys(const std::vector<ScenarioKey>& keys, const TomlValue& table, const std::string& path) {
+  RefuseUnknown(table, path, KnownKeys(keys));
+  for (const ScenarioKey& key : keys) {
+    if (const auto value = Inside(table, key.Name())) ReadKey(key, *value);
+  }
 }
 
 std::string Expected(const ScenarioKey& key) {

@@ -28,6 +28,10 @@ void RefuseUnknown(const TomlValue& table, const std::string& path, const std::v
 /// @throws InputError if its type, a bound, a choice or the length of a list does not fit.
 void ReadKey(const ScenarioKey& key, const TomlValue& value);
 
+/// The same of each key that a table has, which may have no others.
+/// @param path  Of the table, for messages.
+void ReadKeys(const std::vector<ScenarioKey>& keys, const TomlValue& table, const std::string& path);
+
 /// What a key takes, for messages and help: "a number of nm from 200 to 2000".
 std::string Expected(const ScenarioKey& key);
 

@@ -18,7 +18,7 @@ bool IsAnAngle(const Sought& sought) {
 }
 
 /// Whether it says where, not what was read there: the first quantity of the map is the place.
-bool IsAngle(const Map& map, const Column& column) {
+bool SaysWhere(const Map& map, const Column& column) {
   int as_place = 0, as_value = 0;
   bool are_angles_read = false;
   for (const Sought& sought : map.sought) {
@@ -72,9 +72,9 @@ std::vector<Part> PartsOf(const Map& map, const Track& track) {
   std::vector<Part> parts;
   for (const Column& column : track.columns) {
     const int turn = column.IsNumber() ? WayIn(column.name) : 0;
-    if (turn == 0 || IsAngle(map, column)) continue;
+    if (turn == 0 || SaysWhere(map, column)) continue;
     const auto angle = std::ranges::find_if(
-        track.columns, [&](const Column& c) { return c.IsNumber() && IsAngle(map, c) && WayIn(c.name) == turn; });
+        track.columns, [&](const Column& c) { return c.IsNumber() && SaysWhere(map, c) && WayIn(c.name) == turn; });
     parts.push_back({&column, angle == track.columns.end() ? nullptr : &*angle, turn});
   }
   return parts;

@@ -25,11 +25,11 @@ bool HasAngles(const std::vector<Reading>& readings) {
   return std::ranges::any_of(readings, [](const Reading& r) { return std::isfinite(DeviationOf(r).tangential_m); });
 }
 
-BenchFormat OfRadii(bool has_clock) {
+BenchFormat MadeOfRadii() {
   BenchFormat f = Format();
   f.channels = f.points = {f.channels.front()};
-  std::erase_if(f.effects, [has_clock](const EffectEntry& e) {
-    return e.name == "ball_form" || e.name == "bar_gain" || e.name == "bar_nonlinearity" || (e.name == "tone" && !has_clock);
+  std::erase_if(f.effects, [](const EffectEntry& e) {
+    return e.name == "ball_form" || e.name == "bar_gain" || e.name == "bar_nonlinearity";
   });
   constexpr double kLongestSpike_s = 1.0;  // one as long as the way to the next reversal would be backlash and more
   for (EffectEntry& e : f.effects) {
@@ -56,11 +56,11 @@ std::vector<std::string> LeftOpen(const std::vector<Reading>& readings) {
   return open;
 }
 
-/// The bench where its readings show the radius alone. Gain and balls are the instrument's, which users have certified, and no shape of their
-/// own; what goes on in time has no name where none is known.
-const BenchFormat& OfRadii(const std::vector<Reading>& readings) {
-  static const BenchFormat timed = OfRadii(true), without = OfRadii(false);
-  return HasClock(readings) ? timed : without;
+/// The bench where its readings show the radius alone. Gain and balls are the instrument's, which users have certified, and
+/// no shape of their own.
+const BenchFormat& OfRadii() {
+  static const BenchFormat format = MadeOfRadii();
+  return format;
 }
 
 /// The twin's radius alone.
@@ -137,7 +137,7 @@ std::set<int> TakingUpPlay(const std::vector<Reading>& readings, const Scenario&
 /// Of the radius alone: what turns the circle is not free, for it is not seen. Waves of order 1 are the centre, of order 2
 /// squareness and scales, of order 3 straightness.
 diagnose::TwinComparison OfRadiiAlone(diagnose::TwinComparison comparison, const Scenario& scenario, const std::vector<Reading>& readings) {
-  comparison.format = &OfRadii(readings);
+  comparison.format = &OfRadii();
   comparison.angles.front().lowest_order = 4;
   comparison.follow = [whole = comparison.follow](const Scenario& believed, const std::vector<Reading>& record) {
     return std::make_unique<FollowRadii>(whole(believed, record));

@@ -5,6 +5,7 @@
 #include <complex>
 
 #include "twin/benches/hob_transmission/settings.h"
+#include "twin/core/distributions.h"
 #include "twin/core/rounding.h"
 
 namespace twinbench::separate::hob {
@@ -31,9 +32,7 @@ int OrdersThatShow(const std::vector<HobSample>& samples, const TransmissionOpti
   }
   std::erase_if(steps_rad, [](double step_rad) { return !(step_rad > 0.0); });
   if (steps_rad.empty()) return options.max_order;
-  const auto middle = steps_rad.begin() + std::ssize(steps_rad) / 2;
-  std::ranges::nth_element(steps_rad, middle);
-  const double a_turn = units::turn / *middle;
+  const double a_turn = units::turn / Median(std::move(steps_rad));
   if (a_turn > 2.0 * options.max_order) return options.max_order;
   return std::max(1, static_cast<int>(kOrdersASample * a_turn));
 }
