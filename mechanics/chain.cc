@@ -67,10 +67,8 @@ Pose Chain::TargetRotorPose(const ChainState& state) const {
 }
 
 Pose Chain::ReferenceRotorPose(const ChainState& state) const {
-  const bool in_rotor = state.reference_frame == ErrorFrame::kRotor;
   Pose X_LR = TargetRotorPose(state) * X_TS_;
-  FollowTable(X_LR, state.reference_bearing,
-              in_rotor ? RotorToBase(state.reference_error, state.reference_rad) : state.reference_error,
+  FollowTable(X_LR, state.reference_bearing, RotorToBase(state.reference_error, state.reference_rad),
               state.reference_rad);
   return X_LR;
 }

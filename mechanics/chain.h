@@ -38,16 +38,12 @@ BearingPose operator+(const BearingPose& a, const BearingPose& b);
 /// Exact pose of a deflection.
 Pose ToPose(const BearingPose& bearing);
 
-/// In which frame the components of the reference's error are given.
-enum class ErrorFrame { kRotor, kBase };
-
 /// What changes from reading to reading.
 struct ChainState {
   double target_rad = 0.0;  // nominal angle of the rotor on its base; ez comes with the error
   double reference_rad = 0.0;
   PoseError target_error;     // laboratory frame
-  PoseError reference_error;  // see reference_frame
-  ErrorFrame reference_frame = ErrorFrame::kRotor;
+  PoseError reference_error;  // frame of its rotor
   BearingPose target_bearing;
   BearingPose reference_bearing;
   double goniometer_yaw_rad = 0.0;   // of the grating about the laser spot: Rz(yaw) Rx(tilt) in L,
