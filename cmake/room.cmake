@@ -69,7 +69,7 @@ function(twinbench_bench name)
   twinbench_room(${name}_procedure SOURCES ${BENCH_PROCEDURE} ROOMS core procedure)
   twinbench_room(${name}_twin SOURCES ${BENCH_TWIN} ROOMS ${name}_procedure model sim
     PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
-  twinbench_room(${name} SOURCES ${BENCH_SOURCES} ROOMS ${name}_twin separate uncertainty plan diagnose report
+  twinbench_room(${name} SOURCES ${BENCH_SOURCES} ROOMS ${name}_twin plausible separate uncertainty plan diagnose report
     LIBRARIES nlohmann_json::nlohmann_json PRIVATE_LIBRARIES fmt::fmt Ceres::ceres)
 endfunction()
 

@@ -1,6 +1,5 @@
-#include <unsupported/Eigen/MatrixFunctions>
-
 #include "mechanics/feed_body.h"
+#include "mechanics/matrices.h"
 #include "mechanics/require.h"
 
 namespace twinbench::mechanics {
@@ -16,7 +15,7 @@ class LinearFeedBody : public FeedBody {
     system.block<1, 6>(kNutSpeed, 0) << -k / screw, -d / screw, k / screw, d / screw, 1.0 / screw, 0.0;
     system.block<1, 6>(kSlideSpeed, 0) << k / slide, d / slide, -k / slide, -(d + p.friction.viscous_N_s_m) / slide,
         0.0, 1.0 / slide;
-    const Eigen::Matrix<double, 6, 6> propagator = (system * period_s_).exp();
+    const Eigen::Matrix<double, 6, 6> propagator = ExponentialOf(system * period_s_);
     transition_ = propagator.topLeftCorner<4, 4>();
     drive_ = propagator.topRightCorner<4, 2>();
   }

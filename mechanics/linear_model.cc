@@ -2,7 +2,8 @@
 
 #include <cmath>
 #include <limits>
-#include <unsupported/Eigen/MatrixFunctions>
+
+#include "mechanics/matrices.h"
 
 namespace twinbench::mechanics {
 namespace {
@@ -43,7 +44,7 @@ LinearModel::LinearModel(const StackParameters& parameters) {
       -inverse_mass * BearingDamping(p).asDiagonal();
   accelerations_ = InputAccelerations(dynamics, inverse_mass);
   system.block<kCoordinates, kInputs>(kCoordinates, 2 * kCoordinates) = accelerations_;
-  const Eigen::MatrixXd propagator = (system * p.servo_period_s).exp();
+  const Eigen::MatrixXd propagator = ExponentialOf(system * p.servo_period_s);
   transition_ = propagator.topLeftCorner<2 * kCoordinates, 2 * kCoordinates>();
   drive_ = propagator.topRightCorner<2 * kCoordinates, kInputs>();
 }

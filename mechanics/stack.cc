@@ -1,10 +1,10 @@
 #include "mechanics/stack.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "mechanics/matrices.h"
 #include "mechanics/require.h"
 
 namespace twinbench::mechanics {
@@ -123,7 +123,7 @@ namespace {
 Vector12 SquaredFrequencies(StackDynamics& dynamics) {
   const Vector12 root = BearingStiffness(dynamics.parameters()).cwiseSqrt();
   const Matrix12 symmetric = root.asDiagonal() * dynamics.InverseMass(Vector12::Zero()) * root.asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<Matrix12>(symmetric).eigenvalues();
+  return EigenvaluesOfSymmetric(symmetric);
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 #include "mechanics/stack_propagator.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <unsupported/Eigen/MatrixFunctions>
+
+#include "mechanics/matrices.h"
 
 namespace twinbench::mechanics {
 namespace {
@@ -58,7 +60,7 @@ StackPropagator::StackPropagator(const StackParameters& parameters) : period_s_(
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(3 * kCoordinates, 3 * kCoordinates);
   system.topLeftCorner<2 * kCoordinates, 2 * kCoordinates>() = rates_;
   system.block<kCoordinates, kCoordinates>(kCoordinates, 2 * kCoordinates).setIdentity();
-  const Eigen::MatrixXd part = (system * (period_s_ / kParts)).exp();
+  const Eigen::MatrixXd part = ExponentialOf(system * (period_s_ / kParts));
   const Transition once = part.topLeftCorner<2 * kCoordinates, 2 * kCoordinates>();
   const Drive push = part.topRightCorner<2 * kCoordinates, kCoordinates>();
   transition_[0].setIdentity();

@@ -116,5 +116,28 @@ TEST(WholeTurns, AreThoseOfTheTrainWhateverItsErrors) {
   }
 }
 
+/// Within a little more than two turns a degree is more than lies between one ratio of small numbers and the next.
+TEST(WholeTurns, AreThoseOfTheTrainThoughAToothSlips) {
+  const Train train;
+  for (const double resolution_deg : {1e-6, 0.1}) {
+    std::vector<double> input_deg, output_deg;
+    for (int k = 0; k < 396; ++k) {
+      const double slipped_deg = k > 150 ? 1.0 : 0.0;
+      input_deg.push_back(train.Ratio() * 2.0 * k);
+      output_deg.push_back(resolution_deg * std::round((train.Output_deg(input_deg.back()) + slipped_deg) / resolution_deg));
+    }
+    EXPECT_THAT(ColumnsFunction("whole_turns")(input_deg, output_deg, ""), testing::ElementsAre(31)) << resolution_deg;
+  }
+}
+
+TEST(WholeTurns, OfCoarseCountsAreWhatAllStepsTogetherSay) {
+  std::vector<double> input_deg, output_deg;
+  for (int k = 0; k < 900; ++k) {
+    input_deg.push_back(2.001 * k);
+    output_deg.push_back(std::floor(2.001 * k / 60.0 / 0.02) * 0.02);
+  }
+  EXPECT_THAT(ColumnsFunction("whole_turns")(input_deg, output_deg, ""), testing::ElementsAre(60));
+}
+
 }  // namespace
 }  // namespace twinbench::imports

@@ -11,8 +11,7 @@ namespace twinbench {
 inline constexpr const char* kImportedTitle = "imported from ";
 
 /// How many readings the scenario's procedure takes, and how they follow each other: by dwells, speeds and feeds.
-/// Nothing of a scenario that was made up for a recording; nor of a comparison whose stops are not those of the
-/// scenario, which tells only the bench then.
+/// Nothing of a scenario that was made up for a recording.
 plausible::Plan PlanOf(const Scenario& scenario, const std::vector<Reading>& readings);
 
 }  // namespace twinbench

@@ -24,6 +24,9 @@ struct IndexErrors;
 namespace uncertainty {
 struct Contribution;
 }
+namespace plausible {
+struct Plan;
+}
 namespace plan {
 struct NextRun;
 struct ShiftDesign;
@@ -66,6 +69,8 @@ struct Bench {
   /// The twin on the course of a record. Throws InputError if its parts cannot be built.
   std::unique_ptr<model::Follow> (*follow)(const Scenario&, const std::vector<Reading>& record) = nullptr;
   int (*planned_readings)(const Scenario&) = nullptr;  // of the whole run
+  /// What the procedure says of readings that are said to be its own, before they are used. Null: nothing.
+  plausible::Plan (*plan)(const Scenario&, const std::vector<Reading>&) = nullptr;
   bool is_pictured = false;                            // there is light on detectors, which `run --images` writes
   bool has_controllers = false;                        // real devices can stand for it: `measure` and `serve`
 

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "twin/core/errors.h"
+#include "twin/core/reading.h"
 #include "twin/core/units.h"
 #include "twin/import/common.h"
 
@@ -130,30 +131,72 @@ struct Proportion {
   double ratio = kNaN, loose = kNaN;
 };
 
-Proportion ProportionOf(const std::vector<double>& wrapped_a, const std::vector<double>& wrapped_b) {
-  constexpr double kTurnsToTell = 1.5;  // fewer do not tell an order from a line
+/// Angles of two shafts from their first row on [rad], where both are known.
+struct TwoShafts {
+  Eigen::VectorXd a_rad, b_rad;
+};
+
+TwoShafts ShaftsOf(const std::vector<double>& wrapped_a, const std::vector<double>& wrapped_b) {
   const std::vector<double> a = Unwrapped(wrapped_a, ""), b = Unwrapped(wrapped_b, "");
+  std::vector<double> a_rad, b_rad;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    if (!std::isfinite(a[i] + b[i])) continue;
+    a_rad.push_back(a[i] * units::deg);
+    b_rad.push_back(b[i] * units::deg);
+  }
+  const auto from_first = [](const std::vector<double>& x) -> Eigen::VectorXd {
+    const auto all = Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
+    return x.empty() ? Eigen::VectorXd() : Eigen::VectorXd(all.array() - x.front());
+  };
+  return {from_first(a_rad), from_first(b_rad)};
+}
+
+double SlopeOf(const TwoShafts& shafts) {
+  constexpr double kTurnsToTell = 1.5;  // fewer do not tell an order from a line
+  const auto& [a_rad, b_rad] = shafts;
   const Eigen::Index terms = TermsOf(0.0, 0.0).size();
   Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(terms, terms);
   Eigen::VectorXd products = Eigen::VectorXd::Zero(terms);
-  const auto angle = [](const std::vector<double>& x, std::size_t i) { return (x[i] - x[0]) * units::deg; };
-  double way_rad = 0.0, slower_rad = 0.0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    if (!std::isfinite(a[i] + b[i])) continue;
-    const Eigen::RowVectorXd row = TermsOf(angle(a, i), angle(b, i));
+  for (Eigen::Index i = 0; i < a_rad.size(); ++i) {
+    const Eigen::RowVectorXd row = TermsOf(a_rad[i], b_rad[i]);
     squares += row.transpose() * row;
-    products += row.transpose() * angle(a, i);
-    way_rad = std::max(way_rad, std::abs(angle(a, i)));
-    slower_rad = std::max(slower_rad, std::min(std::abs(angle(a, i)), std::abs(angle(b, i))));
+    products += row.transpose() * a_rad[i];
   }
+  const double slower_rad = a_rad.cwiseAbs().cwiseMin(b_rad.cwiseAbs()).maxCoeff();
   const Eigen::Index used = slower_rad > kTurnsToTell * units::turn ? terms : 2;
-  const Eigen::VectorXd fitted = squares.topLeftCorner(used, used).ldlt().solve(products.head(used));
-  double low = 0.0, high = 0.0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    const double otherwise = angle(a, i) - fitted[1] * angle(b, i);
-    low = std::fmin(low, otherwise), high = std::fmax(high, otherwise);
+  return squares.topLeftCorner(used, used).ldlt().solve(products.head(used))[1];
+}
+
+/// A jump from one row to the next that hardly any others have - a tooth that slipped, a reversal - tells nothing of a
+/// ratio.
+void TakeJumpsOut(TwoShafts& shafts, double slope) {
+  constexpr double kOfUsual = 12.0, kOfStep = 0.25;
+  constexpr int kMost = 3;  // more of them, or smaller ones, may be the rounding of counts
+  const Eigen::Index steps = shafts.a_rad.size() - 1;
+  const Eigen::VectorXd otherwise = shafts.a_rad - slope * shafts.b_rad;
+  const Eigen::VectorXd gained = otherwise.tail(steps) - otherwise.head(steps);
+  const double usual = MedianOf({gained.begin(), gained.end()});
+  const Eigen::VectorXd off = (gained.array() - usual).abs();
+  const Eigen::VectorXd step = (shafts.a_rad.tail(steps) - shafts.a_rad.head(steps)).cwiseAbs();
+  const double most =
+      std::max(kOfUsual * MedianOf({off.begin(), off.end()}), kOfStep * MedianOf({step.begin(), step.end()}));
+  if ((off.array() > most).count() > kMost) return;
+  for (Eigen::Index i = 0; i < steps; ++i)
+    if (off[i] > most) shafts.a_rad.tail(steps - i).array() -= gained[i] - usual;
+}
+
+Proportion ProportionOf(const std::vector<double>& a, const std::vector<double>& b) {
+  constexpr Eigen::Index kFewest = 8;
+  TwoShafts shafts = ShaftsOf(a, b);
+  if (shafts.a_rad.size() < 2) return {};
+  const Eigen::VectorXd way_rad = shafts.a_rad;
+  double slope = SlopeOf(shafts);
+  if (shafts.a_rad.size() >= kFewest) {
+    TakeJumpsOut(shafts, slope);
+    slope = SlopeOf(shafts);
   }
-  return {fitted[1], (high - low) / way_rad};
+  const Eigen::VectorXd otherwise = way_rad - slope * shafts.b_rad;
+  return {slope, (otherwise.maxCoeff() - otherwise.minCoeff()) / way_rad.cwiseAbs().maxCoeff()};
 }
 
 std::vector<double> Ratio(const std::vector<double>& a, const std::vector<double>& b, const std::string&) {

@@ -1,15 +1,31 @@
 #include "twin/benches/circular_motion/bench.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/procedure.h"
 #include "twin/benches/circular_motion/procedure/drive.h"
 #include "twin/benches/circular_motion/twin/factory.h"
 #include "twin/plan/next_run.h"
+#include "twin/plausible/plan.h"
 
 namespace twinbench::benches::circular {
 namespace {
 
 int PlannedReadings(const Scenario& s) {
   return static_cast<int>(procedure::CircleSchedule(CircularOf(s).procedure).size());
+}
+
+plausible::Plan PlanOf(const Scenario& s, const std::vector<Reading>&) {
+  const auto& p = CircularOf(s).procedure;
+  return {PlannedReadings(s), std::max(p.points, p.stops),
+          [dwell_s = p.dwell_s](const Reading& before, const Reading& here) {
+            if (!(kFeed_m_s(here) > 0.0)) return plausible::AtRest(dwell_s);
+            return plausible::InMotion(std::hypot(kCommandedX_m(here) - kCommandedX_m(before),
+                                                  kCommandedY_m(here) - kCommandedY_m(before)),
+                                       kFeed_m_s(here));
+          }};
 }
 
 }  // namespace
@@ -24,6 +40,7 @@ const Bench& Whole() {
     b.drive = procedure::DriveCircles;
     b.follow = FollowRecord;
     b.planned_readings = PlannedReadings;
+    b.plan = PlanOf;
     b.evaluate = Evaluate;
     b.score = ScoreRun;
     b.next_runs = NextRunsOf;

@@ -8,12 +8,20 @@
 #include "twin/benches/rotary_4dof/twin/factory.h"
 #include "twin/plan/shift_sets.h"
 #include "twin/plan/next_run.h"
+#include "twin/plausible/plan.h"
 
 namespace twinbench::benches::rotary {
 namespace {
 
 int PlannedReadings(const Scenario& s) {
   return procedure::PlannedReadings(RotaryOf(s).procedure);
+}
+
+plausible::Plan PlanOf(const Scenario& s, const std::vector<Reading>&) {
+  const ProcedureSettings& p = RotaryOf(s).procedure;
+  return {PlannedReadings(s), p.positions, [dwells_s = p.dwell_s](const Reading&, const Reading& here) {
+            return plausible::BesideDwell(dwells_s, here);
+          }};
 }
 
 plan::ShiftDesign ShiftsOf(const Scenario& s) {
@@ -39,6 +47,7 @@ const Bench& Whole() {
     b.make_twin = MakeTwin;
     b.follow = FollowRecord;
     b.planned_readings = PlannedReadings;
+    b.plan = PlanOf;
     b.is_pictured = true;
     b.has_controllers = true;
     b.evaluate = Evaluate;

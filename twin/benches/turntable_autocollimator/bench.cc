@@ -9,12 +9,20 @@
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
 #include "twin/plan/shift_sets.h"
+#include "twin/plausible/plan.h"
 
 namespace twinbench::benches::turntable {
 namespace {
 
 int PlannedReadings(const Scenario& s) {
   return procedure::PlannedReadings(TurntableOf(s).turntable_procedure);
+}
+
+plausible::Plan PlanOf(const Scenario& s, const std::vector<Reading>&) {
+  const TurntableProcedureSettings& p = TurntableOf(s).turntable_procedure;
+  return {PlannedReadings(s), p.positions, [dwells_s = p.dwell_s](const Reading&, const Reading& here) {
+            return plausible::BesideDwell(dwells_s, here);
+          }};
 }
 
 /// One value a set-up, the scenario's in turn.
@@ -55,6 +63,7 @@ const Bench& Whole() {
     b.drive = procedure::DriveTurntable;
     b.follow = FollowRecord;
     b.planned_readings = PlannedReadings;
+    b.plan = PlanOf;
     b.evaluate = Evaluate;
     b.index_errors = separate::turntable::TurntableIndexErrors;
     b.score = ScoreRun;
