@@ -47,8 +47,10 @@ TEST(FreeformEstimator, PredictsWhatTheTwinShows) {
 
 TEST(FreeformEstimator, Finds114Of151UnknownsOnTheStandardPath) {
   const Scenario scenario = FreeformScenario();
-  const Identification found = Identify(FreeformOf(scenario), PosesOf(RunOf(scenario), FreeformOf(scenario)));
+  std::vector<PoseRead> poses = PosesOf(RunOf(scenario), FreeformOf(scenario));
+  const Identification found = Identify(FreeformOf(scenario), poses);
   EXPECT_TRUE(found.converged);
+  EXPECT_FALSE(found.lone);
   EXPECT_EQ(found.unknowns.size(), 151);
   EXPECT_EQ(found.rank, 114);
   EXPECT_EQ(found.not_separable.size(), 37u);
@@ -56,6 +58,13 @@ TEST(FreeformEstimator, Finds114Of151UnknownsOnTheStandardPath) {
   EXPECT_NEAR(found.residual_rms[0], 0.010, 0.0006);
   EXPECT_NEAR(found.residual_rms[1], 0.010, 0.0006);
   EXPECT_NEAR(found.residual_rms[2], 0.050, 0.004);
+
+  poses[400].shown[1] += 0.15;
+  const auto lone = Identify(FreeformOf(scenario), poses).lone;
+  ASSERT_TRUE(lone);
+  EXPECT_EQ(lone->reading, poses[400].reading);
+  EXPECT_EQ(lone->channel, 1);
+  EXPECT_NEAR(lone->times, 15.0, 4.0);  // the fit gives way a little, and noise comes on top
 }
 
 TEST(FreeformEstimator, LeavesNothingOfTheOraclesRunAndPredictsItsUnseenPoses) {

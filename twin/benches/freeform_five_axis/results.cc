@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "twin/benches/freeform_five_axis/bench.h"
+#include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/freeform_five_axis/evaluated.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/freeform_five_axis/tables.h"
@@ -75,15 +76,23 @@ nlohmann::json SeparationJson(const Identification& found) {
       {"dof", found.dof}};
 }
 
+/// A fit by least squares takes a single wrong value for as good as the others.
+std::string LoneWords(const std::optional<LoneValue>& lone) {
+  if (!lone) return "";
+  const std::array columns = {kQpdX_V.column, kQpdY_V.column, kCcd_px.column};
+  return fmt::format("doubtful: {} of reading {} lies {:.3g} times the scatter of the others from the fit\n",
+                     columns[static_cast<std::size_t>(lone->channel)], lone->reading, lone->times);
+}
+
 std::string SummaryOf(const Identification& found) {
   const auto of_machine = std::count(found.identified.begin(), found.identified.begin() + kOfMachine, true);
   return fmt::format(
       "{} of {} unknowns are in the readings; {} of the machine's {} each by itself\n"
       "residual rms    qpd {:.2f}, {:.2f} mV, ccd {:.4f} px; {} degrees of freedom\n"
-      "{} directions are not observable (null space; separation.json, not_separable); the volumetric error does not need them\n{}",
+      "{} directions are not observable (null space; separation.json, not_separable); the volumetric error does not need them\n{}{}",
       found.rank, found.unknowns.size(), of_machine, kOfMachine, found.residual_rms[0] / units::mV,
       found.residual_rms[1] / units::mV, found.residual_rms[2], found.dof, found.not_separable.size(),
-      found.converged ? "" : "the fit has not settled\n");
+      found.converged ? "" : "the fit has not settled\n", LoneWords(found.lone));
 }
 
 /// What the machine errs where it has not been measured, and how well that is known.

@@ -138,6 +138,25 @@ void Conclude(const Spectrum& s, Identification& result) {
   result.not_separable = NullSpaceInWords(s, NamesOf(result.setups));
 }
 
+/// Beyond any tail of noise, and far from the second of its kind: what the model lacks shows at many poses.
+std::optional<LoneValue> LoneIn(const std::vector<PoseRead>& poses, const Eigen::Ref<const Eigen::Matrix3Xd>& left) {
+  constexpr double kTimesOthers = 8.0, kTimesNext = 2.0;
+  std::optional<LoneValue> lone;
+  for (int channel = 0; channel < 3; ++channel) {
+    const Eigen::VectorXd sizes = left.row(channel).cwiseAbs();
+    std::vector<double> rising(sizes.begin(), sizes.end());
+    std::ranges::sort(rising);
+    if (rising.size() < 2) return {};
+    const double scatter = 1.4826 * rising[rising.size() / 2], largest = rising.back(), next = rising.rbegin()[1];
+    if (!(largest > kTimesOthers * scatter && largest > kTimesNext * next)) continue;
+    Eigen::Index pose = 0;
+    sizes.maxCoeff(&pose);
+    if (!lone || largest / scatter > lone->times)
+      lone = {poses[static_cast<std::size_t>(pose)].reading, channel, largest / scatter};
+  }
+  return lone;
+}
+
 }  // namespace
 
 int SetupsOf(const std::vector<PoseRead>& poses) {
@@ -159,9 +178,9 @@ Identification SolveLinear(const Eigen::MatrixXd& jacobian, const Eigen::VectorX
 }
 
 void SetResiduals(const FreeformSettings& bench, const std::vector<PoseRead>& poses, Identification& found) {
-  const Eigen::VectorXd left = Residual(bench, poses, found.unknowns);
-  found.residual_rms =
-      left.reshaped(3, std::ssize(poses)).rowwise().norm() / std::sqrt(static_cast<double>(poses.size()));
+  const Eigen::Matrix3Xd left = Residual(bench, poses, found.unknowns).reshaped(3, std::ssize(poses));
+  found.residual_rms = left.rowwise().norm() / std::sqrt(static_cast<double>(poses.size()));
+  found.lone = LoneIn(poses, left);
   found.residual_per_u = found.residual_rms.cwiseProduct(WeightsOf(bench, 1));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 
 #include "twin/benches/freeform_five_axis/estimators/probe_model.h"
 
@@ -10,6 +11,12 @@ namespace twinbench::benches::freeform::estimators {
 struct NotSeparable {
   std::map<std::string, double> what;  // um and arcsec by name; the first to be chosen is 1
   std::string why;
+};
+
+/// A single value that lies far from where all others of its channel have the machine.
+struct LoneValue {
+  int reading = 0, channel = 0;  // as in `shown`
+  double times = 0.0;            // the scatter of what the fit leaves of the others
 };
 
 /// All errors of the machine from the readings, as far as they are in them.
@@ -23,6 +30,7 @@ struct Identification {
   std::vector<NotSeparable> not_separable;
   Eigen::Vector3d residual_rms;  // V, V, px
   Eigen::Vector3d residual_per_u;  // over the noise that weighs the readings
+  std::optional<LoneValue> lone;   // the worst
   Eigen::Index dof = 0;
   int rounds = 0;
   bool converged = false;

@@ -241,6 +241,7 @@ std::vector<PoseRead> PosesOf(const std::vector<Reading>& readings, const Freefo
     pose.i = static_cast<int>(kCellI(r));
     pose.j = static_cast<int>(kCellJ(r));
     pose.setup = r.setup;
+    pose.reading = r.reading;
     pose.shown = shown;
   }
   return poses;

@@ -16,6 +16,7 @@ struct PoseRead {
   std::array<double, kMachineAxes> at{};  // commanded, SI
   std::array<double, kMachineAxes> t{};   // as the cubics count it
   int i = 0, j = 0, setup = 0;            // cell and set-up
+  int reading = 0;                        // its number in the run
   Eigen::Vector3d shown;                  // qpd_x [V], qpd_y [V], ccd [px]
 };
 
