@@ -5,6 +5,7 @@
 #include <map>
 
 #include "twin/benches/hob_transmission/bench.h"
+#include "twin/benches/hob_transmission/orders_of_tones.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/factory.h"
 #include "twin/core/errors.h"
@@ -251,7 +252,9 @@ void RequireHeads(const std::vector<Reading>& readings) {
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
   RequireHeads(readings);
-  return diagnose::DiagnoseByTwin(readings, scenario, options, Comparison(readings, scenario));
+  diagnose::DiagnosisRun result = diagnose::DiagnoseByTwin(readings, scenario, options, Comparison(readings, scenario));
+  if (HasClock(readings)) TellOrdersOfTones(readings, scenario, result.diagnosis);
+  return result;
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {

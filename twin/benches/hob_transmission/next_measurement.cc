@@ -20,6 +20,8 @@ const std::vector<diagnose::Split>& Splits() {
        "one more mounting with ring and head at another place: what turns along is the ring's"},
       {{"signal_offset", "amplitude_mismatch", "quadrature_error"},
        "the raw sine and cosine of the hob's encoder, whose offsets, sizes and phase are read directly"},
+      {{"tone", "gear_mesh", "worm", "periodic", "hob_runout"},
+       "the same passes at half or at twice the speed: a vibration keeps its frequency, what errs with an angle does not"},
       {{"drift", "slip", "tone", "outliers"},
        "a quarter of an hour with the chain at rest, and the same passes again"},
       {{"drift", "backlash", "latency", "hysteresis"}, "more passes in the order + - - +"}};
