@@ -8,12 +8,18 @@
 #include "twin/diagnose/diagnose.h"
 #include "twin/report/evaluation.h"
 
+namespace twinbench::separate::hob {
+struct HobAnalysis;
+}
+
 /// What can be done with the bench; the fields of Bench say what each is.
 namespace twinbench::benches::hob {
 
 const Bench& Whole();  // constant
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator);
+/// The same of readings that have been analysed.
+report::ScoredRun ScoreOf(const separate::hob::HobAnalysis& analysis, const nlohmann::json& truth);
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
                            const nlohmann::json& truth, Estimator estimator);
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,

@@ -1,0 +1,95 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <complex>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "twin/benches/hob_transmission/bench.h"
+#include "twin/benches/hob_transmission/estimators/hob_bench.h"
+#include "twin/core/errors.h"
+#include "twin/report/curve_score.h"
+
+namespace twinbench::benches::hob {
+namespace {
+
+using separate::hob::AnalyseHob;
+using separate::hob::Coefficient;
+using separate::hob::DirectionResult;
+using separate::hob::HarmonicSeries;
+using separate::hob::HobAnalysis;
+using separate::hob::OrderStatus;
+using separate::hob::SeparatedOrder;
+
+/// Coefficients A exp(j phase) of each order, cosine convention.
+std::map<int, std::complex<double>> TruthOf(const nlohmann::json& harmonics) {
+  std::map<int, std::complex<double>> truth;
+  for (const nlohmann::json& h : harmonics) {
+    const double order = h.at("order").get<double>();
+    if (order != std::floor(order)) continue;
+    truth[static_cast<int>(order)] +=
+        std::polar(h.at("amplitude_arcsec").get<double>(), h.at("phase_deg").get<double>() * units::deg);
+  }
+  return truth;
+}
+
+/// Real and imaginary part of each order as two rows.
+/// @param lost  Orders that the design does not separate: the estimate still has the encoder's share in it.
+report::CurveScore CurveOf(const std::string& name, const HarmonicSeries& series,
+                           const std::map<int, std::complex<double>>& truth, const std::set<int>& lost = {}) {
+  report::CurveScore curve;
+  curve.name = name;
+  curve.value = "amplitude_arcsec";
+  curve.position_name = "order";
+  curve.dof = series.dof;
+  const auto add = [&](int order, double estimate_rad, double variance, double true_arcsec) {
+    curve.position.push_back(order);
+    curve.estimate.push_back(estimate_rad / units::arcsec);
+    curve.u.push_back(std::sqrt(variance) / units::arcsec);
+    curve.truth.push_back(true_arcsec);
+  };
+  for (int k = 1; k <= series.Highest(); ++k) {
+    const Coefficient& c = series.At(k);
+    if (!std::isfinite(c.value.real()) || lost.contains(k)) continue;
+    const auto found = truth.find(k);
+    const std::complex<double> true_value = found == truth.end() ? 0.0 : found->second;
+    add(k, c.value.real(), c.cov(0, 0), true_value.real());
+    add(k, c.value.imag(), c.cov(1, 1), true_value.imag());
+  }
+  return curve;
+}
+
+}  // namespace
+
+report::ScoredRun ScoreOf(const HobAnalysis& analysis, const nlohmann::json& truth) {
+  if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with complete turns");
+  const auto transmission = TruthOf(truth.at("transmission")), encoder = TruthOf(truth.at("table_encoder"));
+  std::set<int> lost;
+  for (const SeparatedOrder& order : analysis.separation->orders)
+    if (order.status == OrderStatus::kSumOnly) lost.insert(order.order);
+  std::vector<report::CurveScore> curves;
+  for (const DirectionResult& direction : analysis.directions) {
+    const std::string name = fmt::format("transmission {:+d}", direction.direction);
+    curves.push_back(CurveOf(name, direction.transmission, transmission, lost));
+  }
+  curves.push_back(CurveOf("table encoder", analysis.encoder, encoder));
+  if (analysis.two_positions) {
+    HarmonicSeries first;
+    first.orders = {analysis.two_positions->encoder};
+    first.dof = analysis.separation->dof;
+    curves.push_back(CurveOf("two positions", first, encoder));
+  }
+  if (analysis.is_interferometer_at_rest)
+    curves.push_back(CurveOf("interferometer at rest", analysis.encoder_by_interferometer, encoder));
+  return {ToJson(curves),
+          "against the truth: both parts of every order that is separable\n" + report::ScoreTable(curves),
+          report::PositionTable(curves), report::ValuesOf(curves)};
+}
+
+report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
+                           const nlohmann::json& truth, Estimator estimator) {
+  return ScoreOf(AnalyseHob(readings, scenario, estimator), truth);
+}
+
+}  // namespace twinbench::benches::hob
