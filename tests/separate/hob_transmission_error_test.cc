@@ -104,6 +104,35 @@ TEST(MeasurePositions, TakesEveryTurnOfLinesThatLieWholeTurnsApart) {
   }
 }
 
+// At lines of the table the hob stands where it stood a turn ago: its counts err alike in every turn.
+TEST(MeasurePositions, StatesWhatCoarseCountsOfTheHobRepeatInEveryTurn) {
+  HobMachine machine = Machine();
+  machine.encoder.clear();
+  machine.samples_per_turn = 720;
+  constexpr double kStep_rad = units::turn / 16384.0;
+  constexpr int kRuns = 8, kOrders = 60;
+  for (const double noise_arcsec : {0.02, 0.1}) {
+    machine.noise_arcsec = noise_arcsec;
+    double with = 0.0, without = 0.0;
+    for (int run = 0; run < kRuns; ++run) {
+      std::vector<HobSample> samples = Samples(machine, Heads({0.0}), static_cast<std::uint64_t>(run + 1));
+      for (HobSample& s : samples)
+        s.hob_encoder_rad = kStep_rad * std::round(s.hob_encoder_rad / kStep_rad + static_cast<double>(run) / kRuns);
+      TransmissionOptions options = OrdersUpTo(kOrders);
+      const PositionError scatter = MeasurePositions(samples, options).at(0);
+      options.hob_step_rad = kTestRatio * kStep_rad;
+      const PositionError counted = MeasurePositions(samples, options).at(0);
+      for (int k = 1; k <= kOrders; ++k) {
+        const double off_rad2 = std::norm(counted.series.At(k).value - Expected(machine, k, 0.0)) / (kRuns * kOrders);
+        with += off_rad2 / counted.series.At(k).cov.trace();
+        without += off_rad2 / scatter.series.At(k).cov.trace();
+      }
+    }
+    EXPECT_THAT(with, testing::AllOf(testing::Gt(0.25), testing::Lt(4.0))) << noise_arcsec;
+    EXPECT_GT(without, 10.0) << noise_arcsec;
+  }
+}
+
 TEST(MeasurePositions, StatesTheScatterOfTheMeanOfItsTurns) {
   HobMachine machine = Machine();
   machine.encoder.clear();

@@ -23,6 +23,7 @@ struct PositionError {
   double drift_rad_per_turn = kNaN;  // in the direction of travel; NaN if no pass has three turns
   double u_drift_rad_per_turn = kNaN;
   std::vector<double> of_drift_rad2 = {};  // [k - 1]: of the variance of either part of order k, what that leaves
+  std::vector<double> of_rounding_rad2 = {};  // likewise, what the steps of counts repeat in every turn; empty: nothing
 };
 
 }  // namespace twinbench::separate::harmonics

@@ -31,13 +31,15 @@ OfOrder Of(const PositionError& position, int order, double of_steps_rad2) {
   const auto k = static_cast<std::size_t>(order - 1);
   OfOrder parts;
   parts.drift = k < position.of_drift_rad2.size() ? position.of_drift_rad2[k] : 0.0;
-  const double scatter = Variance_rad2(position.series, order) - parts.drift;
+  const double repeated = k < position.of_rounding_rad2.size() ? position.of_rounding_rad2[k] : 0.0;
+  const double scatter = Variance_rad2(position.series, order) - parts.drift - repeated;
   // White samples: 2 / N of their variance in either part of C.
   const double per_sample = 2.0 / position.samples;
   const bool within = position.scatter == separate::harmonics::ScatterSource::kWithinTurn;
   const double white = within ? scatter : std::min(scatter, per_sample * std::pow(position.residual_rms_rad, 2));
   parts.steps = std::min(white, per_sample * of_steps_rad2);
   parts.noise = white - parts.steps;
+  parts.steps += repeated;
   parts.repeatability = scatter - white;
   return parts;
 }

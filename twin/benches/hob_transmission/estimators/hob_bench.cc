@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 
+#include "twin/benches/hob_transmission/estimators/rounding_orders.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/core/distributions.h"
 #include "twin/core/rounding.h"
@@ -19,6 +20,8 @@ TransmissionOptions OptionsOf(const Scenario& scenario) {
   options.zero = HobOf(scenario).hob_procedure.encoder_zero == "table_origin" ? EncoderZero::kTableOrigin
                                                                               : EncoderZero::kReferenceMark;
   options.max_order = std::min(kHighestOrder, (HobOf(scenario).hob_procedure.samples_per_turn - 1) / 2);
+  const RingEncoderSettings& hob = HobOf(scenario).hob_encoder;
+  options.hob_step_rad = options.table_turns_per_hob_turn * units::turn / hob.lines / hob.interpolation;
   return options;
 }
 
@@ -66,6 +69,11 @@ bool IsAtRest(const HobSample& s) {
   return s.is_at_rest;
 }
 
+TransmissionOptions Uncounted(TransmissionOptions options) {
+  options.hob_step_rad = 0.0;
+  return options;
+}
+
 /// Stops fold what repeats with hob and teeth onto other orders: only the lowest are the encoder's.
 TransmissionOptions OptionsAtRest(TransmissionOptions options, const InterferometerSettings& interferometer) {
   constexpr int kHighestAtRest = 4;
@@ -80,8 +88,7 @@ HarmonicSeries WithCalibrator(HarmonicSeries series, double u_calibrator_rad) {
 }
 
 /// Adds what the table encoder's steps repeat whenever a stop is read: the stops are the same in every turn.
-void AddRounding(const std::vector<HobSample>& at_rest, const RingEncoderSettings& ring, HobAnalysis& analysis) {
-  HarmonicSeries& series = analysis.encoder_by_interferometer;
+void AddRoundingAtStops(const std::vector<HobSample>& at_rest, const RingEncoderSettings& ring, HobAnalysis& analysis) {
   std::vector<double> seen_rad;
   for (const HobSample& s : at_rest) {
     if (!std::isfinite(s.interferometer_rad)) continue;
@@ -94,20 +101,13 @@ void AddRounding(const std::vector<HobSample>& at_rest, const RingEncoderSetting
   }
   const Eigen::Map<const Eigen::VectorXd> place_rad(seen_rad.data(), std::ssize(seen_rad));
   const Eigen::MatrixXd waves = RoundingWaves(place_rad, units::turn / ring.lines / ring.interpolation, 0.0);
-  for (int k = 1; k <= series.Highest(); ++k) {
-    const Eigen::VectorXcd order = (std::complex<double>(0.0, -k) * place_rad.array()).exp() * 2.0 / static_cast<double>(place_rad.size());
-    const Eigen::RowVectorXcd sums = order.transpose() * waves;
-    Eigen::Matrix<double, 2, Eigen::Dynamic> parts(2, waves.cols());
-    parts << sums.real(), sums.imag();
-    series.At(k).cov += parts * parts.transpose();
-    analysis.encoder_rounding_rad2.push_back(0.5 * parts.squaredNorm());
-  }
+  analysis.encoder_rounding_rad2 = AddRounding(place_rad, waves, analysis.encoder_by_interferometer);
 }
 
 void AddDirections(const std::vector<HobSample>& samples, const TransmissionOptions& options,
                    const std::vector<int>& orders, HobAnalysis& analysis) {
   std::vector<PositionError>& seen = analysis.transmission_by_interferometer;
-  if (HasInterferometer(samples)) seen = MeasurePositions(samples, options, Signal::kInterferometer);
+  if (HasInterferometer(samples)) seen = MeasurePositions(samples, Uncounted(options), Signal::kInterferometer);
   for (const int direction : analysis.separation->directions) {
     DirectionResult result;
     result.direction = direction;
@@ -124,9 +124,9 @@ void AddEncoder(const std::vector<HobSample>& samples, const TransmissionOptions
                 const std::vector<int>& orders, const HobSettings& own, HobAnalysis& analysis) {
   if (!HasInterferometer(samples)) return;
   const double u_calibrator_rad = own.interferometer.u_calibrator_rad;
-  std::vector<PositionError> seen = MeasurePositions(samples, options, Signal::kEncodersMinusInterferometer);
+  std::vector<PositionError> seen = MeasurePositions(samples, Uncounted(options), Signal::kEncodersMinusInterferometer);
   analysis.encoder_by_interferometer = WithCalibrator(EncoderByInterferometer(seen), u_calibrator_rad);
-  if (analysis.is_interferometer_at_rest) AddRounding(samples, own.table_encoder, analysis);
+  if (analysis.is_interferometer_at_rest) AddRoundingAtStops(samples, own.table_encoder, analysis);
   analysis.by_interferometer = seen;
   analysis.encoder_against_interferometer =
       CompareEncoder(*analysis.separation, analysis.encoder_by_interferometer, orders);

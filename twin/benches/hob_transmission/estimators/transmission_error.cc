@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "twin/benches/hob_transmission/estimators/pass_fit.h"
+#include "twin/benches/hob_transmission/estimators/rounding_orders.h"
 #include "twin/core/errors.h"
+#include "twin/core/rounding.h"
 
 namespace twinbench::separate::hob {
 namespace {
@@ -75,6 +77,37 @@ void FillFromOneTurn(const TurnFit& fit, PositionError& position) {
     position.series.orders.push_back({fit.value[k], variance * fit.cofactor[static_cast<std::size_t>(k)]});
 }
 
+/// Where the hob was at the samples, as the table turns meanwhile: what the fit says, which no count rounds.
+Eigen::VectorXd HobPlaces_rad(const std::vector<Pass>& passes, const HarmonicSeries& series) {
+  std::vector<double> places_rad;
+  for (const Pass& pass : passes) {
+    for (const double th_rad : pass.th_rad) {
+      double error_rad = 0.0;
+      for (int k = 1; k <= series.Highest(); ++k)
+        error_rad += (series.At(k).value * std::polar(1.0, k * th_rad)).real();
+      places_rad.push_back(th_rad - error_rad);
+    }
+  }
+  return Eigen::Map<Eigen::VectorXd>(places_rad.data(), std::ssize(places_rad));
+}
+
+/// What counting repeats in every turn is no scatter between them; where it would not be seen beside that, it is left out.
+void AddCounting(const std::vector<Pass>& passes, const TransmissionOptions& options, PositionError& position) {
+  constexpr double kWorthCounting = 0.01;  // of the variance
+  HarmonicSeries& series = position.series;
+  double scatter_rad2 = 0.0;
+  for (const Coefficient& order : series.orders) scatter_rad2 += 0.5 * order.cov.trace() / series.Highest();
+  const double a_turn = static_cast<double>(position.samples) / position.turns;
+  if (!(std::pow(options.hob_step_rad, 2) / 12.0 * 2.0 / a_turn > kWorthCounting * scatter_rad2)) return;
+  Eigen::VectorXd th_rad(0);
+  for (const Pass& pass : passes) {
+    th_rad.conservativeResize(th_rad.size() + std::ssize(pass.th_rad));
+    th_rad.tail(std::ssize(pass.th_rad)) = Eigen::Map<const Eigen::VectorXd>(pass.th_rad.data(), std::ssize(pass.th_rad));
+  }
+  const Eigen::MatrixXd waves = RoundingWaves(HobPlaces_rad(passes, series), options.hob_step_rad, 0.0);
+  position.of_rounding_rad2 = AddRounding(th_rad, waves, series);
+}
+
 void Count(const std::vector<FittedPass>& passes, int max_order, PositionError& position) {
   double sum2 = 0.0;
   int dof = 0;
@@ -123,6 +156,7 @@ PositionError MeasurePosition(const std::vector<Pass>& passes, const Transmissio
     const auto has_turn = [](const FittedPass& pass) { return !pass.turns.empty(); };
     FillFromOneTurn(std::find_if(fitted.begin(), fitted.end(), has_turn)->turns.front().fit, position);
   }
+  if (options.hob_step_rad > 0.0) AddCounting(passes, options, position);
   return position;
 }
 

@@ -19,6 +19,7 @@ struct TransmissionOptions {
       2.0 / 44.0;  // starts of the hob / teeth of the gear; negative: counted contrary
   EncoderZero zero = EncoderZero::kTableOrigin;
   int max_order = 100;  // per turn of the table; the samples of a turn must be more than twice as many
+  double hob_step_rad = 0.0;  // in which the hob's encoder counts, as the table turns meanwhile; 0: none
   /// A turn is left out if gaps make an order's variance larger than this many times that of regular samples.
   double max_inflation = 4.0;
   /// The scatter of an order is pooled with that of this many orders on either side: few turns say little about one
@@ -38,8 +39,8 @@ struct TransmissionOptions {
 ///         or if the signal wanders by more than 0.1 rad within a pass: an angle that wraps, or another ratio.
 ///
 /// Uncertainty: scatter between turns, the same for both phases of an order, and that of the drift; with a single
-/// turn that of white samples about the fit. Not included: what repeats in every turn (the encoders' errors: that
-/// of the hob spindle's counts `ratio` times, equation 2), the table's angle being known to the error of its
+/// turn that of white samples about the fit; and what coarse counts of the hob repeat in every turn. Not included: what
+/// repeats there besides (the encoders' errors: that of the hob spindle's `ratio` times, equation 2), the table's angle being known to the error of its
 /// encoder only (order k: its amplitude times k psi, relative).
 std::vector<PositionError> MeasurePositions(const std::vector<HobSample>& samples,
                                             const TransmissionOptions& options, Signal signal = Signal::kEncoders);
