@@ -193,9 +193,6 @@ TEST(SeparateDevice, WidensTheUncertaintyOfAnOrderThatChangedWithTheMounting) {
   EXPECT_GT(e.curves.device.At(1).cov(0, 0), 100.0 * before) << "chi2 / dof is about (30 / 1)^2 / 2";
 }
 
-using test::Comparison, test::ValueOf;
-using units::deg;
-
 const int kDeviceSeeds = test::ByNight(200, 60);
 
 /// Means of (error / u)^2 over seeds, and over positions or orders of the curves.

@@ -165,8 +165,6 @@ TEST(SeparateHeads, SayWhyThereIsNoCurve) {
   EXPECT_KEPT(SeparateHeads(alike.Readings()).not_separated);
 }
 
-using units::arcsec;
-
 /// A coasting spindle from closed forms: exponential loss of speed, moved beside it by waves of its angle.
 struct Coast {
   std::vector<Wave> ring = {{1, 2.0, 0.4}, {3, 0.5, -1.0}, {12, 0.3, 2.0}, {30, 0.1, 0.1}};

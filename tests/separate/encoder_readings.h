@@ -1,55 +1,30 @@
 #pragma once
 
-#include <Eigen/LU>
 #include <cmath>
 #include <functional>
 #include <vector>
 
+#include "tests/separate/waves.h"
 #include "twin/core/reading.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
-#include "twin/separate/series.h"
 
 /// Readings of an angle comparison from closed forms, independent of the twin.
 namespace twinbench::test {
-
-namespace harmonics = separate::harmonics;
-
-struct Wave {
-  int order;
-  double amplitude_arcsec, phase_rad;
-};
-
-/// Sum of amplitude cos(order angle + phase) [rad].
-inline double ValueOf(const std::vector<Wave>& waves, double angle_rad) {
-  double value = 0.0;
-  for (const Wave& w : waves) value += w.amplitude_arcsec * std::cos(w.order * angle_rad + w.phase_rad);
-  return value * units::arcsec;
-}
-
-/// Order k of a series less that of the waves.
-inline harmonics::Complex ErrorOfOrder(const harmonics::HarmonicSeries& series, const std::vector<Wave>& waves, int k) {
-  harmonics::Complex error = series.At(k).value;
-  for (const Wave& w : waves)
-    error -= w.order == k ? std::polar(w.amplitude_arcsec * units::arcsec, w.phase_rad) : 0.0;
-  return error;
-}
 
 /// Largest error of those orders that are seen [arcsec].
 inline double WorstOrder_arcsec(const harmonics::HarmonicSeries& series, const std::vector<Wave>& waves) {
   double worst = 0.0;
   for (int k = 1; k <= series.Highest(); ++k) {
     if (std::isfinite(series.At(k).value.real()))
-      worst = std::max(worst, std::abs(ErrorOfOrder(series, waves, k)) / units::arcsec);
+      worst = std::max(worst, std::abs(series.At(k).value - CoefficientOf(waves, k)) / units::arcsec);
   }
   return worst;
 }
 
 /// Chi-squared / 2 of one order.
 inline double OrderChi2(const harmonics::HarmonicSeries& series, const std::vector<Wave>& waves, int k) {
-  const harmonics::Complex error = ErrorOfOrder(series, waves, k);
-  const Eigen::Vector2d parts(error.real(), error.imag());
-  return 0.5 * parts.dot(series.At(k).cov.inverse() * parts);
+  return 0.5 * Pull2(series.At(k), CoefficientOf(waves, k));
 }
 
 /// Mean of that over the orders that are seen.

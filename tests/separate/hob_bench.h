@@ -1,46 +1,25 @@
 #pragma once
 
-#include <Eigen/LU>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "tests/separate/waves.h"
 #include "twin/benches/hob_transmission/estimators/transmission_error.h"
 #include "twin/core/stream.h"
-#include "twin/core/units.h"
 
 /// A hobbing machine for the tests of this folder, written from its description: angles go in, encoders read.
 namespace twinbench::separate::hob {
+
+using test::CoefficientOf, test::Pull2, test::ValueOf, test::Wave;
 
 inline constexpr double kArcsec = units::arcsec;
 inline constexpr double kTestTurn_rad = 2.0 * units::kPi;
 inline constexpr double kTestRatio = 2.0 / 44.0;
 
-/// amplitude cos(order angle + phase)
-struct Line {
-  int order = 1;
-  double amplitude_arcsec = 0.0;
-  double phase_rad = 0.0;
-};
-
-inline double ValueOf(const std::vector<Line>& lines, double angle_rad) {
-  double sum_rad = 0.0;
-  for (const Line& l : lines) sum_rad += l.amplitude_arcsec * kArcsec * std::cos(l.order * angle_rad + l.phase_rad);
-  return sum_rad;
-}
-
-/// Line `order` of `lines` as a complex coefficient [rad].
-inline Complex CoefficientOf(const std::vector<Line>& lines, int order) {
-  Complex sum = 0.0;
-  for (const Line& l : lines) {
-    if (l.order == order) sum += std::polar(l.amplitude_arcsec * kArcsec, l.phase_rad);
-  }
-  return sum;
-}
-
 struct HobMachine {
-  std::vector<Line> transmission = {};
-  std::vector<Line> encoder = {};  // in the encoder's own angle
+  std::vector<Wave> transmission = {};
+  std::vector<Wave> encoder = {};  // in the encoder's own angle
   double noise_arcsec = 0.0;       // of one sample, white
   double interferometer_noise_arcsec = 0.0;
   bool interferometer = false;
@@ -116,12 +95,6 @@ inline std::vector<Mounting> Heads(const std::vector<double>& head_deg, double t
 
 inline double DistanceArcsec(Complex a_rad, Complex b_rad) {
   return std::abs(a_rad - b_rad) / kArcsec;
-}
-
-/// Squared error of a coefficient in units of its covariance: chi-squared with 2 degrees of freedom.
-inline double Pull2(const Coefficient& c, Complex truth) {
-  const Eigen::Vector2d error(c.value.real() - truth.real(), c.value.imag() - truth.imag());
-  return error.dot(c.cov.inverse() * error);
 }
 
 }  // namespace twinbench::separate::hob

@@ -210,14 +210,6 @@ TEST(MeasurePositions, CountsTheUncertaintyOfTheDrift) {
   EXPECT_NEAR(sum2 / stated, 1.0, 0.26);
 }
 
-TEST(FitTurn, StatesTheVarianceTwoOverNOfRegularSamples) {
-  const Eigen::VectorXd all = Eigen::VectorXd::LinSpaced(100, 0.0, kTestTurn_rad * 0.99);
-  const TurnFit fit = FitTurn(all, Eigen::VectorXd::Zero(100), 0.0, 1, 40);
-  for (const Eigen::Matrix2d& cofactor : fit.cofactor)
-    EXPECT_LT((cofactor - 0.02 * Eigen::Matrix2d::Identity()).cwiseAbs().maxCoeff(), 1e-14);  // rounding
-  EXPECT_NEAR(fit.inflation, 1.0, 1e-12);
-}
-
 TEST(FitTurn, SaysHowMuchAGapCosts) {
   const Eigen::VectorXd whole = Eigen::VectorXd::LinSpaced(400, 0.0, kTestTurn_rad * 399.0 / 400.0);
   const auto inflation = [&](int missing) {

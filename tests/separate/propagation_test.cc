@@ -242,28 +242,6 @@ TEST(Separator, KnowsWhichMotionsFitItsLayout) {
   EXPECT_THROW(separator.Separate(c.motions), std::logic_error);
 }
 
-class NoNoiseStated : public testing::TestWithParam<Clamping> {};
-INSTANTIATE_TEST_SUITE_P(BothWays, NoNoiseStated, testing::Values(Clamping::kReclamp, Clamping::kReseat));
-
-TEST_P(NoNoiseStated, LosesNoPositionAndStatesAnUncertaintyOfTheSizeOfTheSecondOrderTerms) {
-  // Of tables that move in all six components.
-  ExactCircles run = ReadExactly(36, {0, 1, 7, 11}, GetParam(), 2);
-  for (Motion& m : run.motions) {
-    m.covariance_known = false;
-    m.cov.setConstant(kNaN);
-  }
-  const Separation found = Separate(run.motions, Bench(), Options(36, GetParam()));
-  EXPECT_EQ(found.notes.size(), 1u) << "that the noise is not known, and nothing else";
-  for (const test::SeparatedTable& t : test::BothTables(found, run.truth)) {
-    for (const Component c : t.estimate.components) {
-      for (const double v : t.estimate.value[c]) EXPECT_TRUE(std::isfinite(v));
-      // A measure of size that knows nothing of the terms' pattern: a factor of three. Index errors have none.
-      EXPECT_LT(t.ErrorOverU(c), 3.0) << t.Name(c);
-      EXPECT_GT(t.ErrorOverU(c), 0.02) << t.Name(c);
-    }
-  }
-}
-
 TEST(SecondOrder, IsNothingBesideRealNoise) {
   const auto motions = ReadExactly(36, {0, 1, 7, 11}, Clamping::kReseat, 4).motions;
   const Separation found = Separate(motions, Bench(), Options(36, Clamping::kReseat));
@@ -299,16 +277,6 @@ TEST(InvertNormal, FindsTheSameRankWhateverTheWeightsOfTheMotions) {
   }
 }
 
-TEST(InvertNormal, InvertsWhatTheReadingsDetermine) {
-  auto motions = EmptyMotions(12, {0, 1, 4}, 1, ReadingCovariance());
-  motions[5].status = motions[17].status = ReadingStatus::kMissing;
-  const WeightedStops stops = Weigh(motions, Layouts(12, Clamping::kReclamp));
-  const Eigen::MatrixXd normal = stops.Normal(), null = stops.Null();
-  const Eigen::MatrixXd inverse = InvertNormal(stops.layout.design, stops.weights.cells, stops.models, null).inverse;
-  // N G N = N is the definition; 1e-16 times the condition of these designs, 1e3.
-  EXPECT_LT((normal * inverse * normal - normal).cwiseAbs().maxCoeff(), 1e-11 * normal.maxCoeff());
-}
-
 Separation WithScatter(const Vector4& ratio) {
   Separation result;
   result.dof_of.setConstant(100.0);
@@ -318,13 +286,10 @@ Separation WithScatter(const Vector4& ratio) {
   return result;
 }
 
-TEST(AssumedNoiseScale, FollowsTheResidualsButNotBelowAHundredthOfTheLargest) {
+TEST(AssumedNoiseScale, FollowsTheResidualsButNotBelowAHundredthOfTheLargestOrTheSecondOrder) {
   EXPECT_LT((AssumedNoiseScale(WithScatter({0.5, 2, 1, 0.1}), Bench()) - Vector4(0.5, 2, 1, 0.1)).norm(), 1e-14);
   EXPECT_LT((AssumedNoiseScale(WithScatter({1e-7, 2, 1, 1e-3}), Bench()) - Vector4(0.02, 2, 1, 0.02)).norm(),
             1e-14);  // rounding
-}
-
-TEST(AssumedNoiseScale, IsNotBelowTheSecondOrder) {
   Separation result = WithScatter(Vector4::Constant(1e-6));
   const Vector4 assumed = AssumedCovariance(Bench()).diagonal().cwiseSqrt();
   result.second_order = 0.01 * assumed;

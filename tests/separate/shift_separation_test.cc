@@ -14,26 +14,6 @@ ShiftSet Even(int n, const std::vector<int>& shifts) {
   return {n, shifts, std::vector<double>(shifts.size(), 1.0)};
 }
 
-TEST(Transfers, HaveTheVarianceOfTwoSetUpsInClosedForm) {
-  // |1 + z|^2 = 4 cos^2, so that the factor is 1 / sin^2(pi k / n): 1.3e8 for the first of 36 000 stops, where
-  // 1 - |S|^2 / 4 keeps eight digits only.
-  for (const int n : {36, 360, 36000}) {
-    const auto transfers = Transfers(Even(n, {0, 1}));
-    for (const int k : {1, 2, 7, n / 4, n / 2}) {
-      const double factor = 1.0 / std::pow(std::sin(units::kPi * k / n), 2);
-      EXPECT_NEAR(transfers[static_cast<std::size_t>(k)].VarianceFactor() / factor, 1.0, 1e-12) << n << ' ' << k;
-    }
-  }
-}
-
-TEST(Transfers, AreBestForADifferenceSet) {
-  // {0, 1, 3, 9} meets every difference modulo 13 once: |S_k|^2 = 4 - 1 for every k.
-  for (const HarmonicTransfer& t : Transfers(Even(13, {0, 1, 3, 9}))) {
-    if (t.order == 0) continue;
-    EXPECT_NEAR(t.VarianceFactor(), 16.0 / 13.0, 1e-13);
-  }
-}
-
 TEST(Transfers, WeighSetUps) {
   // Two set-ups of weights 3 and 1: |3 + z|^2 = 10 + 6 cos.
   const auto transfers = Transfers({12, {0, 1}, {3.0, 1.0}});
@@ -112,14 +92,6 @@ TEST(ShiftSeparation, ReturnsTwoCurvesOfThousandsOfStopsWithGaps) {
 TEST(ShiftSeparation, SolvesTwoSetUpsOfManyStopsToTheLastDigitsThatThereAre) {
   const MatrixXd truth = NormalValues(18000, 2);
   ExpectCurves(ShiftSeparation({0, 1}, MatrixXd::Ones(18000, 2)).Solve(ReadingsOf(truth, {0, 1})), truth);
-}
-
-TEST(ShiftSeparation, LosesWhatATornRingLeavesOpen) {
-  // Two set-ups close one ring of n links; without one link its slope, which is the set-ups' difference, is free.
-  MatrixXd weight = MatrixXd::Ones(12, 2);
-  EXPECT_EQ(ShiftSeparation({0, 1}, weight).dof(), 0.0);
-  weight(4, 0) = 0.0;
-  EXPECT_EQ(ShiftSeparation({0, 1}, weight).dof(), 0.0);
 }
 
 TEST(ShiftSeparation, SaysSoWhereItHasNotConverged) {

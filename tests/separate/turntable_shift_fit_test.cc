@@ -141,17 +141,6 @@ TEST_P(ShiftFitAgainstDense, HasTheSameUnknownsResidualsAndCovariance) {
   }
 }
 
-TEST(ShiftFit, IsUndeterminedWhereAGapTearsTwoShiftsApart) {
-  const FitCase two{"two", 12, {0, 1}, {0, 0}};
-  StopGrid grid = GridOf(two);
-  EXPECT_TRUE(ShiftFit(grid).determined());
-  grid.stops.erase(grid.stops.begin() + 5);
-  const ShiftFit torn(grid);
-  EXPECT_FALSE(torn.determined());
-  EXPECT_TRUE(torn.Solve(Values(std::ssize(grid.stops))).array().isNaN().all());
-  EXPECT_FALSE(DenseFit(grid).determined);
-}
-
 TEST(ShiftFit, HearsNothingFromASetUpThatWasReadOnce) {
   StopGrid with = GridOf({"four", 12, {0, 1, 5, 7}, {0, 0, 0, 0}});
   with.stops.resize(37);
