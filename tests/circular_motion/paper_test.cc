@@ -111,10 +111,7 @@ Scenario Believed() {
 }
 
 diagnose::Diagnosis DiagnosisOf(const std::vector<Reading>& readings, const Scenario& believed) {
-  diagnose::DiagnoseOptions options;
-  options.null_runs = 100;  // enough for a threshold
-  options.cache_folder = test::ThresholdsFolder();
-  return Diagnose(readings, believed, options).diagnosis;
+  return Diagnose(readings, believed, test::QuickOptions(100)).diagnosis;
 }
 
 std::string NameOf(const diagnose::Diagnosis& d) {
@@ -161,8 +158,7 @@ TEST(DiagnosisByTwin, NeedsNeitherFreeConstantsNorAngles) {
     const Deviation shown = DeviationOf(r);
     return Eigen::Vector2d(shown.radial_m, shown.tangential_m);
   };
-  diagnose::DiagnoseOptions options;
-  options.null_runs = 100;
+  const diagnose::DiagnoseOptions options = test::QuickOptions(100);
   const std::vector<Reading> readings = WithAngles(test::CircleReadings(scenario));
   EXPECT_EQ(NameOf(diagnose::DiagnoseByTwin(readings, scenario, options, comparison).diagnosis), "none");
 }

@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 
@@ -180,9 +179,7 @@ TEST(CircularDeviations, OfTheMinimumZoneAreThoseOfTheBestCentreOfAll) {
 }
 
 TEST(RadialBar, IsDiagnosedByItsRadiusAlone) {
-  diagnose::DiagnoseOptions options;
-  options.null_runs = 100;
-  options.cache_folder = test::ThresholdsFolder();
+  const diagnose::DiagnoseOptions options = test::QuickOptions(100);
   const double noise_m = StatedNoiseOf(CircularOf(Usual()), true, kRadius_m).radial_m;
   const diagnose::DiagnosisRun of_none = Diagnose(Readings({}, noise_m), Usual(), options);
   EXPECT_EQ(of_none.diagnosis.verdict, diagnose::Verdict::kNone);

@@ -114,10 +114,7 @@ inline std::string WriteHeights(const std::string& name, const std::function<dou
 
 /// The diagnosis with thresholds from as many runs as are enough for one.
 inline diagnose::Diagnosis DiagnosisOf(const std::vector<Reading>& readings, const Scenario& believed) {
-  diagnose::DiagnoseOptions options;
-  options.null_runs = 200;
-  options.cache_folder = test::ThresholdsFolder();
-  return benches::freeform::Diagnose(readings, believed, options).diagnosis;
+  return benches::freeform::Diagnose(readings, believed, test::QuickOptions()).diagnosis;
 }
 
 inline std::vector<std::string> NamesOf(const diagnose::Diagnosis& diagnosis) {

@@ -49,16 +49,6 @@ TEST(Freeform, MovesTheTipByEachErrorAsTheOracleDoes) {
   }
 }
 
-TEST(Freeform, MovesTheTipByAllErrorsTogetherAsTheOracleDoes) {
-  const CsvTable table = ReadCsv(OraclePath("unseen.csv"));
-  const MachineSettings machine = OracleBench().machine;
-  ASSERT_GT(table.rows.size(), 100u);
-  for (const CsvTable::Row& row : table.rows) {
-    const Vector3 off = sim::VolumetricError_m(machine, CommandOf(table, row, 0)) - Tip_m(table, row, 5);
-    EXPECT_LT(off.cwiseAbs().maxCoeff(), kNanometre);
-  }
-}
-
 TEST(Freeform, MeetsTheSurfaceAndIsReflectedAsTheOracleIs) {
   const CsvTable table = ReadCsv(OraclePath("spot.csv"));
   const std::vector<Reading> readings = OracleRun();

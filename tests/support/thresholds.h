@@ -3,6 +3,7 @@
 #include <string>
 
 #include "tests/core/input_error.h"
+#include "twin/diagnose/diagnose.h"
 
 namespace twinbench::test {
 
@@ -11,6 +12,14 @@ inline const std::string& ThresholdsFolder() {
   static const TemporaryFolder folder;
   static const std::string path = folder.path();
   return path;
+}
+
+/// Of a diagnosis whose thresholds are those of fewer simulated runs than a user's.
+inline diagnose::DiagnoseOptions QuickOptions(int null_runs = 200) {
+  diagnose::DiagnoseOptions options;
+  options.null_runs = null_runs;
+  options.cache_folder = ThresholdsFolder();
+  return options;
 }
 
 }  // namespace twinbench::test
