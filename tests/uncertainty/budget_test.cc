@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "tests/uncertainty/stated.h"
+#include "tests/uncertainty/bench_budget.h"
 #include "twin/uncertainty/budget.h"
 #include "twin/uncertainty/quantities.h"
 

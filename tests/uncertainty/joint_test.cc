@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/uncertainty/bench_budget.h"
-#include "tests/uncertainty/stated.h"
 #include "twin/core/linear_algebra.h"
 #include "twin/report/uncertainty_text.h"
 #include "twin/uncertainty/monte_carlo.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "tests/uncertainty/bench_budget.h"
-#include "tests/uncertainty/stated.h"
 #include "twin/uncertainty/agreement.h"
 #include "twin/uncertainty/monte_carlo.h"
 #include "twin/uncertainty/one_at_a_time.h"
