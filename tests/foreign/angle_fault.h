@@ -35,7 +35,6 @@ const std::vector<AngleKind>& UnlistedAngleKinds();
 std::vector<AngleKind> TimeKinds();
 std::vector<AngleKind> AngleLockedKinds();
 std::vector<AngleKind> MotionKinds();
-std::vector<AngleKind> NoiseKinds();
 
 /// One value a reading, in their order.
 template <class Of>

@@ -1,5 +1,4 @@
-#include "tests/foreign/angle_machine.h"
-
+#include "tests/foreign/machines.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
 

@@ -37,11 +37,6 @@ Answer Examine(const Plan& plan, const std::string& cache_folder, bool runs_agai
 /// 0 for a scenario that cannot be applied to them.
 double GainOn(const Machine& machine, const Scenario& extended);
 
-// Which machine it was.
-inline bool HasSeveral(const Truth& truth) {
-  return std::ssize(truth.listed) + truth.unlisted > 1;
-}
-
 /// A name that is not there at any probability above one half, or a tie without one that is near.
 bool IsNamedWrongly(const Answer& a);
 

@@ -1,9 +1,14 @@
 #include <gtest/gtest.h>
 
 #include "tests/foreign/answer.h"
+#include "tests/foreign/grating_stand.h"
 #include "tests/foreign/plans.h"
-#include "tests/hidden/reduced.h"
+#include "tests/hidden/known_wrong.h"
+#include "tests/support/oracle_poses.h"
+#include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
 #include "twin/benches/registry.h"
+#include "twin/core/units.h"
 
 // A few machines of every sort. What falls short of what is asked - the second diagnosis, the stated gain - is counted by
 // tools/scores.
@@ -50,6 +55,81 @@ std::vector<hidden::Answered> Answers() {
 
 TEST(Foreign, MachinesAreAnsweredRightlySaveForKnownCases) {
   EXPECT_TRUE(hidden::WrongOnlyWhereKnown(Answers()));
+}
+
+using diagnose::Diagnosis, diagnose::Verdict;
+
+Diagnosis Naming(const std::string& effect, double probability) {
+  Diagnosis d;
+  d.verdict = Verdict::kNamed;
+  d.causes.resize(1);
+  d.causes[0].effect = effect;
+  d.causes[0].probability = probability;
+  return d;
+}
+
+Truth WarmUp() {
+  Truth truth = Unlisted({"drift"});
+  truth.kind = "warm-up";
+  return truth;
+}
+
+TEST(ForeignJudge, TakesANearNameForNoErrorAndAnotherForOne) {
+  EXPECT_TRUE(Judge(WarmUp(), Naming("drift", 0.97)).wrong.empty());
+  const Answer wrong = Judge(WarmUp(), Naming("hysteresis", 0.97));
+  EXPECT_EQ(wrong.wrong, "hysteresis");
+  EXPECT_TRUE(IsSurelyWrong(wrong) && !IsRight(wrong));
+}
+
+TEST(ForeignJudge, MissesWhatIsNeitherNamedNorSaidToBeUnknown) {
+  Truth truth = WarmUp();
+  truth.listed = {{"eccentricity"}, {"scale"}};
+  Diagnosis d = Naming("scale", 0.9);
+  EXPECT_EQ(Judge(truth, d).missing, 2);
+  d.causes[0].indistinguishable_from = {{"eccentricity", "", 0.99}};
+  EXPECT_EQ(Judge(truth, d).missing, 1);
+  d.unknown.signature = "slow wander";
+  EXPECT_EQ(Judge(truth, d).missing, 0);
+}
+
+/// Readings that drift, by hand.
+std::vector<Reading> Drifting(const Run& run) {
+  std::vector<Reading> readings;
+  for (int k = 0; k < 60; ++k) {
+    Reading& r = readings.emplace_back();
+    r.reading = k;
+    r.time = Time(FromSeconds((30.0 + static_cast<double>(run.seed)) * k));
+    r.reference_rad = 11.0 * k * units::deg;
+    r.measured_rad = r.reference_rad + (run.faults ? 0.02 * units::deg * ToSeconds(r.time) / 3600.0 : 0.0);
+  }
+  return readings;
+}
+
+/// Of a drift at `share` of its rate, 1 - (1 - share)^2 of its square is explained.
+TEST(ForeignGain, IsTheShareThatTheFileExplainsOfAnotherRun) {
+  const Machine machine{{}, LoadScenario(test::ScenarioPath("encoder_comparison.toml")), Drifting};
+  for (const double share : {0.0, 0.5, 1.0, 2.5}) {
+    Scenario extended = machine.believed;
+    extended.effects.push_back(
+        {"drift", "", {{"rate", share * 0.02 * units::deg / 3600.0}, {"curvature", 0.0}, {"warm_up", 0.0}}, ""});
+    EXPECT_NEAR(GainOn(machine, extended), 1.0 - (1.0 - share) * (1.0 - share), 1e-4) << share;
+  }
+}
+
+TableError ErrorOf(const test::OracleError& e) {
+  return {e[0], e[1], e[2], e[3], e[4], e[5]};
+}
+
+TEST(GratingStand, ShinesWhereTheIndependentPosesSay) {
+  const std::vector<test::OraclePose> poses = test::OraclePoses();
+  ASSERT_GT(poses.size(), 100U);
+  for (const test::OraclePose& pose : poses) {
+    const Stacking stacking{pose.target_rad,      pose.reference_rad,      pose.shift_rad, !pose.is_reclamped,
+                            ErrorOf(pose.target), ErrorOf(pose.reference), {}};
+    const Spots spots = ShineOn(GratingOn(stacking), {});
+    const std::array found_m{spots.u_a_m, spots.v_a_m, spots.u_b_m, spots.v_b_m};
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(found_m[k], pose.spots_m[k], 1e-5 * units::um) << k;
+  }
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
-#include "tests/foreign/stand_machine.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <map>
 
+#include "tests/foreign/machines.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
 

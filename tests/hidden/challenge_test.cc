@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/hidden/reduced.h"
+#include "tests/hidden/known_wrong.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
 

@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "tests/hidden/reduced.h"
+#include "tests/hidden/effect_size.h"
+#include "tests/hidden/known_wrong.h"
 #include "tests/hidden/twin_cases.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
@@ -20,12 +20,7 @@ constexpr std::uint64_t kSeed = 71;
 
 EffectSettings Effect(const std::string& name, const std::string& where,
                       const std::map<std::string, double>& parameters) {
-  EffectSettings effect;
-  effect.name = name;
-  effect.where = where;
-  for (const EffectParameter& p : FindEffect(name, kRotaryBench)->parameters) {
-    if (p.BelongsTo(where)) effect.parameters[p.name] = p.default_SI;
-  }
+  EffectSettings effect = WithDefaults(name, where, kRotaryBench);
   for (const auto& [key, value] : parameters) effect.parameters.at(key) = value;
   return effect;
 }

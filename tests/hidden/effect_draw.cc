@@ -11,16 +11,6 @@ namespace {
 
 using units::deg;
 
-EffectSettings WithDefaults(const std::string& name, const std::string& where, const std::string& bench) {
-  EffectSettings effect;
-  effect.name = name;
-  effect.where = where;
-  for (const EffectParameter& p : FindEffect(name, bench)->parameters) {
-    if (p.BelongsTo(where)) effect.parameters[p.name] = p.default_SI;
-  }
-  return effect;
-}
-
 /// Of effects that have such a parameter.
 void Set(EffectSettings& effect, const std::string& name, double value) {
   const auto found = effect.parameters.find(name);
@@ -101,6 +91,14 @@ void DrawSign(Stream& stream, const std::string& bench, EffectSettings& effect) 
 }
 
 }  // namespace
+
+EffectSettings WithDefaults(const std::string& name, const std::string& where, const std::string& bench) {
+  EffectSettings effect{name, where, {}, ""};
+  for (const EffectParameter& p : FindEffect(name, bench)->parameters) {
+    if (p.BelongsTo(where)) effect.parameters[p.name] = p.default_SI;
+  }
+  return effect;
+}
 
 EffectSettings DrawEffect(const std::string& name, const std::string& where, const Scenario& scenario,
                           Stream& stream) {

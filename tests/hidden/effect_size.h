@@ -10,6 +10,9 @@
 /// How large an effect is: the parameter that says so, and the length of its signature in units of noise.
 namespace twinbench::hidden {
 
+/// An effect with the sizes of the catalogue.
+EffectSettings WithDefaults(const std::string& name, const std::string& where, const std::string& bench);
+
 /// An effect of the catalogue with a shape and a sign drawn at random. Its size is the plausible one of the
 /// catalogue; SizedTo brings it to what a case wants.
 ///

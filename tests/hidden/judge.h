@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,6 @@ enum class Grade {
   kWrong,             // another name
   kRefused            // no answer: the design or the file was refused
 };
-const char* GradeName(Grade grade);
 
 /// A parameter of a cause that was named rightly, against its truth.
 struct ParameterCheck {
@@ -59,5 +59,15 @@ Outcome Judge(const Hidden& hidden, const diagnose::Diagnosis& diagnosis);
 
 /// Channels that a signature speaks of, also by the name of a pattern ("tilt": both y channels).
 std::vector<std::string> ChannelsIn(const std::string& signature);
+
+/// P(X <= count) of a binomial distribution.
+double ProbabilityOfAtMost(int count, int of, double p);
+
+/// `count` cases in `of`.
+struct Share {
+  int count = 0, of = 0;
+  /// Clopper-Pearson, both between 0 and 1; of no cases: all between.
+  std::array<double, 2> Interval95() const;
+};
 
 }  // namespace twinbench::hidden

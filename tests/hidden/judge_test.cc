@@ -1,11 +1,9 @@
 #include "tests/hidden/judge.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/core/input_error.h"
 #include "tests/hidden/known_wrong.h"
-#include "tests/hidden/share.h"
 
 namespace twinbench::hidden {
 namespace {

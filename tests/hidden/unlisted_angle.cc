@@ -1,7 +1,9 @@
 #include <cmath>
+#include <map>
 
 #include "tests/hidden/unlisted_cause.h"
 #include "twin/benches/freeform_five_axis/columns.h"
+#include "twin/benches/names.h"
 
 // Causes that catalogues lack; those of the rotary bench are in unlisted_rotary.cc.
 namespace twinbench::hidden {
@@ -148,39 +150,29 @@ UnlistedSignal BothSwivels(const Draw& draw) {
 
 }  // namespace
 
-const std::vector<UnlistedCause>& EncoderUnlistedCauses() {
-  static const std::vector<UnlistedCause> causes = {{"non-integer line", EncoderNonIntegerLine},
-                                                    {"direction times order", EncoderDirectionMap},
-                                                    {"tone in time", AngleTone}};
-  return causes;
-}
-
-const std::vector<UnlistedCause>& HobUnlistedCauses() {
-  static const std::vector<UnlistedCause> causes = {{"non-integer line", HobNonIntegerLine},
-                                                    {"direction times order", HobDirectionMap},
-                                                    {"switching pump", Switching}};
-  return causes;
-}
-
-const std::vector<UnlistedCause>& TurntableUnlistedCauses() {
-  static const std::vector<UnlistedCause> causes = {{"direction times order", TurntableDirectionMap},
-                                                    {"slow wander", SlowWander},
-                                                    {"one pass aside", OnePassAside}};
-  return causes;
-}
-
-const std::vector<UnlistedCause>& CircularUnlistedCauses() {
-  static const std::vector<UnlistedCause> causes = {{"line of the travelled angle", TravelledLine},
-                                                    {"seat of each pass", SeatOfEachPass},
-                                                    {"direction times order", CircleDirectionMap},
-                                                    {"slow wander", CircleWander}};
-  return causes;  // constant
-}
-
-const std::vector<UnlistedCause>& FreeformUnlistedCauses() {
-  static const std::vector<UnlistedCause> causes = {
-      {"gain with the temperature", WarmGain}, {"etalon", Etalon}, {"product of both swivels", BothSwivels}};
-  return causes;  // constant
+const std::vector<UnlistedCause>& UnlistedCausesOf(const std::string& bench) {
+  static const std::map<std::string, std::vector<UnlistedCause>> causes = {
+      {kRotaryBench, RotaryUnlistedCauses()},
+      {kEncoderBench,
+       {{"non-integer line", EncoderNonIntegerLine},
+        {"direction times order", EncoderDirectionMap},
+        {"tone in time", AngleTone}}},
+      {kHobBench,
+       {{"non-integer line", HobNonIntegerLine},
+        {"direction times order", HobDirectionMap},
+        {"switching pump", Switching}}},
+      {kTurntableBench,
+       {{"direction times order", TurntableDirectionMap},
+        {"slow wander", SlowWander},
+        {"one pass aside", OnePassAside}}},
+      {kCircularBench,
+       {{"line of the travelled angle", TravelledLine},
+        {"seat of each pass", SeatOfEachPass},
+        {"direction times order", CircleDirectionMap},
+        {"slow wander", CircleWander}}},
+      {kFreeformBench,
+       {{"gain with the temperature", WarmGain}, {"etalon", Etalon}, {"product of both swivels", BothSwivels}}}};
+  return causes.at(bench);
 }
 
 }  // namespace twinbench::hidden

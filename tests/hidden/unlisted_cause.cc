@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "tests/hidden/placements.h"
-#include "tests/hidden/unlisted.h"
 #include "twin/benches/names.h"
 
 namespace twinbench::hidden {
@@ -125,14 +124,6 @@ UnlistedSignal OnColumn(Eigen::Index channel, Eigen::Index channels, const std::
 
 UnlistedSignal OnAngle(const std::vector<std::string>& locks, const Eigen::VectorXd& series) {
   return {locks, {}, series};
-}
-
-const std::vector<UnlistedCause>& UnlistedCausesOf(const std::string& bench) {
-  if (bench == kRotaryBench) return RotaryUnlistedCauses();
-  if (bench == kTurntableBench) return TurntableUnlistedCauses();
-  if (bench == kCircularBench) return CircularUnlistedCauses();
-  if (bench == kFreeformBench) return FreeformUnlistedCauses();
-  return bench == kHobBench ? HobUnlistedCauses() : EncoderUnlistedCauses();
 }
 
 std::vector<Plan> UnlistedPlans(const std::string& bench, const TwinOptions& options) {

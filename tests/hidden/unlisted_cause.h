@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/hidden/bench_runs.h"
+#include "tests/hidden/twin_cases.h"
 
 /// What causes that the catalogue lacks write into the readings of a run that is otherwise clean.
 namespace twinbench::hidden {
@@ -63,10 +64,9 @@ struct UnlistedCause {
 };
 const std::vector<UnlistedCause>& UnlistedCausesOf(const std::string& bench);
 const std::vector<UnlistedCause>& RotaryUnlistedCauses();
-const std::vector<UnlistedCause>& EncoderUnlistedCauses();
-const std::vector<UnlistedCause>& TurntableUnlistedCauses();
-const std::vector<UnlistedCause>& HobUnlistedCauses();
-const std::vector<UnlistedCause>& CircularUnlistedCauses();
-const std::vector<UnlistedCause>& FreeformUnlistedCauses();
+
+/// Causes that the catalogue lacks, written into the readings of a run that is otherwise clean: `magnitudes` x
+/// `seeds` cases of each.
+std::vector<Plan> UnlistedPlans(const std::string& bench, const TwinOptions& options);
 
 }  // namespace twinbench::hidden

@@ -17,10 +17,7 @@ namespace {
 
 Scenario WithPlay() {
   Scenario hidden = hidden::Drawn(hidden::Design::kTurntable, 13001);
-  EffectSettings play;
-  play.name = "backlash";
-  play.parameters["width"] = 0.27 * units::arcsec;
-  hidden.effects.push_back(play);
+  hidden.effects.push_back({"backlash", "", {{"width", 0.27 * units::arcsec}}, ""});
   return hidden;
 }
 
@@ -119,11 +116,8 @@ double ByIntegral(double p, double mean_a, double sd_a, double mean_b, double sd
   return bits;
 }
 
-TEST(ExpectedInformation, IsNothingWhereAllShowTheSame) {
+TEST(ExpectedInformation, IsNothingWhereAllShowTheSameAndTheWholeEntropyWhereTheyAreFarApart) {
   EXPECT_NEAR(ExpectedInformation_bit({At(0.5, 1.0), At(0.5, 1.0)}), 0.0, 1e-9);
-}
-
-TEST(ExpectedInformation, IsTheWholeEntropyWhereTheyAreFarApart) {
   EXPECT_NEAR(ExpectedInformation_bit({At(0.7, 0.0), At(0.2, 30.0), At(0.1, 60.0)}), Entropy_bit({0.7, 0.2, 0.1}),
               1e-6);
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/hidden/placements.h"
-#include "tests/hidden/twin_case.h"
+#include "tests/hidden/twin_cases.h"
 #include "tests/hidden/unlisted_cause.h"
 #include "twin/core/units.h"
 #include "twin/investigate/investigation.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "tests/core/input_error.h"
-#include "tests/hidden/unlisted.h"
+#include "tests/hidden/unlisted_cause.h"
 #include "tests/investigate/hidden_investigation.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/registry.h"
@@ -131,11 +131,7 @@ TEST(Investigate, MakesARunThatCanBeDiagnosedWhereTheFirstCannot) {
   RotaryOf(believed).procedure.shifts = {0, 1};
   RotaryOf(believed).procedure.passes = {1};
   Scenario hidden = believed;
-  EffectSettings roll;
-  roll.name = "psd_roll";
-  roll.where = "psd_a";
-  roll.parameters["roll"] = 5e-3;
-  hidden.effects.push_back(roll);
+  hidden.effects.push_back({"psd_roll", "psd_a", {{"roll", 5e-3}}, ""});
   Laboratory laboratory = LaboratoryOf(hidden, believed);
   const Means means = MeansOf(believed);
   const Investigation found = Investigate(believed, TenHours(), means, laboratory);

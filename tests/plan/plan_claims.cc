@@ -73,11 +73,7 @@ std::vector<EffectSettings> DrawnConstants(const Scenario& scenario, std::uint64
   if (scenario.bench != kRotaryBench) return effects;
   Stream stream(run, "plan.constants");
   for (const auto& constant : benches::rotary::CalibratedConstants()) {
-    EffectSettings effect;
-    effect.name = constant.effect;
-    effect.where = constant.where;
-    effect.parameters[constant.parameter] = constant.sd * stream.Normal();
-    effects.push_back(effect);
+    effects.push_back({constant.effect, constant.where, {{constant.parameter, constant.sd * stream.Normal()}}, ""});
   }
   return effects;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tests/hidden/placements.h"
-#include "tests/hidden/twin_case.h"
+#include "tests/hidden/twin_cases.h"
 #include "twin/diagnose/isolability.h"
 
 /// What a plan claims, held against runs of the twin: for the tests, and for the score that is run by hand.

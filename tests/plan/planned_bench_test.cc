@@ -193,41 +193,6 @@ TEST(UnseenEffects, MoveResults) {
   EXPECT_GT(unseen.front().biases.front().per_u, 0.5);
 }
 
-/// Root mean squares of u and of the error of the target's ez over some runs of the twin.
-struct Reached {
-  double u = 0.0, error = 0.0;
-};
-Reached ReachedBy(const std::vector<int>& shifts, const std::vector<int>& passes) {
-  constexpr int kRuns = 8;
-  Reached reached;
-  int values = 0;
-  for (int run = 0; run < kRuns; ++run) {
-    Scenario scenario = SmallRotary("reseat");
-    scenario.seed = 300 + static_cast<std::uint64_t>(run);
-    RotaryOf(scenario).procedure.positions = 36;
-    RotaryOf(scenario).procedure.shifts = shifts;
-    RotaryOf(scenario).procedure.passes = passes;
-    const Bench& bench = BenchOf(scenario);
-    const nlohmann::json truth = bench.make_twin(scenario)->Truth();
-    for (const report::ScoredValue& v :
-         bench.score(scenario, ReadingsOfTwin(scenario), truth, Estimator::kRigorous).values) {
-      if (v.name.find("target.ez_arcsec") == std::string::npos) continue;
-      reached.u += v.u * v.u;
-      reached.error += (v.value - v.truth) * (v.value - v.truth);
-      ++values;
-    }
-  }
-  return {std::sqrt(reached.u / values), std::sqrt(reached.error / values)};
-}
-
-/// As many readings: 3.0 by the closed form (docs/plan.md has the same for n = 360).
-TEST(BestShifts, FourBeatTwoThatAreTakenTwiceOnTheTwin) {
-  const Reached two = ReachedBy({0, 1}, {1, 1}), four = ReachedBy(plan::BestShifts(36, 4).shifts, {1});
-  EXPECT_GT(two.u / four.u, 2.9);
-  // Errors of two shifts are mostly one order's: 16 values of it scatter by a sixth, three of which are half.
-  EXPECT_GT(two.error / four.error, 1.5);
-}
-
 /// Those of an encoder come from the noise of one run, which is known to some per cent.
 TEST(CheckSizes, OfAnEncoderAreWhatManyRunsOfTheTwinSay) {
   const Scenario scenario = LoadScenario(test::ScenarioPath("encoder_comparison.toml"));

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "tests/hidden/share.h"
+#include "tests/hidden/judge.h"
 
 namespace twinbench::scores {
 namespace {

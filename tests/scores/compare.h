@@ -31,4 +31,7 @@ Comparison Compare(const Rows& now, const Rows& before);
 
 std::string InWords(const Comparison& comparison);
 
+/// Counts by set and bench with 95 % intervals, by what is hidden, and the answers that are not right; Markdown.
+std::string Summary(const Rows& rows);
+
 }  // namespace twinbench::scores

@@ -9,7 +9,6 @@
 #include "tests/hidden/run_cases.h"
 #include "tests/scores/compare.h"
 #include "tests/scores/sets.h"
-#include "tests/scores/summary.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
 #include "twin/core/scenario_schema.h"

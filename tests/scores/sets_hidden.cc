@@ -3,7 +3,7 @@
 #include "tests/hidden/challenge.h"
 #include "tests/hidden/clean_cases.h"
 #include "tests/hidden/twin_cases.h"
-#include "tests/hidden/unlisted.h"
+#include "tests/hidden/unlisted_cause.h"
 #include "tests/hidden/written_file.h"
 #include "tests/scores/sets.h"
 #include "tests/support/twin_run.h"
@@ -106,6 +106,23 @@ Plans UnlistedSet(const std::string& bench, const Amount& amount) {
   for (std::size_t k = 0; k < struck.size(); k += amount.is_long ? 3 : 10) some.push_back(struck[k]);
   AppendCases("unlisted", bench, "struck ", some, amount.cache_folder, plans, IsUnknown);
   return plans;
+}
+
+const std::vector<Set>& Sets() {
+  static const std::vector<Set> sets = {
+      {"hidden", "every effect at every place, by the twin; pairs; mounts that creep", HiddenSet},
+      {"challenge", "cases of independent generators, tests/data/challenge*", ChallengeSet},
+      {"foreign", "machines that share nothing with the program: causes without a name, several at once",
+       ForeignSet},
+      {"two_runs", "a first run is diagnosed, its written file predicts another day's run of the same machine",
+       TwoRunsSet},
+      {"own_scenario", "a run of the twin with its own scenario, key by key and effect by effect: silence is right",
+       OwnScenarioSet},
+      {"investigate", "one hidden cause, with as many runs as it takes", InvestigateSet},
+      {"clean", "nothing wrong, the noise odd: silence is right", CleanSet},
+      {"unlisted", "causes that the catalogue lacks, and effects struck from it", UnlistedSet},
+      {"shelf", "recordings as people have them, imported by a plain guess: tests/data/shelf", ShelfSet}};
+  return sets;
 }
 
 }  // namespace twinbench::scores

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "tests/hidden/unlisted.h"
+#include "tests/hidden/unlisted_cause.h"
 #include "tests/investigate/hidden_investigation.h"
 #include "tests/own_scenario/own_scenario.h"
 #include "tests/scores/sets.h"

@@ -1,11 +1,10 @@
-#include "tests/scores/summary.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
-#include "tests/hidden/share.h"
+#include "tests/hidden/judge.h"
+#include "tests/scores/compare.h"
 
 namespace twinbench::scores {
 namespace {

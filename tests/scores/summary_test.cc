@@ -6,7 +6,6 @@
 #include "tests/core/input_error.h"
 #include "tests/scores/compare.h"
 #include "tests/scores/row.h"
-#include "tests/scores/summary.h"
 
 namespace twinbench::scores {
 namespace {
