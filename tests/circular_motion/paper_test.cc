@@ -110,10 +110,6 @@ Scenario Believed() {
       ".", {"circular_procedure.points=72", "circular_procedure.stops=18"});
 }
 
-diagnose::Diagnosis DiagnosisOf(const std::vector<Reading>& readings, const Scenario& believed) {
-  return Diagnose(readings, believed, test::QuickOptions(100)).diagnosis;
-}
-
 std::string NameOf(const diagnose::Diagnosis& d) {
   if (d.verdict == diagnose::Verdict::kNone) return "none";
   return d.causes.empty() ? "unknown" : d.causes.front().effect + d.causes.front().where;
@@ -121,7 +117,7 @@ std::string NameOf(const diagnose::Diagnosis& d) {
 
 /// What a run of the one is diagnosed as by who believes the other.
 std::string NameOf(const Scenario& is, const Scenario& believed) {
-  return NameOf(DiagnosisOf(test::CircleReadings(is), believed));
+  return NameOf(Diagnose(test::CircleReadings(is), believed, test::QuickOptions(100)).diagnosis);
 }
 
 /// Of two small circles, which are soon driven.

@@ -39,9 +39,10 @@ TEST(CurveFigures, HoldTheNumbersOfResultsWithTheirUncertaintyAndItsCoverage) {
   EXPECT_EQ(curve.k, 2.25);
 }
 
+const json kScore = {{"values", ScoredValuesJson({{"table.ez_arcsec[0]", 1.5, 0.1, 1.25}, {"table.ez_arcsec[2]", -2.5, 0.3, -2.75}})}};
+
 TEST(CurveFigures, ShowTruthOnlyWhereTheScoreHasIt) {
-  const json score = {{"values", ScoredValuesJson({{"table.ez_arcsec[0]", 1.5, 0.1, 1.25}, {"table.ez_arcsec[2]", -2.5, 0.3, -2.75}})}};
-  const std::vector<Figure> figures = CurveFigures(kResults, score);
+  const std::vector<Figure> figures = CurveFigures(kResults, kScore);
   ASSERT_EQ(figures[0].series.size(), 2u);
   const FigureSeries& truth = figures[0].series[1];
   EXPECT_EQ(truth.role, SeriesRole::kTruth);
@@ -50,8 +51,7 @@ TEST(CurveFigures, ShowTruthOnlyWhereTheScoreHasIt) {
 }
 
 TEST(DeviationFigures, AreEstimatesLessTruthWithTheirUncertainty) {
-  const json score = {{"values", ScoredValuesJson({{"table.ez_arcsec[0]", 1.5, 0.1, 1.25}, {"table.ez_arcsec[2]", -2.5, 0.3, -2.75}})}};
-  const std::vector<Figure> less = DeviationFigures(CurveFigures(kResults, score));
+  const std::vector<Figure> less = DeviationFigures(CurveFigures(kResults, kScore));
   ASSERT_EQ(less.size(), 1u);
   ASSERT_EQ(less[0].series.size(), 1u);
   EXPECT_THAT(less[0].series[0].y, ElementsAre(0.25, testing::IsNan(), 0.25));
