@@ -25,14 +25,7 @@ struct Case {
 
 EffectSettings Signal(const std::string& point, const std::string& kind, const std::string& by,
                       const std::string& times, std::map<std::string, double> parameters) {
-  EffectSettings signal;
-  signal.name = kSignalEffect;
-  signal.where = point;
-  signal.signal = kind;
-  signal.by = by;
-  signal.times = times;
-  signal.parameters = std::move(parameters);
-  return signal;
+  return {kSignalEffect, point, std::move(parameters), "", {}, kind, by, times};
 }
 
 Scenario With(Scenario scenario, const EffectSettings& signal) {
@@ -47,10 +40,7 @@ double LeftOf(const std::vector<Reading>& readings, const Scenario& believed) {
 
 /// Fewer simulated runs than a user's: nothing here is near the threshold.
 DiagnosisRun FoundIn(const std::vector<Reading>& readings, const Scenario& believed) {
-  DiagnoseOptions options;
-  options.null_runs = 100;
-  options.cache_folder = twinbench::test::ThresholdsFolder();
-  return Diagnose(readings, believed, options);
+  return Diagnose(readings, believed, twinbench::test::QuickOptions(100));
 }
 
 class AnotherSeed : public testing::TestWithParam<Case> {};
@@ -121,10 +111,7 @@ TEST(RotarySearch, NamesAChangeOfTheBenchThatIsLargeEnoughToBend) {
   const Scenario believed = LoadScenario(twinbench::test::ScenarioPath("rotary_4dof.toml"));
   Scenario actual = believed;
   actual.effects.push_back({"incidence_offset", "", {{"incidence", kIncidence_rad}}, ""});
-  DiagnoseOptions options;
-  options.null_runs = 100;
-  const Diagnosis found =
-      benches::rotary::Diagnose(twinbench::test::RunTwin(actual).readings, believed, options).diagnosis;
+  const Diagnosis found = FoundIn(twinbench::test::RunTwin(actual).readings, believed).diagnosis;
   ASSERT_EQ(found.causes.size(), 1U);
   EXPECT_EQ(found.causes[0].effect, "incidence_offset");
   const ParameterEstimate& incidence = found.causes[0].parameters.at(0);

@@ -1,7 +1,6 @@
 #include "twin/diagnose/extend.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/diagnose/found_causes.h"
 #include "tests/support/kept_text.h"

@@ -4,6 +4,7 @@
 
 #include "twin/benches/names.h"
 #include "twin/diagnose/diagnose.h"
+#include "twin/report/diagnosis_text.h"
 
 /// Diagnoses as a search may leave them, for the tests of what becomes of them: file, words, extended scenario.
 namespace twinbench::diagnose::test {
@@ -45,6 +46,11 @@ inline DiagnosisRun NamedRun(const Cause& cause) {
   run.diagnosis.causes = {cause};
   run.diagnosis.gain = ClearGain();
   return run;
+}
+
+/// All that a diagnosis says, for the message of a test that fails.
+inline std::string Told(const DiagnosisRun& found) {
+  return report::DiagnosisText({found, ShownBy(found), "the readings"}, {report::Letters::kAscii, true});
 }
 
 }  // namespace twinbench::diagnose::test

@@ -88,8 +88,8 @@ class Machine {
     at_rad_ = to_rad;
   }
 
-  /// What the table does against the hob; `order_n` waves of causes that no catalogue has.
-  double Motion_rad(double th_rad, double hob_rad, double direction) const {
+  /// What the table does against the hob.
+  double Motion_rad(double th_rad, double hob_rad) const {
     double e_rad = 0.0;
     for (std::size_t k = 0; k < amplitude_rad_.size(); ++k)
       e_rad += amplitude_rad_[k] * std::cos(static_cast<double>(k + 1) * th_rad + phase_rad_[k]);
@@ -104,8 +104,6 @@ class Machine {
         e_rad += Of(h, "rate") * now_s_ * (1.0 + Of(h, "curvature") * (1.0 - hours));
       }
       if (h.name == "tone") e_rad += WaveOf(h, kTurn_rad * Of(h, "frequency") * now_s_, 1.0);
-      if (h.name == "unlisted_order") e_rad += WaveOf(h, th_rad, Of(h, "order"));
-      if (h.name == "unlisted_direction") e_rad += direction * WaveOf(h, th_rad, Of(h, "order"));
     }
     return e_rad;
   }
@@ -148,7 +146,7 @@ class Machine {
     Travel(th_rad);
     double hob_rad = th_rad / kRatio, e_rad = 0.0;
     for (int round = 0; round < 3; ++round) {
-      e_rad = Motion_rad(th_rad, hob_rad, direction);
+      e_rad = Motion_rad(th_rad, hob_rad);
       hob_rad = (th_rad - e_rad) / kRatio;
     }
     Reading r;

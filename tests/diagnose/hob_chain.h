@@ -12,7 +12,7 @@
 /// with its ramps. Diagnosis knows all of this to first order only.
 namespace twinbench::diagnose::test {
 
-/// One hidden cause of the catalogue, parameters in SI, or one that it has not (see hob_chain.cc).
+/// One hidden cause of the catalogue, parameters in SI.
 struct HiddenCause {
   std::string name, where;
   std::map<std::string, double> value;

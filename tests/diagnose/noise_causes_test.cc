@@ -45,14 +45,12 @@ TEST(Autoregression, PredictsByTheWeightsThatASeriesWasMadeWith) {
   EXPECT_NEAR(forecast.left, std::sqrt(1.0 - 1.2 * 0.75 + 0.6 * 0.3), 0.03);
 }
 
-TEST(Autoregression, RemembersNoMoreThanItsNeighbourWhereThatIsAll) {
+TEST(Autoregression, RemembersNoMoreThanItsNeighbourWhereThatIsAllOrTheSeriesIsShort) {
   int longer = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed)
     longer += FitAutoregression(DrawnSeries(0.5, 0.0, 900, seed), InOnePass(900), 1).series.Order() > 1;
   EXPECT_LE(longer, 1);
-}
-
-TEST(Autoregression, OfShortSeriesItAsksForNeighboursOnly) {
+  // Of short series it asks for neighbours only.
   EXPECT_EQ(FitAutoregression(DrawnSeries(1.2, -0.6, 100, 3), InOnePass(100), 1).series.Order(), 1u);
 }
 
@@ -167,10 +165,7 @@ DiagnosisRun FoundOutliers(double fraction, double size_m) {
 
 Scenario Stating(double fraction, double size_m) {
   Scenario scenario;
-  EffectSettings outliers;
-  outliers.name = "outliers";
-  outliers.parameters = {{"fraction", fraction}, {"size", size_m}};
-  scenario.effects = {outliers};
+  scenario.effects = {{"outliers", "", {{"fraction", fraction}, {"size", size_m}}, ""}};
   return scenario;
 }
 

@@ -99,15 +99,12 @@ TEST(ScanKernels, LogarithmIsThatOfTheMathematicsLibrary) {
   EXPECT_EQ(LogOfPositive(1.0), 0.0);
 }
 
-TEST(ScanKernels, ProductIsThatOfMatricesOfAnySize) {
+TEST(ScanKernels, ProductIsThatOfMatricesOfAnySizeAndOfAPartOfOne) {
   for (const Eigen::Index rows : {1, 7, 8, 9, 40}) {
     const Eigen::MatrixXd A = RandomMatrix("scan_kernels", rows, 5), B = RandomMatrix("scan_kernels", rows, 11);
     const Eigen::MatrixXd product = TransposedProduct(A, B), expected = A.transpose() * B;
     EXPECT_LT((product - expected).cwiseAbs().maxCoeff(), 1e-13) << rows;
   }
-}
-
-TEST(ScanKernels, ProductOfPartOfAMatrixReadsThatPartOnly) {
   const Eigen::MatrixXd A = RandomMatrix("scan_kernels", 20, 6), B = RandomMatrix("scan_kernels", 13, 4);
   const Eigen::MatrixXd product = TransposedProduct(A.block(2, 1, 13, 3), B);
   EXPECT_LT((product - A.block(2, 1, 13, 3).transpose() * B).cwiseAbs().maxCoeff(), 1e-13);
@@ -242,25 +239,16 @@ void ExpectDirectSums(const Eigen::VectorXd& phase_rad, double first, double ste
 
 constexpr int kPhases = 500;
 
-TEST(WaveSums, AreThoseOfEvenPhases) {
-  const Eigen::VectorXd turn_rad = Eigen::VectorXd::LinSpaced(kPhases, 0.0, 2.0 * units::turn);
-  for (const int count : {1, 2, 24, 720}) ExpectDirectSums(turn_rad, 1.0, 1.0, count);
-}
-
-TEST(WaveSums, AreThoseOfUnevenPhasesOfManyTurnsEitherWay) {
-  const Eigen::VectorXd phase_rad = 20.0 * RandomMatrix("phase", kPhases, 1);
-  ExpectDirectSums(phase_rad, 0.3, 0.013, 1500);
-  ExpectDirectSums(phase_rad, -40.0, 1.0, 81);
-}
-
-TEST(WaveSums, AreThoseOfPhasesThatLieTogether) {
-  Eigen::VectorXd phase_rad = 1e-6 * RandomMatrix("phase", kPhases, 1);
-  phase_rad.tail(kPhases / 2).array() += units::turn;  // the end of the grid and its beginning are neighbours
-  for (const int count : {3, 100}) ExpectDirectSums(phase_rad, 1.0, 1.0, count);
-}
-
-TEST(WaveSums, OfOneReadingAreItsWaves) {
-  ExpectDirectSums(Eigen::VectorXd::Constant(1, 0.7), 2.0, 1.0, 30);
+TEST(WaveSums, AreThoseOfPhasesThatLieEvenlyUnevenlyOverManyTurnsEitherWayOrTogether) {
+  const Eigen::VectorXd even_rad = Eigen::VectorXd::LinSpaced(kPhases, 0.0, 2.0 * units::turn),
+                        uneven_rad = 20.0 * RandomMatrix("phase", kPhases, 1);
+  Eigen::VectorXd together_rad = 1e-6 * RandomMatrix("phase", kPhases, 1);
+  together_rad.tail(kPhases / 2).array() += units::turn;  // the end of the grid and its beginning are neighbours
+  for (const int count : {1, 2, 24, 720}) ExpectDirectSums(even_rad, 1.0, 1.0, count);
+  ExpectDirectSums(uneven_rad, 0.3, 0.013, 1500);
+  ExpectDirectSums(uneven_rad, -40.0, 1.0, 81);
+  for (const int count : {3, 100}) ExpectDirectSums(together_rad, 1.0, 1.0, count);
+  ExpectDirectSums(Eigen::VectorXd::Constant(1, 0.7), 2.0, 1.0, 30);  // of one reading
 }
 
 }  // namespace

@@ -40,16 +40,12 @@ TEST(Redundancy, OfTwoSetUpsWithOnePassIsNone) {
   EXPECT_KEPT(Refusal(run));
 }
 
-TEST(Redundancy, OfRepeatedPassesOrAThirdSetUpIsEnough) {
-  for (const RingShape& shape : {RingShape{12, {0, 1}, {1, -1}, 8}, RingShape{12, {0, 1, 5}, {1}, 8}}) {
+TEST(Redundancy, OfRepeatedPassesOrAThirdSetUpIsEnoughAndNotAskedOfACalibrationAlone) {
+  for (const RingShape& shape :
+       {RingShape{12, {0, 1}, {1, -1}, 8}, RingShape{12, {0, 1, 5}, {1}, 8}, RingShape{12, {}, {}, 8}}) {
     const LinearRun run = MakeRing(shape);
     EXPECT_NO_THROW(RefuseWithoutRedundancy(run, RedundancyOf(run)));
   }
-}
-
-TEST(Redundancy, IsNotAskedOfACalibrationAlone) {
-  const LinearRun run = MakeRing({12, {}, {}, 8});
-  EXPECT_NO_THROW(RefuseWithoutRedundancy(run, RedundancyOf(run)));
 }
 
 std::string NotesOf(const std::vector<Reading>& readings, const std::string& bench) {
@@ -61,7 +57,7 @@ TEST(MissingColumns, NamesColumnsOrTheWholeCalibrationAndTheCausesThatAreLostOfA
   calibration.phase = Phase::kCalibration;
   EXPECT_KEPT(NotesOf({calibration, circle}, kRotaryBench));
   EXPECT_KEPT(NotesOf({Reading{}}, kRotaryBench));
-  EXPECT_KEPT(NotesOf({Reading{}}, kEncoderBench));
+  for (const char* bench : {kEncoderBench, kTurntableBench}) EXPECT_KEPT(NotesOf({Reading{}}, bench));
   Scenario scenario = twinbench::test::RotaryScenario();
   RotaryOf(scenario).procedure.positions = 12;
   EXPECT_EQ(NotesOf(twinbench::test::RunTwin(scenario).readings, kRotaryBench), "");

@@ -27,7 +27,7 @@ using units::arcsec, units::deg, units::kPi;
 struct Wrong {
   double roll_rad = 0.0, gain_error = 0.0, at_edge_rad = 0.0, sag_m = 0.0;
   std::array<double, 2> drift_rad_s{}, kelvin_rad{}, creep_rad{}, slip_rad{}, tone_rad{}, ripple_rad{};
-  double curvature = 0.0, creep_s = 60.0, tone_s = 900.0, tone_phase_rad = 0.7, modulation = 0.0;
+  double creep_s = 60.0, tone_s = 900.0, tone_phase_rad = 0.7, modulation = 0.0;
   double ripple_period_rad = 1.7 * arcsec, ripple_phase_rad = 2.0, lag_s = 0.0;
   int slip_at = 100;
   double backlash_rad = 0.0, settling_rad = 0.0, settling_s = 1.0, seating_rad = 0.0;
@@ -170,10 +170,10 @@ class Bench {
   }
 
   Eigen::Vector2d Zero(const Reading& r) const {
-    const double t = ToSeconds(r.time), h = t / 3600.0;
+    const double t = ToSeconds(r.time);
     Eigen::Vector2d zero;
     for (std::size_t a = 0; a < 2; ++a) {
-      const double drift = wrong_.drift_rad_s[a] * t * (1.0 + wrong_.curvature * (1.0 - h));
+      const double drift = wrong_.drift_rad_s[a] * t;
       const double creep = wrong_.creep_rad[a] * std::log(1.0 + (t - mounted_s_) / wrong_.creep_s);
       const double slip = r.reading >= wrong_.slip_at ? wrong_.slip_rad[a] : 0.0;
       const double tone = wrong_.tone_rad[a] * (1.0 + wrong_.modulation * std::sin(t / 2000.0)) *

@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/core/input_error.h"
 #include "tests/diagnose/support/synthetic_run.h"

@@ -40,13 +40,9 @@ TEST(Percent, TellsLittleFromNothingAndFromUnknown) {
   EXPECT_EQ(Percent(kNaN), "-");
 }
 
-TEST(GainInWords, TellsSizesInTheUnitOfTheRun) {
-  const DiagnosisRun run = test::NamedRun(test::FoundPsdGain(0.003));
-  EXPECT_THAT(GainInWords(run.diagnosis.gain, run.run), HasSubstr("from 0.71 to 0.31 um, noise alone leaves 0.3"));
-}
-
-TEST(GainInWords, WarnsOfAModelThatDoesNotPredictBetter) {
+TEST(GainInWords, TellsSizesInTheUnitOfTheRunAndWarnsOfAModelThatDoesNotPredictBetter) {
   DiagnosisRun run = test::NamedRun(test::FoundPsdGain(0.003));
+  EXPECT_THAT(GainInWords(run.diagnosis.gain, run.run), HasSubstr("from 0.71 to 0.31 um, noise alone leaves 0.3"));
   run.diagnosis.gain.positive = false;
   EXPECT_THAT(GainInWords(run.diagnosis.gain, run.run), HasSubstr("does not predict better"));
   run.diagnosis.gain.folds = 0;
@@ -205,8 +201,8 @@ DiagnosisRun RingWithDirection() {
   return run;
 }
 
-TEST(DiagnosisPlots, ShowTheMissingSignalAgainstItsVariableAndNothingAfter) {
-  const json curve = PlotsJson(RingWithDirection()).at("against").at("direction").at("a");
+TEST(DiagnosisPlots, ShowTheMissingSignalOfAChannelOrPatternAgainstItsVariableAndNothingAfter) {
+  const json curves = PlotsJson(RingWithDirection()).at("against").at("direction"), curve = curves.at("a");
   EXPECT_THAT(curve.at("x"), ElementsAre(-1, 1));
   EXPECT_THAT(curve.at("n"), ElementsAre(72, 72));  // 3 set-ups, 2 passes a direction, 12 positions
   // ABBA passes: the direction is orthogonal to all unknowns and stays whole.
@@ -215,13 +211,9 @@ TEST(DiagnosisPlots, ShowTheMissingSignalAgainstItsVariableAndNothingAfter) {
   // The amplitude has a prior of 3 um, which takes (0.3 / 3)^2 / 144 of it.
   EXPECT_NEAR(curve.at("after").at(0), 0.0, 1e-3);
   EXPECT_NEAR(curve.at("u").at(0), 0.3 / std::sqrt(72.0), 1e-4);
-}
-
-TEST(DiagnosisPlots, OfAPatternAreItsProjection) {
-  const json curve = PlotsJson(RingWithDirection()).at("against").at("direction").at("both");
-  // Half of channel a's signal is common to both; so is half of the variance of one channel.
-  EXPECT_NEAR(curve.at("before").at(1), 0.5, 1e-3);
-  EXPECT_NEAR(curve.at("u").at(0), 0.3 / std::sqrt(2.0 * 72.0), 1e-4);
+  // Of a pattern: half of channel a's signal is common to both; so is half of the variance of one channel.
+  EXPECT_NEAR(curves.at("both").at("before").at(1), 0.5, 1e-3);
+  EXPECT_NEAR(curves.at("both").at("u").at(0), 0.3 / std::sqrt(2.0 * 72.0), 1e-4);
 }
 
 TEST(DiagnosisPlots, LeaveOutWhatDoesNotVaryOrWasNotRecorded) {

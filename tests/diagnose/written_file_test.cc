@@ -1,7 +1,6 @@
 #include "twin/diagnose/written_file.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/diagnose/found_causes.h"
 #include "tests/diagnose/ring_run.h"

@@ -12,15 +12,15 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr int kAxes = 4;
 constexpr double kWeak = 1e-3;  // prior deviation of free unknowns, m: thousands of times the noise
 
 struct Stop {
   int setup, pass, direction, position;
+  Phase phase = Phase::kFullCircle;
 };
 
 std::vector<Stop> StopsOf(const SyntheticDesign& design) {
-  std::vector<Stop> stops;
+  std::vector<Stop> stops(static_cast<std::size_t>(design.calibration), {0, 0, 1, 0, Phase::kCalibration});
   int pass = 0;
   for (int setup = 0; setup < static_cast<int>(design.shifts.size()); ++setup) {
     for (int direction : design.passes) {
@@ -33,6 +33,12 @@ std::vector<Stop> StopsOf(const SyntheticDesign& design) {
   return stops;
 }
 
+/// In steps from the reference's zero.
+int ReferenceAt(const SyntheticDesign& design, const Stop& stop) {
+  if (stop.phase == Phase::kCalibration) return 0;
+  return design.shifts[static_cast<std::size_t>(stop.setup)] - stop.position;
+}
+
 Schedule ScheduleOf(const SyntheticDesign& design) {
   constexpr std::array<double, 4> kDwells_s = {0.5, 1.0, 2.0, 4.0};
   const std::vector<Stop> stops = StopsOf(design);
@@ -41,39 +47,43 @@ Schedule ScheduleOf(const SyntheticDesign& design) {
   const double step_rad = 2.0 * units::kPi / design.positions;
   for (std::size_t k = 0; k < stops.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    const auto [setup, pass, direction, position] = stops[k];
-    s.setup[k] = setup, s.pass[k] = pass, s.direction[k] = direction, s.position[k] = position;
+    const auto [setup, pass, direction, position, phase] = stops[k];
+    s.setup[k] = setup, s.pass[k] = pass, s.direction[k] = direction, s.position[k] = position, s.phase[k] = phase;
     s.dwell_s[i] = kDwells_s[stream.Word() % 4];
     s.time_s[i] = (i > 0 ? s.time_s[i - 1] : 0.0) + 6.0 + s.dwell_s[i] + (k % 48 == 0 ? 120.0 : 0.0);
     s.temperature_degC[i] = 20.0 + 0.5 * std::sin(s.time_s[i] / 170.0) + 0.3 * std::sin(s.time_s[i] / 61.0);
     s.target_rad[i] = position * step_rad;
-    s.reference_rad[i] = (design.shifts[static_cast<std::size_t>(setup)] - position) * step_rad;
+    s.reference_rad[i] = ReferenceAt(design, stops[k]) * step_rad;
   }
   return s;
 }
 
-/// Local unknowns: the channels at one target position. Core: the same by reference position, then by set-up.
-Nuisance NuisanceOf(const SyntheticDesign& design, const Schedule& s) {
-  const int n = design.positions, tables = design.free_tables ? 2 * n : 0;
-  const int unknowns = kAxes * (tables + static_cast<int>(design.shifts.size()));
+/// Local unknowns: the channels at one target position. Core: the same by reference position, then by set-up, then those
+/// of the calibration.
+Nuisance NuisanceOf(const SyntheticDesign& design) {
+  const int n = design.positions, axes = design.channels, tables = design.free_tables ? 2 * n : 0;
+  const int setups = static_cast<int>(design.shifts.size());
+  const int unknowns = axes * (tables + setups + (design.calibration > 0 ? 1 : 0));
+  const std::vector<Stop> stops = StopsOf(design);
   std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < s.Readings(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const int setup = s.setup[k], target = s.position[k];
-    const int reference = ((design.shifts[static_cast<std::size_t>(setup)] - target) % n + n) % n;
-    for (int c = 0; c < kAxes; ++c) {
-      entries.emplace_back(i * kAxes + c, (tables + setup) * kAxes + c, 1.0);
-      if (!design.free_tables) continue;
-      entries.emplace_back(i * kAxes + c, target * kAxes + c, 1.0);
-      entries.emplace_back(i * kAxes + c, (n + reference) * kAxes + c, 1.0);
+  for (int i = 0; i < std::ssize(stops); ++i) {
+    const Stop& stop = stops[static_cast<std::size_t>(i)];
+    const bool is_calibration = stop.phase == Phase::kCalibration;
+    const int constant = is_calibration ? setups : stop.setup;
+    const int reference = (ReferenceAt(design, stop) % n + n) % n;
+    for (int c = 0; c < axes; ++c) {
+      entries.emplace_back(i * axes + c, (tables + constant) * axes + c, 1.0);
+      if (!design.free_tables || is_calibration) continue;
+      entries.emplace_back(i * axes + c, stop.position * axes + c, 1.0);
+      entries.emplace_back(i * axes + c, (n + reference) * axes + c, 1.0);
     }
   }
   Nuisance nuisance;
-  nuisance.jacobian.resize(s.Readings() * kAxes, unknowns);
+  nuisance.jacobian.resize(std::ssize(stops) * axes, unknowns);
   nuisance.jacobian.setFromTriplets(entries.begin(), entries.end());
   nuisance.prior_precision = Eigen::VectorXd::Constant(unknowns, 1.0 / (kWeak * kWeak));
   nuisance.blocks = design.free_tables ? n : 0;
-  nuisance.block_size = design.free_tables ? kAxes : 0;
+  nuisance.block_size = design.free_tables ? axes : 0;
   return nuisance;
 }
 
@@ -106,13 +116,13 @@ LinearRun SyntheticRun(const SyntheticDesign& design) {
   run.channels = {"psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"};
   run.unit = "um";
   run.to_SI = units::um;
-  const int rows = run.schedule.Readings() * kAxes;
+  const int rows = run.schedule.Readings() * design.channels;
   Stream stream(7, "synthetic.spots");
   run.observed.resize(rows);
   for (double& u : run.observed) u = 300.0 * units::um * (stream.Uniform() - 0.5);
   run.residual = Eigen::VectorXd::Zero(rows);
   run.sigma = Eigen::VectorXd::Constant(rows, design.sigma_m);
-  run.nuisance = NuisanceOf(design, run.schedule);
+  run.nuisance = NuisanceOf(design);
   run.patterns = RotaryPatterns();
   return run;
 }

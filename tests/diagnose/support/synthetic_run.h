@@ -20,13 +20,16 @@ struct SyntheticDesign {
   std::vector<int> passes = {1, -1, -1, 1};  // directions
   double sigma_m = 0.3e-6;
   bool free_tables = true;  // free functions of target and reference position, channel by channel
+  int channels = 4;
+  int calibration = 0;  // readings before, which see a constant of their own alone
 };
 
 /// One pass of one set-up, all in order, times and angles not known.
 Schedule PlainSchedule(int readings);
 
-/// Four channels of two spots; nuisance: the free tables and a constant a set-up, channel by channel. The spots are
-/// spread over +-150 um, dwells over 0.5 to 4 s, the temperature wanders by 1 K. Residual zero.
+/// Four channels of two spots (names and patterns; of another count they are the caller's); nuisance: the free tables
+/// and a constant a set-up, channel by channel. The spots are spread over +-150 um, dwells over 0.5 to 4 s, the
+/// temperature wanders by 1 K. Residual zero.
 LinearRun SyntheticRun(const SyntheticDesign& design);
 
 /// Normal deviates.
