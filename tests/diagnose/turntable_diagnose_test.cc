@@ -99,6 +99,19 @@ TEST(TurntableDiagnosis, NamesEveryFaultOfTheInstrumentAndWhatTheTurntableDoes) 
   ExpectNamed({{.roll_rad = roll_rad}, "autocollimator_roll", "", "angle", roll_rad}, PublishedScenario());
 }
 
+// Each reading is of a new seat: of n values a standard deviation is known to 1 / sqrt(2 n) of it, and to a
+// little less where unknowns are fitted to them as well.
+TEST(TurntableDiagnosis, StatesTheSeatingsScatterAsWellAsSoManySeatsTellIt) {
+  const Scenario scenario = CarefulScenario();
+  const std::vector<Reading> readings = BenchReadings(scenario, {.seating_rad = 1.0 * arcsec}, 21);
+  const DiagnosisRun run = Diagnosed(readings, scenario);
+  const Cause* cause = OnlyCause(run, "multitooth_seating");
+  ASSERT_TRUE(cause) << test::Told(run);
+  const ParameterEstimate& scatter = ParameterOf(*cause, "scatter");
+  const double of_seats = scatter.value / std::sqrt(2.0 * static_cast<double>(readings.size()));
+  EXPECT_THAT(scatter.u, testing::AllOf(testing::Gt(0.9 * of_seats), testing::Lt(1.6 * of_seats)));
+}
+
 TEST(TurntableDiagnosis, NamesWhatMovesTheZeroInTime) {
   for (const std::size_t axis : {0u, 1u}) {
     const auto on_axis = [axis](double size) { return axis == 0 ? std::array{size, 0.0} : std::array{0.0, size}; };
