@@ -1,14 +1,13 @@
 #include "hw_bridge/ad/ad_converter.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
+#include "hw_bridge/ad/ad_source.h"
 #include "hw_bridge/ad/negotiation.h"
 #include "tests/hw_ad/blocks.h"
-#include "tests/hw_ad/same_block.h"
-#include "tests/hw_ad/scripted_source.h"
 #include "tests/support/kept_text.h"
 #include "twin/core/device_fault.h"
 #include "twin/core/errors.h"
@@ -16,8 +15,57 @@
 namespace twinbench::hw {
 namespace {
 
-using test::ExpectSameBlock, test::kNoise_V, test::ScriptedSource;
+using test::ExpectSameBlock, test::kNoise_V;
 using ::testing::AllOf, ::testing::HasSubstr;
+
+/// A card whose answers and blocks a test writes down.
+class ScriptedSource : public AdSource {
+ public:
+  struct Script {
+    ScanSpec asked;             // what Configure got
+    std::optional<double> rate_Hz;  // answers instead of what was asked
+    int bits = 16;
+    std::optional<double> range_V;
+    double zero_V = 0.0;
+    std::string serial = "S1";
+    std::optional<CalibrationPolynomial> calibration;
+    AdBlock block;
+    std::optional<FaultKind> fault;
+  };
+  explicit ScriptedSource(Script& script) : script_(script) {}
+
+  Negotiated Configure(const ScanSpec& spec) override {
+    script_.asked = spec;
+    Negotiated n;
+    n.actual = spec;
+    n.actual.scan_rate_Hz = script_.rate_Hz.value_or(spec.scan_rate_Hz);
+    n.bits = script_.bits;
+    n.identity = "scripted card";
+    n.serial = script_.serial;
+    n.calibrated = script_.calibration.has_value();
+    for (auto& channel : n.actual.channels) {
+      channel.range_V = script_.range_V.value_or(channel.range_V);
+      n.calibration.push_back(script_.calibration.value_or(CalibrationPolynomial{0.0, {script_.zero_V, 1.0}}));
+      n.skew_s.push_back(0.0);
+    }
+    return n;
+  }
+  AdBlock Take(int /*scans*/) override {
+    if (script_.fault) throw DeviceFault(*script_.fault, "scripted card", "as told");
+    return script_.block;
+  }
+
+ private:
+  Script& script_;
+};
+
+/// Stands still until told.
+class StandingClock : public Clock {
+ public:
+  Time Now() const override { return now; }
+  void Wait(Duration duration) override { now += duration; }
+  Time now{};
+};
 
 AdSettings Settings(const std::string& kind) {
   AdSettings settings;
@@ -53,7 +101,7 @@ class AdConverterTest : public ::testing::Test {
   AdSettings settings_ = Settings("iio");
   AdcSettings adc_;
   ScriptedSource::Script script_;
-  test::StandingClock clock_;
+  StandingClock clock_;
 };
 
 TEST_F(AdConverterTest, GivesTheTwinsBitsForTheTwinsCodes) {
@@ -185,7 +233,7 @@ TEST_F(AdConverterTest, MeasuresWithTheCalibrationOfTheCard) {
 }
 
 TEST(MakeAdConverter, RefusesABackendThatThereIsNot) {
-  test::StandingClock clock;
+  StandingClock clock;
   EXPECT_THROW(MakeAdConverter(Settings("telepathy"), {}, clock), InputError);
 }
 

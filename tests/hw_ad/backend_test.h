@@ -8,8 +8,8 @@
 #include <string>
 
 #include "hw_bridge/ad/ad_converter.h"
+#include "tests/hw_ad/blocks.h"
 #include "tests/hw_ad/held_twin.h"
-#include "tests/hw_ad/same_block.h"
 #include "tests/hw_control/faults.h"
 #include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/settings.h"

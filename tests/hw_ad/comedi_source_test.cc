@@ -1,11 +1,12 @@
-#include "hw_bridge/ad/comedi_source.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
 
+#include "hw_bridge/ad/comedi_source.h"
+#include "hw_bridge/numbers/comedi_numbers.h"
 #include "tests/core/input_error.h"
 #include "tests/hw_ad/backend_test.h"
+#include "tests/support/kept_text.h"
 
 /// On libcomedi itself. Run with the library of tests/support/comedi_device preloaded, as ctest does: it answers
 /// for /dev/comedi0 with the counts of a served twin.
@@ -19,10 +20,7 @@ class ComediSourceTest : public ::testing::Test {
   void SetUp() override {
     if (std::getenv("LD_PRELOAD") == nullptr) GTEST_SKIP() << "needs the preloaded card; ctest brings it";
   }
-  void TearDown() override {
-    unsetenv("TWINBENCH_COMEDI_TWIN");
-    unsetenv("TWINBENCH_COMEDI_FAULT");
-  }
+  void TearDown() override { unsetenv("TWINBENCH_COMEDI_TWIN"); }
 };
 
 TEST_F(ComediSourceTest, GivesTheServedTwinsOwnBlocksAlsoInAnotherRangeAndResolution) {
@@ -70,15 +68,11 @@ INSTANTIATE_TEST_SUITE_P(Every, ComediFault,
                                            Struck{"stuck", "stuck"}, Struck{"float", "signal_lost"}),
                          [](const auto& instance) { return std::string(instance.param.injected); });
 
-TEST_F(ComediSourceTest, StartsAgainAfterAFullFifo) {
+TEST_F(ComediSourceTest, SaysAsWhatTheDriverGaveUpAFullFifo) {
   const ServedCard card(ComediSettings);
   const auto opened = card.Open();
-  const auto acquire = [&] { opened->Acquire(100, true); };
-  setenv("TWINBENCH_COMEDI_FAULT", "fifo_full", 1);
-  EXPECT_EQ(test::FaultIn(acquire), "overrun");
-  EXPECT_THAT(test::TextOf(acquire), ::testing::HasSubstr("errno 32"));  // EPIPE, as the kernel's comedi says it
-  unsetenv("TWINBENCH_COMEDI_FAULT");
-  EXPECT_EQ(opened->Acquire(100, true).status, ReadingStatus::kOk);
+  card.served.Inject("drop");
+  EXPECT_THAT(test::TextOf([&] { opened->Acquire(100, true); }), ::testing::HasSubstr("errno 32"));  // EPIPE, as the kernel's comedi
 }
 
 TEST_F(ComediSourceTest, RefusesWhatTheCardHasNot) {
@@ -131,6 +125,38 @@ TEST_F(ComediSourceTest, RefusesACalibrationThatIsMissingOrOfAnotherBoard) {
   const ServedCard card(ComediSettings);
   for (const std::string& file : {std::string("/nowhere/card.cal"), another})
     EXPECT_EQ(card.FaultWith([&](AdSettings& s) { s.calibration_file = file; }), "refused") << file;
+}
+
+/// Of subdevice 2, which has two counters.
+class ComediNumbersTest : public ComediSourceTest {
+ protected:
+  std::vector<double> Read(const std::vector<std::string>& items) {
+    const std::string device = test::ComediSettings(served_).device;
+    return MakeComediNumbers({.kind = "comedi", .address = "", .device = device, .items = items}, "instrument_1",
+                             "bench.toml:7")
+        ->Read();
+  }
+
+  test::HeldTwin served_{test::RotaryScenario()};
+};
+
+TEST_F(ComediNumbersTest, CountersAreReadWithTheSignThatTheyAreSaidToHave) {
+  EXPECT_THAT(Read({"2 0", "2 1", "2 1 signed", "2 0 signed"}),
+              testing::ElementsAre(1234567.0, 16777216.0 - 42.0, -42.0, 1234567.0));
+}
+
+TEST_F(ComediNumbersTest, WhatTheCardHasNotIsRefused) {
+  const auto read = [&] { Read({"2 2"}); };
+  EXPECT_EQ(test::FaultIn(read), "refused");
+  EXPECT_THAT(test::TextOf(read), testing::HasSubstr("no channel 2 of subdevice 2"));
+}
+
+TEST_F(ComediNumbersTest, AnItemThatIsNoneIsToldWithItsLine) {
+  for (const char* item : {"2", "x 0", "2 0 unsigned", "2 0 signed more", "-1 0", ""}) {
+    const std::string refusal = MessageOf([&] { Read({item}); });
+    EXPECT_THAT(refusal, testing::StartsWith("bench.toml:7: "));
+    EXPECT_KEPT(refusal);
+  }
 }
 
 }  // namespace

@@ -1,12 +1,19 @@
-#include "hw_bridge/ad/iio_source.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <asio.hpp>
+#include <gmock/gmock.h>
 
+#include <regex>
+
+#include "hw_bridge/ad/iio_source.h"
+#include "hw_bridge/numbers/iio_numbers.h"
+#include "tests/core/input_error.h"
 #include "tests/hw_ad/backend_test.h"
+#include "tests/hw_ad/held_twin.h"
+#include "tests/hw_control/faults.h"
+#include "tests/support/kept_text.h"
+#include "tests/support/rotary_scenario.h"
+#include "twin/core/device_fault.h"
 
+/// By libiio, of the devices that a served rotary bench shows.
 namespace twinbench::hw {
 namespace {
 
@@ -53,33 +60,6 @@ INSTANTIATE_TEST_SUITE_P(Every, IioFault,
                                            Struck{"stuck", "stuck"}, Struck{"float", "signal_lost"}),
                          [](const auto& instance) { return std::string(instance.param.injected); });
 
-TEST(IioSource, HasAStatusForSaturationAndDarknessAndMeasuresUnderHum) {
-  const ServedCard card(IioSettings);
-  const auto opened = card.Open();
-  card.served.Inject("saturate");
-  const Acquisition saturated = opened->Acquire(100, true);
-  EXPECT_EQ(saturated.status, ReadingStatus::kSaturated);
-  EXPECT_EQ(saturated.saturated_mask, 1);
-  EXPECT_TRUE(std::isnan(saturated.channel[0].mean_V));
-  EXPECT_FALSE(std::isnan(saturated.channel[1].mean_V));
-  card.served.Inject("no_light");
-  EXPECT_EQ(opened->Acquire(100, true).status, ReadingStatus::kNoLight);
-  card.served.Inject("hum");
-  EXPECT_EQ(opened->Acquire(6250, true).status, ReadingStatus::kOk);
-  // 0.1 V, with a standard uncertainty of 6 mV sqrt(2 / 6250): five of them.
-  EXPECT_NEAR(opened->Findings().mains_lsb[0] * 10.0 / 32768.0, 0.1, 6e-4);
-}
-
-TEST(IioSource, NoticesThatTheClockOfTheCardJumps) {
-  const ServedCard card(IioSettings);
-  const auto opened = card.Open();
-  opened->Acquire(100, true);
-  card.served.Ask("SIM:FAUL clock,step;*OPC?");
-  EXPECT_EQ(FaultIn([&] { opened->Acquire(100, true); }), "clock");
-  EXPECT_EQ(FaultIn([&] { opened->Acquire(100, true); }), "clock") << "it was one block, and the clock jumps back";
-  EXPECT_EQ(opened->Acquire(100, true).status, ReadingStatus::kOk);
-}
-
 TEST(IioSource, ComesBackToACardThatWasSwitchedOffAndOn) {
   Scenario scenario = test::RotaryScenario();
   auto served = std::make_unique<HeldTwin>(scenario);
@@ -123,6 +103,43 @@ TEST(IioSource, GivesUpAServerThatTakesCallsAndSaysNothing) {
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(FaultIn([&] { card.Open(); }), "timeout");
   EXPECT_LT(test::SecondsSince(start), 1.0);
+}
+
+// Single numbers instead of blocks.
+
+class IioNumbersTest : public testing::Test {
+ protected:
+  std::unique_ptr<NumberSource> Source(const std::string& device, const std::vector<std::string>& items) {
+    const std::string uri = "ip:127.0.0.1:" + std::to_string(served_.iiod_port());
+    return MakeIioNumbers({.kind = "iio", .address = "", .uri = uri, .device = device, .items = items},
+                          "instrument_1", "bench.toml:7");
+  }
+  test::HeldTwin served_{test::RotaryScenario()};
+};
+
+TEST_F(IioNumbersTest, AttributesOfADeviceAndOfItsChannelsAreRead) {
+  const auto source = Source("psd-adc16", {"sampling_frequency", "voltage0 scale"});
+  const std::vector<double> first = source->Read();
+  EXPECT_THAT(first, testing::ElementsAre(testing::Gt(1000.0), testing::Gt(0.0)));
+  EXPECT_EQ(source->Read(), first);
+}
+
+TEST_F(IioNumbersTest, WhatThereIsNotIsRefusedByName) {
+  for (const auto& [device, item] :
+       {std::pair{"psd-adc16", "voltage0 colour"}, std::pair{"psd-adc16", "voltage9 scale"},
+        std::pair{"counter", "count0 raw"}}) {
+    const auto read = [&] { Source(device, {item})->Read(); };
+    EXPECT_EQ(test::KindOf(read), FaultKind::kRefused);
+    EXPECT_KEPT(std::regex_replace(test::TextOf(read), std::regex("127.0.0.1:\\d+"), "<address>"));
+  }
+}
+
+TEST_F(IioNumbersTest, AnItemThatIsNoneIsToldWithItsLine) {
+  for (const char* item : {"", "voltage0 raw more"}) {
+    const std::string refusal = MessageOf([&] { Source("psd-adc16", {item}); });
+    EXPECT_THAT(refusal, testing::StartsWith("bench.toml:7: "));
+    EXPECT_KEPT(refusal);
+  }
 }
 
 }  // namespace

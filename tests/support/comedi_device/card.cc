@@ -71,7 +71,7 @@ bool HasChannels(const comedi_cmd& c) {
 
 }  // namespace
 
-Card::Card(int descriptor) : descriptor_(descriptor), traits_(MakeSampleSource()->Traits()) {}
+Card::Card(int descriptor) : descriptor_(descriptor), traits_(TwinOfThisProcess()->Traits()) {}
 
 int Card::Control(unsigned long request, void* argument) {
   switch (request) {
@@ -154,7 +154,7 @@ int Card::RangeInfo(const comedi_rangeinfo& info) const {
 
 int Card::Instruct(const comedi_insn& instruction) {
   if (instruction.subdev == kDigital && instruction.insn == INSN_BITS && instruction.n == 2) {
-    instruction.data[1] = MakeSampleSource()->Lines();
+    instruction.data[1] = TwinOfThisProcess()->Lines();
     return 2;
   }
   if (instruction.insn == INSN_GTOD &&
@@ -171,7 +171,7 @@ int Card::Instruct(const comedi_insn& instruction) {
   }
   if (instruction.subdev != kAnalogue || instruction.insn != INSN_READ || channel >= kInputs) return -EINVAL;
   unsigned n = 0;
-  MakeSampleSource()->Acquire(static_cast<int>(instruction.n), [&](std::span<const std::int16_t, kInputs> codes) {
+  TwinOfThisProcess()->Acquire(static_cast<int>(instruction.n), [&](std::span<const std::int16_t, kInputs> codes) {
     instruction.data[n++] = static_cast<lsampl_t>(codes[channel] + (1 << (traits_.bits - 1)));
   });
   return static_cast<int>(n);
@@ -202,7 +202,7 @@ int Card::Start(comedi_cmd& command) {
   if (Test(command) != 0) return -EINVAL;
   command_.reset();
   command_ =
-      std::make_unique<Command>(MakeSampleSource(), descriptor_, static_cast<int>(command.stop_arg), traits_.bits);
+      std::make_unique<Command>(TwinOfThisProcess(), descriptor_, static_cast<int>(command.stop_arg), traits_.bits);
   return 0;
 }
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "tests/support/comedi_device/command.h"
-#include "tests/support/comedi_device/sample_source.h"
+#include "tests/support/comedi_device/iiod_twin.h"
 
 namespace twinbench::test {
 

@@ -5,16 +5,16 @@
 #include <memory>
 #include <thread>
 
-#include "tests/support/comedi_device/sample_source.h"
+#include "tests/support/comedi_device/iiod_twin.h"
 
 namespace twinbench::test {
 
 /// An asynchronous command: a thread that puts samples, offset binary, into the socket whose other end the program
-/// reads. $TWINBENCH_COMEDI_FAULT = "fifo_full" or "stall" strikes it half-way.
+/// reads.
 class Command {
  public:
   /// @param program_end  The descriptor that the program holds; it becomes one end of a new pair.
-  Command(std::unique_ptr<SampleSource> source, int program_end, int scans, int bits);
+  Command(std::unique_ptr<IiodTwin> source, int program_end, int scans, int bits);
   Command(const Command&) = delete;
   Command& operator=(const Command&) = delete;
   ~Command();
@@ -24,9 +24,9 @@ class Command {
 
  private:
   void Run(int scans, int bits);
-  bool Put(std::span<const std::int16_t, kInputs> codes, int bits);
+  void Put(std::span<const std::int16_t, kInputs> codes, int bits);
 
-  std::unique_ptr<SampleSource> source_;
+  std::unique_ptr<IiodTwin> source_;
   int driver_end_ = -1;
   std::atomic<bool> failed_ = false, stopped_ = false;
   std::thread thread_;

@@ -67,13 +67,7 @@ int open(const char* path, int flags, ...) {
   return twinbench::test::Open(path, flags, mode);
 }
 
-int open64(const char* path, int flags, ...) {
-  va_list more;
-  va_start(more, flags);
-  const mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(more, mode_t) : 0;
-  va_end(more);
-  return twinbench::test::Open(path, flags, mode);
-}
+int open64(const char*, int, ...) __attribute__((alias("open")));
 
 int ioctl(int descriptor, unsigned long request, ...) noexcept {
   va_list more;
