@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
@@ -10,9 +9,8 @@
 #include "hw_bridge/ad/negotiation.h"
 #include "tests/core/input_error.h"
 #include "tests/support/served_run.h"
-#include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "tests/support/twin_run.h"
 #include "twin/benches/rotary_4dof/settings.h"
-#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/sim/ad_sampler.h"
 
 /// Faults of real benches, each struck on a served twin while the real procedure drives it through the real
@@ -86,6 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
         TriedAgain{"NeverSettlesByEsp", "reference,not_in_position", {"not_in_position"}, "esp"},
         TriedAgain{"MuteEsp", "target,mute", {"timeout"}, "esp"},
         TriedAgain{"LateEsp", "target,late", {"timeout"}, "esp"},
+        TriedAgain{"EspThatHangsUp", "target,disconnect", {"dropped"}, "esp"},
         TriedAgain{"HalfAnAnswerOfEsp", "reference,partial", {"timeout", "dropped", "protocol"}, "esp"},
         TriedAgain{"RestartedEsp", "reference,restart", {"restarted"}, "esp"},
         TriedAgain{"LostStepOfEsp", "target,lost_step", {"not_in_position"}, "esp"},
@@ -94,55 +93,6 @@ INSTANTIATE_TEST_SUITE_P(
         TriedAgain{"LateOnASerialLine", "target,late", {"timeout"}, "pty", 2},
         TriedAgain{"HalfAnAnswerOnASerialLine", "target,partial", {"timeout", "dropped", "protocol"}, "pty"}),
     [](const auto& row) { return row.param.name; });
-
-TEST(FaultMatrix, AtTheVeryFirstReadingTheRunBeginsAgain) {
-  Struck bench;
-  const ServedRun run = bench.Run({{0, "adc,drop"}});
-  bench.ExpectCarriedOutUndisturbed(run);
-  EXPECT_EQ(run.log.attempts.size(), 1u);
-}
-
-TEST(FaultMatrix, AFaultThatStaysUsesUpTheAttemptsAndTheRunCanBeResumed) {
-  Struck bench;
-  const ServedRun run = bench.Run({{kAt, "adc,gap,3"}});
-  EXPECT_EQ(run.stopped_by, "gap");
-  EXPECT_EQ(run.log.attempts.size(), 3u);
-  ASSERT_EQ(run.log.readings.size(), static_cast<std::size_t>(kAt));
-  bench.ExpectCarriedOutUndisturbed(bench.Run({}, &run));
-}
-
-/// A controller that restarts while nothing moves is met by the next look at its encoder: that before the block or that behind it.
-struct RestartedAboutABlock {
-  const char *tables, *table, *when;  // the last device that is asked before it
-  friend void PrintTo(const RestartedAboutABlock& row, std::ostream* out) {
-    *out << row.tables << "_" << row.table << "_" << row.when;
-  }
-};
-
-class RestartAboutABlock : public ::testing::TestWithParam<RestartedAboutABlock> {};
-
-TEST_P(RestartAboutABlock, CostsOneAttemptAndLeavesNoCellEmpty) {
-  Struck bench;
-  bench.options.tables = GetParam().tables;
-  bool struck = false;
-  bench.options.before_call = [&](const std::string& device, const std::string&, int kept) {
-    if (struck || kept != kAt || device != GetParam().when) return;
-    struck = true;
-    Inject(bench.served, std::string(GetParam().table) + ",restart");
-  };
-  const ServedRun run = bench.Run();
-  bench.ExpectCarriedOutUndisturbed(run);
-  ASSERT_EQ(run.log.attempts.size(), 1u);
-  EXPECT_EQ(run.log.attempts[0].reading, kAt);
-  EXPECT_EQ(run.log.attempts[0].fault, "restarted");
-}
-
-INSTANTIATE_TEST_SUITE_P(Matrix, RestartAboutABlock,
-                         ::testing::Values(RestartedAboutABlock{"scpi", "target", "thermometer"},
-                                           RestartedAboutABlock{"scpi", "reference", "adc"},
-                                           RestartedAboutABlock{"esp", "reference", "thermometer"},
-                                           RestartedAboutABlock{"esp", "target", "adc"}),
-                         testing::PrintToStringParamName());
 
 // --- a lost word where the levels of the channels are alike ---
 
@@ -159,12 +109,9 @@ hw::LostWord Foretold(const Reading& reading, const AdcSettings& adc) {
 /// The restless bench with amplifiers whose offsets bring the levels of reading kAt so far apart.
 Scenario WithLevels(const std::array<double, kChannels>& levels_V) {
   Scenario scenario = RestlessBench();
-  sim::Twin twin(scenario);
-  RotaryBench bench = twin.Bench();
-  MemoryLog log;
-  procedure::CarryOut(bench, scenario, log);
+  const std::vector<Reading> readings = RunTwin(scenario).readings;
   for (std::size_t c = 0; c < kChannels; ++c)
-    RotaryOf(scenario).amplifier.offset_V[c] = levels_V[c] - log.readings[kAt].mean_V[c];
+    RotaryOf(scenario).amplifier.offset_V[c] = levels_V[c] - readings[kAt].mean_V[c];
   return scenario;
 }
 
@@ -275,17 +222,6 @@ TEST(FaultMatrix, HumIsMeasuredAllTheSame) {
   EXPECT_EQ(run.stopped_by, "") << run.said;
   EXPECT_EQ(run.log.readings.at(kAt).status, ReadingStatus::kOk);
   EXPECT_TRUE(run.log.attempts.empty());
-}
-
-// --- what is refused before anything moves ---
-
-TEST(FaultMatrix, ATravelBeyondTheSoftLimitsIsRefusedBeforeTheMove) {
-  Struck bench;
-  bench.options.alter = [](hw::BenchFile& file) { file.target_limits.upper_rad = 200.0 * units::deg; };
-  const ServedRun run = bench.Run();
-  EXPECT_EQ(run.stopped_by, "limit");
-  EXPECT_THAT(run.said, HasSubstr("240"));
-  EXPECT_GT(run.log.readings.size(), 12u) << "up to there it was allowed";
 }
 
 }  // namespace

@@ -53,6 +53,20 @@ TEST_P(SameResult, WithServosThatSettleSlowly) {
   EXPECT_EQ(RunServed(served, scenario, options_).Readings(), InProcess(scenario));
 }
 
+TEST_P(SameResult, AStopOnTheWayAndHoming) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  const auto opened = OpenHardware(BenchFileOf(served, options_), scenario);
+  sim::Twin twin(scenario);
+  RotaryBench through = opened->Bench(), here = twin.Bench();
+  through.simulation->Restart();
+  for (const char* request : {"move 2", "settles 100000000", "state", "stop", "settles 5000000000", "state", "home",
+                              "move 0.1", "settles 60000000000", "state"}) {
+    EXPECT_EQ(Perform(through, "target", request).text, Perform(here, "target", request).text) << request;
+    EXPECT_EQ(through.clock.Now(), here.clock.Now()) << request;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Backends, SameResult,
                          ::testing::Values(Way{"iio", "scpi"}, Way{"iio", "esp"}, Way{"iio", "pty"},
                                            Way{"comedi", "scpi"}),

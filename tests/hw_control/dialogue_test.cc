@@ -141,21 +141,15 @@ TEST_P(DialogueOver, AWordThatCannotWaitGoesOutBehindAnAnswerThatNobodyAskedForA
   EXPECT_EQ(talk.controller->Lines(), (std::vector<std::string>{"*IDN?", "A?", "STOP", "STOP", "*IDN?"}));
 }
 
-TEST(Dialogue, ALineWithoutEndIsRefusedAndNotKeptAndHalfAnAnswerAndThenTheEndIsNone) {
+TEST(Dialogue, ALineWithoutEndIsRefusedAndNotKeptAndAnEndIsToldFromSlownessAlsoBehindHalfAnAnswer) {
   const std::pair<Reply, FaultKind> cases[] = {{{std::string(100'000, '7')}, FaultKind::kProtocol},
-                                               {{"12.", 0, true}, FaultKind::kDropped}};
+                                               {{"12.", 0, true}, FaultKind::kDropped},
+                                               {{"", 0, true}, FaultKind::kDropped},
+                                               {{""}, FaultKind::kTimeout}};
   for (const auto& [reply, fault] : cases) {
     Talk talk(WithIdentity([&](const std::string&) { return reply; }));
     EXPECT_EQ(talk.Fault("A?"), fault);
   }
-}
-
-TEST(Dialogue, TellsTheEndOfTheConnectionFromSlowness) {
-  std::atomic<bool> closes = true;
-  Talk talk(WithIdentity([&](const std::string&) { return Reply{"", 0, closes.load()}; }));
-  EXPECT_EQ(talk.Fault("A?"), FaultKind::kDropped);
-  closes = false;
-  EXPECT_EQ(talk.Fault("A?"), FaultKind::kTimeout);
 }
 
 TEST(Dialogue, OpensAgainAfterAFaultAndAsksWhoIsThere) {

@@ -51,7 +51,7 @@ TEST(DialogueWords, WhatIsWrongIsToldWithFileLineAndTheNearestRightThing) {
     ExpectRefused(MessageOf([&] { ParseDialogue(text, "my.toml"); }), "my.toml", line);
 }
 
-/// Each is tried against its counterpart: the served ones in served_bits_test.cc and tests/machine, the others in
+/// Each is tried against its counterpart: the served ones in tests/contract and tests/machine, the others in
 /// described_devices_test.cc.
 TEST(DialogueWords, ReadyOnesAreTheseAndAllAreWhole) {
   std::set<std::string> names;

@@ -114,25 +114,16 @@ TEST_F(EspMachineWithoutStatus, AnAxisWhoseMotorIsOffAtTheStartHasNoOrigin) {
   EXPECT_EQ(test::KindOf([&] { machine.StartMove({0.01, 0.0}, 0.0); }), FaultKind::kRestarted);
 }
 
-TEST_F(EspMachineWithoutStatus, LimitsThatSomebodyElseSetAreToldBeforeAnythingMoves) {
-  EspMachine machine = Machine();
-  machine.AgreeOnLimits();
-  machine.StartMove({0.01, 0.0}, 0.0);
-  for (const int upper_mm : {1000, 50}) {
-    model_.upper_mm = upper_mm;
-    EXPECT_EQ(test::KindOf([&] { machine.StartMove({0.02, 0.0}, 0.0); }), FaultKind::kMoved);
-    EXPECT_NEAR(machine.State()[0].encoder, 0.01, 1e-12);
-  }
-}
-
-TEST_F(EspMachineWithoutStatus, AGreatestSpeedThatSomebodyElseSetIsToldBeforeAnythingMovesWhereTheControllerTellsIt) {
+TEST_F(EspMachineWithoutStatus, LimitsAndAGreatestSpeedThatSomebodyElseSetAreToldBeforeAnythingMoves) {
   model_.fastest_mm_s = 20;
   EspMachine machine = Machine();
   machine.AgreeOnLimits();
   machine.StartMove({0.01, 0.0}, 0.0);
-  model_.fastest_mm_s = 40;
-  EXPECT_EQ(test::KindOf([&] { machine.StartMove({0.02, 0.0}, 0.0); }), FaultKind::kMoved);
-  EXPECT_NEAR(machine.State()[0].encoder, 0.01, 1e-12);
+  for (const auto& [upper_mm, fastest_mm_s] : {std::pair{1000, 20}, {50, 20}, {100, 40}}) {
+    model_.upper_mm = upper_mm, model_.fastest_mm_s = fastest_mm_s;
+    EXPECT_EQ(test::KindOf([&] { machine.StartMove({0.02, 0.0}, 0.0); }), FaultKind::kMoved);
+    EXPECT_NEAR(machine.State()[0].encoder, 0.01, 1e-12);
+  }
 }
 
 TEST_F(EspMachineWithoutStatus, AGroupThatIsThereAlreadyIsOursIfItIsOfOurAxes) {

@@ -1,12 +1,20 @@
-#include "hw_bridge/open_bench.h"
-
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <cmath>
+#include <thread>
+
 #include "hw_bridge/ad/ad_source.h"
+#include "hw_bridge/control/scpi.h"
+#include "hw_bridge/control/served_clock.h"
+#include "hw_bridge/open_bench.h"
+#include "hw_bridge/watched_adc.h"
 #include "tests/hw_control/fake_controller.h"
 #include "tests/hw_control/faults.h"
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/served_twin.h"
+#include "twin/core/device_fault.h"
+#include "twin/core/units.h"
 
 namespace twinbench::hw {
 namespace {
@@ -77,6 +85,116 @@ TEST(OpenBench, WithNobodyThereIsAFaultThatNamesTheDevice) {
   const auto open = [&] { test::OpenHardware(file, Noisy()); };
   EXPECT_EQ(KindOf(open), FaultKind::kDropped);
   EXPECT_THAT(test::TextOf(open), HasSubstr("target: cannot be reached"));
+}
+
+constexpr Duration kAmpleTime = std::chrono::seconds(5);
+
+/// How much bench time passes by itself in 20 ms.
+Duration Drift(const ScpiClock& clock) {
+  const Time before = clock.Now();
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  return clock.Now() - before;
+}
+
+TEST(ServedClock, IsHeldAgainWhereItsConnectionHadToBeOpenedAgain) {
+  constexpr double kRealTime = 1.0;
+  ServedTwin served(test::RotaryScenario(), kRealTime);
+  Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,");
+  ScpiClock clock({talk, "clock", kAmpleTime});
+  EXPECT_EQ(Drift(clock), Duration(0));
+  talk.Close();
+  EXPECT_EQ(Drift(clock), Duration(0));
+}
+
+TEST(ServedClock, WaitsWhatItIsToldAndTakesNoRealTimeUnpaced) {
+  constexpr double kRealTime = 1.0;
+  ServedTwin served(test::RotaryScenario(), kRealTime);
+  Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,");
+  ScpiClock clock({talk, "clock", kAmpleTime});
+  ScpiSimulation(clock).SetPaced(false);
+  const Time before = clock.Now();
+  clock.Wait(std::chrono::hours(10));  // far beyond what this test may take
+  EXPECT_EQ(clock.Now() - before, std::chrono::hours(10));
+  ScpiSimulation(clock).SetPaced(true);
+  const auto begin = std::chrono::steady_clock::now();
+  clock.Wait(std::chrono::milliseconds(50));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(50));
+}
+
+/// A table that stands off its stop from some look on; nobody knows how far (NaN): it has lost its origin.
+class CreepingTable : public RotaryTable {
+ public:
+  CreepingTable(int from_look, double off_rad) : from_look_(from_look), off_rad_(off_rad) {}
+  TableState State() override {
+    if (fails) throw DeviceFault(FaultKind::kTimeout, "target", "no answer");
+    TableState state;
+    state.commanded_rad = 1.0;
+    state.encoder_rad = 1.0 + (++looks >= from_look_ ? off_rad_ : 0.0);
+    state.referenced = !std::isnan(state.encoder_rad);
+    return state;
+  }
+  void StartMove(double) override {}
+  bool Settles(Duration) override { return true; }
+  void Stop() override {}
+  void Home() override {}
+
+  std::atomic<int> looks = 0;
+  bool fails = false;
+
+ private:
+  int from_look_;
+  double off_rad_;
+};
+
+/// A block that lasts until a table has been looked at so often, or a look has failed.
+class LongBlock : public AdConverter {
+ public:
+  LongBlock(const CreepingTable& table, int looks) : table_(table), looks_(looks) {}
+  Acquisition Acquire(int n_samples, bool) override {
+    while (table_.looks < looks_ && !table_.fails) std::this_thread::yield();
+    Acquisition block;
+    block.n_samples = n_samples;
+    return block;
+  }
+
+ private:
+  const CreepingTable& table_;
+  int looks_;
+};
+
+constexpr double kTolerance_rad = 0.05 * units::arcsec;
+
+std::optional<FaultKind> HowABlockEnds(CreepingTable& target) {
+  CreepingTable reference(1000, 0.0);
+  LongBlock adc(target, 3);  // the look that finds it off is the last
+  WatchedAdc watched(adc, {"target", target, kTolerance_rad}, {"reference", reference, kTolerance_rad});
+  return KindOf([&] { watched.Acquire(100, false); });
+}
+
+TEST(WatchedAdc, SeesATableThatLeavesItsStopInTheMiddleOfABlock) {
+  CreepingTable creeping(3, 0.06 * units::arcsec);
+  EXPECT_EQ(HowABlockEnds(creeping), FaultKind::kMoved);
+  EXPECT_GE(creeping.looks, 3);
+}
+
+TEST(WatchedAdc, SeesAControllerThatRestartsInTheMiddleOfABlock) {
+  CreepingTable restarted(3, kNaN);
+  EXPECT_EQ(HowABlockEnds(restarted), FaultKind::kRestarted);
+}
+
+TEST(WatchedAdc, TellsWhatALookFailedOf) {
+  CreepingTable silent(1, 0.0);
+  silent.fails = true;
+  EXPECT_EQ(HowABlockEnds(silent), FaultKind::kTimeout);
+}
+
+TEST(WatchedAdc, HandsABlockOverAndRemembersHowFarTheTablesWereOff) {
+  CreepingTable target(3, -0.04 * units::arcsec), reference(2, 0.01 * units::arcsec);
+  LongBlock adc(target, 4);
+  WatchedAdc watched(adc, {"target", target, kTolerance_rad}, {"reference", reference, kTolerance_rad});
+  EXPECT_EQ(watched.Acquire(100, false).n_samples, 100);
+  EXPECT_NEAR(watched.tables()[0].furthest_rad / units::arcsec, -0.04, 1e-7);
+  EXPECT_NEAR(watched.tables()[1].furthest_rad / units::arcsec, 0.01, 1e-7);
 }
 
 }  // namespace

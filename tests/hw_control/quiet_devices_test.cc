@@ -8,10 +8,6 @@
 #include "hw_bridge/control/operator_devices.h"
 #include "tests/hw_control/faults.h"
 #include "tests/support/kept_text.h"
-#include "tests/support/memory_log.h"
-#include "tests/support/restless_bench.h"
-#include "twin/benches/rotary_4dof/procedure/procedure.h"
-#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/units.h"
 
 namespace twinbench::hw {
@@ -65,43 +61,6 @@ TEST(HostClock, TellsOnceOfEachStepOfTheWallClockAndNotOfItsSlewing) {
   clock.Wait(std::chrono::seconds(1));
   ASSERT_EQ(computer.notices.size(), 1u);
   EXPECT_THAT(computer.notices[0], HasSubstr("+2.400 s"));
-}
-
-/// The world of a twin, whose time a computer reads off a steady clock, while its wall clock is set twice on the way.
-TEST(HostClock, AJumpOfTheWallClockDuringARunGoesIntoNoReading) {
-  const auto measured = [](std::int64_t first_jump_ns, std::int64_t second_jump_ns, test::MemoryLog& log) {
-    const Scenario scenario = test::RestlessBench();
-    sim::Twin twin(scenario);
-    RotaryBench world = twin.Bench();
-    std::int64_t jumped_ns = 0;
-    const auto steady_ns = [&] { return world.clock.Now().time_since_epoch().count(); };
-    const auto utc_ns = [&] { return 1'700'000'000'000'000'000 + steady_ns() + jumped_ns; };
-    const auto wait = [&](Duration duration) {
-      world.clock.Wait(duration);
-      if (log.readings.size() >= 5) jumped_ns = first_jump_ns;
-      if (log.readings.size() >= 11) jumped_ns = second_jump_ns;
-    };
-    HostClock* host = nullptr;
-    HostClock clock({}, [&](const std::string& notice) { log.AppendEvent(host->Now(), "clock", notice); }, steady_ns, utc_ns, wait);
-    host = &clock;
-    RotaryBench bench = {clock,       world.target,      world.reference,  world.adc, world.autocollimator,
-                         world.thermometer, world.goniometer, world.fixture, nullptr};
-    procedure::Options options;
-    options.log = &log;
-    procedure::CarryOut(bench, scenario, log, {}, options);
-  };
-  test::MemoryLog quiet, jumped;
-  measured(0, 0, quiet);
-  measured(86'400'000'000'000, -7'200'000'000'000, jumped);
-  EXPECT_EQ(test::TextOf(jumped.readings), test::TextOf(quiet.readings)) << "times and all";
-  const auto told = [](const test::MemoryLog& log) {
-    std::vector<std::string> texts;
-    for (const RecordedEvent& event : log.events)
-      if (event.device == "clock") texts.push_back(event.text);
-    return texts;
-  };
-  EXPECT_TRUE(told(quiet).empty());
-  EXPECT_THAT(told(jumped), testing::ElementsAre(HasSubstr("+86400.000 s"), HasSubstr("-7200.000 s")));
 }
 
 TEST(HostClock, OfThisComputerPassesAtLeastWhatItWaits) {

@@ -1,5 +1,3 @@
-#include "tests/machine/any_machine.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

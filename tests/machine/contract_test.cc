@@ -127,18 +127,16 @@ TEST(Comparison, ARealSweepIsGoneAgainFromItsBeginning) {
 /// What answers more slowly than the interval is none to sweep with.
 TEST(Comparison, ASweepWhoseReadingsComeLateIsNoRun) {
   DrivenTwin twin(ShortSweep());
-  struct Slow : InstrumentSet {
-    explicit Slow(const MachineBench& its_bench) : bench(its_bench) {}
+  struct Slow : PassingInstruments {
+    explicit Slow(const MachineBench& bench) : PassingInstruments(bench.instruments), clock(bench.clock) {}
     Reading Read() override {
-      const Reading shown = bench.instruments.Read();
-      bench.clock.Wait(std::chrono::milliseconds(850));
+      const Reading shown = inner_.Read();
+      clock.Wait(std::chrono::milliseconds(850));
       return shown;
     }
-    void Arm(int, int) override {}
-    LatchedSamples Latched() override { return {}; }
-    MachineBench bench;
+    Clock& clock;
   } slow(twin.bench);
-  MachineBench late{twin.bench.clock, twin.bench.machine, slow, twin.bench.fixture, nullptr};
+  MachineBench late = AsHardware(twin.bench, slow);
   EXPECT_EQ(twin.FaultOn(late), "overrun");
 }
 

@@ -39,4 +39,43 @@ struct DrivenTwin {
   std::string said;  // by the latest fault
 };
 
+/// Axes that hand on what they are asked: a test overrides what is another's.
+class PassingMachine : public MachineController {
+ public:
+  explicit PassingMachine(MachineController& inner) : inner_(inner) {}
+  const std::vector<MachineAxis>& Axes() const override { return inner_.Axes(); }
+  std::vector<AxisLimits> Travel() override { return inner_.Travel(); }
+  void StartMove(const std::vector<double>& to, double feed_m_s) override { inner_.StartMove(to, feed_m_s); }
+  void StartArc(const Arc& arc) override { inner_.StartArc(arc); }
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override { inner_.StartTurning(axis, speed_rad_s, ramp); }
+  bool Settles(Duration within) override { return inner_.Settles(within); }
+  std::vector<AxisState> State() override { return inner_.State(); }
+  void Stop() override { inner_.Stop(); }
+  void Home() override { inner_.Home(); }
+
+ protected:
+  MachineController& inner_;
+};
+
+/// The same of instruments.
+class PassingInstruments : public InstrumentSet {
+ public:
+  explicit PassingInstruments(InstrumentSet& inner) : inner_(inner) {}
+  Reading Read() override { return inner_.Read(); }
+  void Arm(int samples, int lines) override { inner_.Arm(samples, lines); }
+  LatchedSamples Latched() override { return inner_.Latched(); }
+
+ protected:
+  InstrumentSet& inner_;
+};
+
+/// A bench that does not say that it is a twin, with these parts in the place of its own.
+inline MachineBench AsHardware(const MachineBench& twin, MachineController& machine, InstrumentSet& instruments) {
+  return {twin.clock, machine, instruments, twin.fixture, nullptr, twin.indexer};
+}
+inline MachineBench AsHardware(const MachineBench& twin, InstrumentSet& instruments) {
+  return AsHardware(twin, twin.machine, instruments);
+}
+inline MachineBench AsHardware(const MachineBench& twin) { return AsHardware(twin, twin.machine, twin.instruments); }
+
 }  // namespace twinbench::test

@@ -16,6 +16,7 @@
 namespace twinbench::test {
 namespace {
 
+using benches::circular::kEncoder_rad;
 using testing::HasSubstr;
 
 /// For an answer.
@@ -91,7 +92,7 @@ TEST(MachineFaults, ARestartAboutAReadingAtRestCostsAnAttemptAndLeavesNoCellEmpt
 struct Restarting {
   Restarting(const Scenario& scenario, int restarts_in)
       : twin(scenario),
-        troubled(Unsimulated(), InstrumentColumns(FormatOf(scenario.bench).columns), {},
+        troubled(AsHardware(twin.bench), InstrumentColumns(FormatOf(scenario.bench).columns), {},
                  [this, restarts_in](const std::string& device, const std::string& request, std::string& answer) {
                    if (request == "read" && ++reads == restarts_in) is_lost = true;
                    if (request == "home") Home();
@@ -108,10 +109,6 @@ struct Restarting {
       state.commanded = state.encoder = kNaN;
     }
     return StatesText(states);
-  }
-  MachineBench Unsimulated() const {
-    const MachineBench& inner = twin.bench;
-    return {inner.clock, inner.machine, inner.instruments, inner.fixture, nullptr, inner.indexer};
   }
   std::string Fault(bool may_home) {
     twin.options.may_home = may_home;
@@ -200,21 +197,21 @@ TEST(MachineFaults, ThatWaitAtAResumeAreNotTakenForARecordThatDoesNotFit) {
 }
 
 /// The axes of a twin, of which one is pushed off its place whenever something is read.
-class Pushed : InstrumentSet, MachineController {
+class Pushed : PassingInstruments, PassingMachine {
  public:
-  Pushed(MachineBench inner, std::size_t axis, double by) : inner_(inner), axis_(axis), by_(by) {}
-  MachineBench Bench() { return {inner_.clock, *this, *this, inner_.fixture, inner_.simulation, inner_.indexer}; }
+  Pushed(const MachineBench& inner, std::size_t axis, double by)
+      : PassingInstruments(inner.instruments), PassingMachine(inner.machine), bench_(inner), axis_(axis), by_(by) {}
+  MachineBench Bench() { return {bench_.clock, *this, *this, bench_.fixture, bench_.simulation, bench_.indexer}; }
   int times = 1;               // to go
   Duration stamped_late_by{};  // by a clock of the instruments' own
 
  private:
   Reading Read() override {
     is_pushed_ = times-- > 0;
-    return Stamped(inner_.instruments.Read());
+    return Stamped(PassingInstruments::Read());
   }
-  void Arm(int samples, int lines) override { inner_.instruments.Arm(samples, lines); }
   LatchedSamples Latched() override {
-    LatchedSamples latched = inner_.instruments.Latched();
+    LatchedSamples latched = PassingInstruments::Latched();
     for (Reading& sample : latched.samples) sample = Stamped(sample);
     return latched;
   }
@@ -222,26 +219,21 @@ class Pushed : InstrumentSet, MachineController {
     sample.time += stamped_late_by;
     return sample;
   }
-  const std::vector<MachineAxis>& Axes() const override { return inner_.machine.Axes(); }
-  std::vector<AxisLimits> Travel() override { return inner_.machine.Travel(); }
   void StartMove(const std::vector<double>& to, double feed_m_s) override {
     is_pushed_ = false;
-    inner_.machine.StartMove(to, feed_m_s);
+    PassingMachine::StartMove(to, feed_m_s);
   }
-  void StartArc(const Arc& arc) override { inner_.machine.StartArc(arc); }
-  bool Settles(Duration within) override { return inner_.machine.Settles(within); }
   std::vector<AxisState> State() override {
-    std::vector<AxisState> states = inner_.machine.State();
+    std::vector<AxisState> states = PassingMachine::State();
     if (is_pushed_) states[axis_].encoder += by_;
     return states;
   }
   void Stop() override {
     is_pushed_ = false;
-    inner_.machine.Stop();
+    PassingMachine::Stop();
   }
-  void Home() override { inner_.machine.Home(); }
 
-  MachineBench inner_;
+  MachineBench bench_;
   std::size_t axis_;
   double by_;
   bool is_pushed_ = false;
@@ -312,7 +304,7 @@ TEST(MachineFaults, ATriggerThatLatchesNothingIsAGapOfWhichNothingIsKeptAndIsGon
     EXPECT_EQ(twin.log.attempts[0].fault, "gap");
     EXPECT_EQ(twin.log.attempts[0].reading, 0);
     ASSERT_EQ(twin.log.readings.size(), whole.size());
-    for (std::size_t k = 0; k < kCircle; ++k) EXPECT_NEAR(benches::circular::kEncoder_rad(twin.log.readings[k]), twinbench::benches::circular::kEncoder_rad(whole[k]), 1e-3) << k;
+    for (std::size_t k = 0; k < kCircle; ++k) EXPECT_NEAR(kEncoder_rad(twin.log.readings[k]), kEncoder_rad(whole[k]), 1e-3) << k;
   }
 }
 

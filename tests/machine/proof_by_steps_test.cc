@@ -4,7 +4,7 @@
 
 #include "tests/machine/benches.h"
 #include "tests/machine/driven_twin.h"
-#include "tests/support/restless_bench.h"
+#include "tests/support/rotary_scenario.h"
 #include "tools/twinbench/planned_run.h"
 #include "tools/twinbench/real_bench.h"
 #include "twin/benches/encoder_comparison/settings.h"
@@ -19,17 +19,16 @@ namespace {
 using Changes = std::function<void(Reading& shown, const Reading& before)>;
 
 /// Shows something else from the n-th reading on, or with that one alone.
-class ChangedInstruments : public InstrumentSet {
+class ChangedInstruments : public PassingInstruments {
  public:
-  ChangedInstruments(InstrumentSet& inner, int good, int bad, Changes changes) : inner_(inner), good_(good), bad_(bad), changes_(std::move(changes)) {}
+  ChangedInstruments(InstrumentSet& inner, int good, int bad, Changes changes)
+      : PassingInstruments(inner), good_(good), bad_(bad), changes_(std::move(changes)) {}
   Reading Read() override {
     const Reading before = shown_;
     shown_ = inner_.Read();
     return With(shown_, before, read_++);
   }
   Reading Look() override { return With(inner_.Look(), shown_, read_ - 1); }
-  void Arm(int samples, int lines) override { inner_.Arm(samples, lines); }
-  LatchedSamples Latched() override { return inner_.Latched(); }
 
  private:
   Reading With(Reading shown, const Reading& before, int number) const {
@@ -37,7 +36,6 @@ class ChangedInstruments : public InstrumentSet {
     return shown;
   }
 
-  InstrumentSet& inner_;
   int good_, bad_, read_ = 0;
   Changes changes_;
   Reading shown_;
@@ -48,13 +46,26 @@ struct RunEnd {
   std::size_t kept;
 };
 
-RunEnd RunWith(const Scenario& scenario, int good, int bad, const Changes& changes) {
-  DrivenTwin twin(scenario);
-  ChangedInstruments instruments(twin.bench.instruments, good, bad, changes);
-  MachineBench bench = {twin.bench.clock, twin.bench.machine, instruments, twin.bench.fixture, nullptr, twin.bench.indexer};
+void ExpectWhole(const RunEnd& run, std::size_t readings) {
+  EXPECT_EQ(run.fault, "");
+  EXPECT_EQ(run.kept, readings);
+}
+void ExpectEnded(const RunEnd& run, std::size_t behind) {
+  EXPECT_NE(run.fault, "");
+  EXPECT_EQ(run.kept, behind);
+}
+
+/// Of a run whose readings are proved.
+RunEnd EndOf(DrivenTwin& twin, MachineBench bench) {
   twin.options.prove = ProofBySteps(bench, twin.scenario, twin.options);
   const std::string fault = twin.FaultOn(bench);
   return {fault, twin.log.readings.size()};
+}
+
+RunEnd RunWith(const Scenario& scenario, int good, int bad, const Changes& changes) {
+  DrivenTwin twin(scenario);
+  ChangedInstruments instruments(twin.bench.instruments, good, bad, changes);
+  return EndOf(twin, AsHardware(twin.bench, instruments));
 }
 
 double& In(Reading& reading, const Scenario& scenario, const std::string& column) {
@@ -89,12 +100,10 @@ TEST(ProofBySteps, InstrumentsWhoseSignsAxesOrUnitsChangeAreNoticedAtOnceWhereSi
 }
 
 /// A machine whose controller says that it goes where it is told and that stands, or goes against it, from a reading on.
-class LyingMachine : public MachineController {
+class LyingMachine : public PassingMachine {
  public:
   LyingMachine(MachineController& inner, const MemoryLog& log, std::size_t good, double share)
-      : inner_(inner), log_(log), good_(good), share_(share) {}
-  const std::vector<MachineAxis>& Axes() const override { return inner_.Axes(); }
-  std::vector<AxisLimits> Travel() override { return inner_.Travel(); }
+      : PassingMachine(inner), log_(log), good_(good), share_(share) {}
   void StartMove(const std::vector<double>& to, double feed_m_s) override {
     told_ = to;
     if (log_.readings.size() < good_) return inner_.StartMove(to, feed_m_s);
@@ -107,18 +116,13 @@ class LyingMachine : public MachineController {
     told_.clear();
     inner_.StartArc(arc);
   }
-  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override { inner_.StartTurning(axis, speed_rad_s, ramp); }
-  bool Settles(Duration within) override { return inner_.Settles(within); }
   std::vector<AxisState> State() override {
     std::vector<AxisState> states = inner_.State();
     for (std::size_t k = 0; k < told_.size(); ++k) states[k].encoder = states[k].commanded = told_[k];
     return states;
   }
-  void Stop() override { inner_.Stop(); }
-  void Home() override { inner_.Home(); }
 
  private:
-  MachineController& inner_;
   const MemoryLog& log_;
   std::size_t good_;
   double share_;
@@ -132,9 +136,7 @@ TEST(ProofBySteps, AtStopsOnACircleBarAndGridGoWithAMachineThatGoesOffIt) {
     DrivenTwin twin(scenario);
     LyingMachine machine(twin.bench.machine, twin.log, good, share);
     ChangedInstruments instruments(twin.bench.instruments, changes ? static_cast<int>(good) : 1000, 1000, changes);
-    MachineBench bench = {twin.bench.clock, machine, instruments, twin.bench.fixture, nullptr, twin.bench.indexer};
-    twin.options.prove = ProofBySteps(bench, twin.scenario, twin.options);
-    return RunEnd{twin.FaultOn(bench), twin.log.readings.size()};
+    return EndOf(twin, AsHardware(twin.bench, machine, instruments));
   };
   EXPECT_EQ(end_of(1000, 1.0, {}).fault, "");
   for (const double share : {0.0, -1.0, 1e-3}) {
@@ -156,15 +158,12 @@ TEST(ProofBySteps, AtStopsOnACircleBarAndGridGoWithAMachineThatGoesOffIt) {
 }
 
 TEST(ProofBySteps, OneLateAnswerOfBothEncodersCostsAnAttemptWhereNothingBeforeItIsOfItsMounting) {
-  const Scenario scenario = ShortStops();
   const Changes late = [](Reading& r, const Reading& before) {
     r.reference_rad = before.reference_rad, r.measured_rad = before.measured_rad;
   };
-  DrivenTwin twin(scenario);
+  DrivenTwin twin(ShortStops());
   ChangedInstruments instruments(twin.bench.instruments, 24, 1, late);
-  MachineBench bench = {twin.bench.clock, twin.bench.machine, instruments, twin.bench.fixture, nullptr, twin.bench.indexer};
-  twin.options.prove = ProofBySteps(bench, twin.scenario, twin.options);
-  EXPECT_EQ(twin.FaultOn(bench), "");
+  EXPECT_EQ(EndOf(twin, AsHardware(twin.bench, instruments)).fault, "");
   ASSERT_EQ(twin.log.attempts.size(), 1u);
   EXPECT_EQ(twin.log.attempts[0].reading, 24);
 }
@@ -194,7 +193,8 @@ class Lying : public RotaryTable {
   double share_, at_rad_ = 0.0, told_rad_ = kNaN;
 };
 
-using ChangesVolts = std::function<void(std::array<ChannelBlock, kChannels>& channel, const std::array<ChannelBlock, kChannels>& before)>;
+using Blocks = std::array<ChannelBlock, kChannels>;
+using ChangesVolts = std::function<void(Blocks& channel, const Blocks& before)>;
 
 /// A card whose channels are others from the n-th block on.
 class ChangedCard : public AdConverter {
@@ -214,7 +214,7 @@ class ChangedCard : public AdConverter {
   AdConverter& inner_;
   int good_;
   ChangesVolts changes_;
-  std::array<ChannelBlock, kChannels> last_{};
+  Blocks last_{};
 };
 
 using ChangesAngles = std::function<AutocollimatorReading(AutocollimatorReading)>;
@@ -237,8 +237,8 @@ struct TableShares {
   double target = 1.0, reference = 1.0;
 };
 
-std::string EndOfTables(int good, const ChangesVolts& changes, TableShares shares, std::size_t& kept,
-                        const std::string& phase = "full_circle", const ChangesAngles& changes_angles = {}) {
+RunEnd EndOfTables(int good, const ChangesVolts& changes, TableShares shares, const std::string& phase = "full_circle",
+                   const ChangesAngles& changes_angles = {}) {
   Scenario scenario = RestlessBench();
   RotaryOf(scenario).procedure.phases = {phase};
   RotaryOf(scenario).procedure.stability_s = 60.0;
@@ -258,11 +258,8 @@ std::string EndOfTables(int good, const ChangesVolts& changes, TableShares share
   } catch (const DeviceFault& caught) {
     fault = FaultName(caught.kind());
   }
-  kept = log.readings.size();
-  return fault;
+  return {fault, log.readings.size()};
 }
-
-using Blocks = std::array<ChannelBlock, kChannels>;
 
 const std::vector<ChangesVolts>& WrongVolts() {
   static const std::vector<ChangesVolts> changes = {
@@ -280,26 +277,17 @@ TEST(ProofBySteps, TablesThatStandOrAreMirroredAndChannelsOfAnotherUnitOrOrderLe
   constexpr int kGoodBlocks = 3 * kGood;
   const std::pair<const char*, std::size_t> phases[] = {{"full_circle", 24}, {"calibration", 12}, {"verification", 7}};
   for (const auto& [phase, readings] : phases) {
-    std::size_t kept = 0;
-    EXPECT_EQ(EndOfTables(1000, {}, {}, kept, phase), "") << phase;
-    EXPECT_EQ(kept, readings) << phase;
-    for (const ChangesVolts& changes : WrongVolts()) {
-      EXPECT_NE(EndOfTables(kGoodBlocks, changes, {}, kept, phase), "") << phase;
-      EXPECT_EQ(kept, kGood) << phase;
-    }
-    for (const TableShares shares : kWrongShares) {
-      EXPECT_NE(EndOfTables(kGoodBlocks, {}, shares, kept, phase), "") << phase << " " << shares.target;
-      EXPECT_EQ(kept, kGood) << phase << " " << shares.target;
-    }
+    SCOPED_TRACE(phase);
+    ExpectWhole(EndOfTables(1000, {}, {}, phase), readings);
+    for (const ChangesVolts& changes : WrongVolts()) ExpectEnded(EndOfTables(kGoodBlocks, changes, {}, phase), kGood);
+    for (const TableShares shares : kWrongShares) ExpectEnded(EndOfTables(kGoodBlocks, {}, shares, phase), kGood);
   }
 }
 
 TEST(ProofBySteps, AZeroThatIsSetWhileTheStepIsGoneBackLeavesNoReading) {
-  std::size_t kept = 0;
   constexpr std::size_t kGood = 5;
   const ChangesVolts stays_away = [](Blocks& c, const Blocks& before) { c = before; };  // as beside the reading
-  EXPECT_NE(EndOfTables(3 * kGood + 2, stays_away, {}, kept), "");
-  EXPECT_EQ(kept, kGood);
+  ExpectEnded(EndOfTables(3 * kGood + 2, stays_away, {}), kGood);
 }
 
 TEST(ProofBySteps, AnAutocollimatorWhoseSignsUnitsOrAxesChangeLeavesNoReadingOfACalibration) {
@@ -307,22 +295,15 @@ TEST(ProofBySteps, AnAutocollimatorWhoseSignsUnitsOrAxesChangeLeavesNoReadingOfA
   const ChangesAngles changes[] = {[](AutocollimatorReading a) { return AutocollimatorReading{-a.yaw_rad, a.tilt_rad}; },
                                    [](AutocollimatorReading a) { return AutocollimatorReading{a.tilt_rad, a.yaw_rad}; },
                                    [](AutocollimatorReading a) { return AutocollimatorReading{0.206 * a.yaw_rad, 0.206 * a.tilt_rad}; }};
-  for (const ChangesAngles& change : changes) {
-    std::size_t kept = 0;
-    EXPECT_NE(EndOfTables(3 * kGood + 1, {}, {}, kept, "calibration", change), "");  // which is read before the converter is
-    EXPECT_EQ(kept, kGood);
-  }
+  for (const ChangesAngles& change : changes)  // it is read before the converter is
+    ExpectEnded(EndOfTables(3 * kGood + 1, {}, {}, "calibration", change), kGood);
 }
 
 TEST(ProofBySteps, InAStabilityTestTablesGoAStepBeforeItsFirstReadingAndBehindItsLast) {
-  std::size_t kept = 0;
-  EXPECT_EQ(EndOfTables(1000, {}, {}, kept, "stability"), "");
-  EXPECT_EQ(kept, 6u);
-  EXPECT_NE(EndOfTables(0, {}, {0.0, 0.0}, kept, "stability"), "");
-  EXPECT_EQ(kept, 0u);
+  ExpectWhole(EndOfTables(1000, {}, {}, "stability"), 6);
+  ExpectEnded(EndOfTables(0, {}, {0.0, 0.0}, "stability"), 0);
   constexpr int kBefore = 3;  // blocks
-  EXPECT_NE(EndOfTables(kBefore + 3, {}, {0.0, 0.0}, kept, "stability"), "");
-  EXPECT_EQ(kept, 5u);
+  ExpectEnded(EndOfTables(kBefore + 3, {}, {0.0, 0.0}, "stability"), 5);
 }
 
 TEST(ProofByClosing, AZeroThatJumpsBetweenTwoPassesEndsTheMountingOnEveryBench) {
@@ -346,10 +327,10 @@ TEST(ProofByClosing, AZeroThatJumpsBetweenTwoPassesEndsTheMountingOnEveryBench) 
     EXPECT_EQ(run.fault, "implausible") << scenario.bench;
     EXPECT_EQ(run.kept, last) << scenario.bench;
   }
-  std::size_t kept = 0;
   const ChangesVolts jumps = [](Blocks& c, const Blocks&) { c[0].mean_V += 0.5, c[2].mean_V += 0.5; };
-  EXPECT_EQ(EndOfTables(3 * 6, jumps, {}, kept), "implausible");
-  EXPECT_EQ(kept, 11u);
+  const RunEnd run = EndOfTables(3 * 6, jumps, {});
+  EXPECT_EQ(run.fault, "implausible");
+  EXPECT_EQ(run.kept, 11u);
 }
 
 /// By the bench's clock, of a run whose readings are proved, with hands that take as long as the scenario says.

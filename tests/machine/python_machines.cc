@@ -1,4 +1,3 @@
-#include "tests/machine/any_machine.h"
 #include "tests/machine/benches.h"
 
 #ifdef TWINBENCH_PYTHON_TESTS

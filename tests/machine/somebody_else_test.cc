@@ -5,7 +5,7 @@
 
 #include "tests/machine/benches.h"
 #include "tests/machine/driven_twin.h"
-#include "tests/support/troubled_machine.h"
+#include "tests/support/troubled_bench.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/core/bench_format.h"
 #include "twin/procedure/doubted_instruments.h"
@@ -28,22 +28,17 @@ void Act(Hand hand, MachineController& machine) {
   machine.StartMove(to, 0.0);
 }
 
-MachineBench AsHardware(const MachineBench& twin) {
-  return {twin.clock, twin.machine, twin.instruments, twin.fixture, nullptr, twin.indexer};
-}
-
 /// A run in which a hand acts before the machine is asked for the n-th time; never: 0.
 struct HandledRun {
   HandledRun(const Scenario& scenario, Hand hand, int at_call)
       : twin(scenario),
-        troubled(Unsimulated(), InstrumentColumns(FormatOf(scenario.bench).columns),
+        troubled(AsHardware(twin.bench), InstrumentColumns(FormatOf(scenario.bench).columns),
                  [=, this](const std::string& device, const std::string& request, std::string&) {
                    if (device == "machine" && request != "stop" && ++calls == at_call) Act(hand, twin.bench.machine);
                  }) {
     MachineBench bench = troubled.Bench();
     fault = twin.FaultOn(bench);
   }
-  MachineBench Unsimulated() const { return AsHardware(twin.bench); }
 
   DrivenTwin twin;
   TroubledMachine troubled;
@@ -112,18 +107,14 @@ TEST(SomebodyElse, WhoTurnsTheFeedOverrideEndsACircle) {
 }
 
 /// A controller whose zero is set anew where the machine stands, as it is looked at for the n-th time: to itself all is in order.
-class Rezeroed : public MachineController {
+class Rezeroed : public PassingMachine {
  public:
-  Rezeroed(MachineController& inner, int at_call) : inner_(inner), at_call_(at_call), zero_(inner.Axes().size(), 0.0) {}
-  const std::vector<MachineAxis>& Axes() const override { return inner_.Axes(); }
-  std::vector<AxisLimits> Travel() override { return inner_.Travel(); }
+  Rezeroed(MachineController& inner, int at_call) : PassingMachine(inner), at_call_(at_call), zero_(inner.Axes().size(), 0.0) {}
   void StartMove(const std::vector<double>& to, double feed_m_s) override {
     std::vector<double> really = to;
     for (std::size_t k = 0; k < to.size(); ++k) really[k] += zero_[k];
     inner_.StartMove(really, feed_m_s);
   }
-  void StartArc(const Arc& arc) override { inner_.StartArc(arc); }
-  bool Settles(Duration within) override { return inner_.Settles(within); }
   std::vector<AxisState> State() override {
     std::vector<AxisState> states = inner_.State();
     if (++calls_ == at_call_)
@@ -131,11 +122,8 @@ class Rezeroed : public MachineController {
     for (std::size_t k = 0; k < states.size(); ++k) states[k].commanded -= zero_[k], states[k].encoder -= zero_[k];
     return states;
   }
-  void Stop() override { inner_.Stop(); }
-  void Home() override { inner_.Home(); }
 
  private:
-  MachineController& inner_;
   int at_call_, calls_ = 0;
   std::vector<double> zero_;
 };
@@ -157,7 +145,7 @@ TEST(SomebodyElse, WhoSetsTheZeroAnewEndsTheRunBeforeAReadingIsKeptElsewhere) {
       DrivenTwin twin(make());
       DoubtOn(twin.options, twin.scenario);
       Rezeroed machine(twin.bench.machine, at_call);
-      MachineBench bench = {twin.bench.clock, machine, twin.bench.instruments, twin.bench.fixture, nullptr, twin.bench.indexer};
+      MachineBench bench = AsHardware(twin.bench, machine, twin.bench.instruments);
       const std::string fault = twin.FaultOn(bench);
       EXPECT_TRUE(fault == "implausible" || fault == "moved") << fault << ": " << twin.said;
       EXPECT_LT(twin.log.readings.size(), undisturbed.log.readings.size());
@@ -168,9 +156,9 @@ TEST(SomebodyElse, WhoSetsTheZeroAnewEndsTheRunBeforeAReadingIsKeptElsewhere) {
 }
 
 /// Shows nothing from the n-th reading on.
-class Blind : public InstrumentSet {
+class Blind : public PassingInstruments {
  public:
-  Blind(InstrumentSet& inner, int sees) : inner_(inner), sees_(sees) {}
+  Blind(InstrumentSet& inner, int sees) : PassingInstruments(inner), sees_(sees) {}
   Reading Read() override {
     const Reading shown = inner_.Read();
     if (sees_-- > 0) return shown;
@@ -178,11 +166,8 @@ class Blind : public InstrumentSet {
     nothing.time = shown.time;
     return nothing;
   }
-  void Arm(int samples, int lines) override { inner_.Arm(samples, lines); }
-  LatchedSamples Latched() override { return inner_.Latched(); }
 
  private:
-  InstrumentSet& inner_;
   int sees_;
 };
 
@@ -190,7 +175,7 @@ TEST(SomebodyElse, WhoTakesTheMirrorAwayLeavesNoEmptyReading) {
   for (Scenario (*make)() : {ShortFreeform, ShortTurntable, ShortStops}) {
     DrivenTwin twin(make());
     Blind instruments(twin.bench.instruments, 4);
-    MachineBench bench = {twin.bench.clock, twin.bench.machine, instruments, twin.bench.fixture, nullptr, twin.bench.indexer};
+    MachineBench bench = AsHardware(twin.bench, instruments);
     EXPECT_EQ(twin.FaultOn(bench), "gap") << twin.said;
     EXPECT_EQ(twin.log.readings.size(), 4u);
   }
@@ -198,10 +183,9 @@ TEST(SomebodyElse, WhoTakesTheMirrorAwayLeavesNoEmptyReading) {
 
 /// A counter that hands over several samples at once. From the n-th look on it stands, and jumps with every look by less than shows from
 /// one sample to the next.
-class StandingCounter : public InstrumentSet {
+class StandingCounter : public PassingInstruments {
  public:
-  StandingCounter(InstrumentSet& inner, int looks) : inner_(inner), looks_(looks) {}
-  Reading Read() override { return inner_.Read(); }
+  StandingCounter(InstrumentSet& inner, int looks) : PassingInstruments(inner), looks_(looks) {}
   void Arm(int samples, int lines) override {
     held_.clear();
     inner_.Arm(samples, lines);
@@ -219,7 +203,6 @@ class StandingCounter : public InstrumentSet {
 
  private:
   static constexpr std::size_t kTogether = 4;  // of the twelve of a pass
-  InstrumentSet& inner_;
   int looks_;
   std::vector<Reading> held_;
 };
@@ -231,7 +214,7 @@ TEST(SomebodyElse, WhoStopsACounterLeavesNoSampleOfTheLookInWhichItStood) {
   const procedure::ClaimedColumn hob{*std::ranges::find(format.columns, "hob_encoder_deg", &ReadingColumn::name), 0.0, 0.0, from_table, true};
   twin.options.require_goes_along = [=](const Reading& r, const Reading& before) { procedure::RequireGoesAlong({hob}, r, before); };
   StandingCounter instruments(twin.bench.instruments, 4);
-  MachineBench bench = {twin.bench.clock, twin.bench.machine, instruments, twin.bench.fixture, nullptr, nullptr};
+  MachineBench bench = AsHardware(twin.bench, instruments);
   EXPECT_EQ(twin.FaultOn(bench), "moved") << twin.said;
   ASSERT_FALSE(twin.log.readings.empty());
   const auto left_rad = [&](const Reading& r) { return r.reference_rad - from_table(r); };

@@ -35,20 +35,29 @@ Reading NumberOf(int k) {
   return r;
 }
 
-/// x jumps before the n-th of all. How many pass.
-int PassUntilNoticed(int n, double jump_rad) {
+using Alters = std::function<void(Reading&)>;
+using Requires = std::function<void(const Reading&, const std::vector<Reading>& kept)>;
+
+/// How many of two passes are kept before one is refused.
+int PassUntilNoticed(const Alters& alter, const Requires& require) {
   std::vector<Reading> kept;
   for (int k = 0; k < 2 * kPlaces; ++k) {
     Reading r = NumberOf(k);
-    if (k >= n) r.autocollimator_yaw_rad += jump_rad;
+    alter(r);
     try {
-      RequireNoJump({X()}, r, kept);
+      require(r, kept);
     } catch (const DeviceFault&) {
       return k;
     }
     kept.push_back(r);
   }
   return 2 * kPlaces;
+}
+
+/// x jumps before the n-th of all.
+int PassUntilNoticed(int n, double jump_rad) {
+  return PassUntilNoticed([=](Reading& r) { r.autocollimator_yaw_rad += r.reading >= n ? jump_rad : 0.0; },
+                          [](const Reading& r, const auto& kept) { RequireNoJump({X()}, r, kept); });
 }
 
 TEST(RequireNoJump, WhatPassesDifferByIsTheSameBeforeAndBehindEachReading) {
@@ -101,23 +110,15 @@ TEST(Closing, WhatIsShownAtThePlaceWherePassesBeganIsAsItWasOrHasDriftedSteadily
   for (const double n : {24.0, 31.0}) EXPECT_EQ(Closed(jumps_at(n)), all + "implausible") << n;
 }
 
-/// Two channels that differ by an offset and the same curve over the places, exchanged from the n-th of all on. How many pass.
+/// Two channels that differ by an offset and the same curve over the places, exchanged from the n-th of all on.
 int PassUntilExchangeIsNoticed(int n, double curve_V) {
   const ClaimedColumn a = ClaimOf("rotary_4dof", "psd_a_x_V"), b = ClaimOf("rotary_4dof", "psd_b_x_V");
-  std::vector<Reading> kept;
-  for (int k = 0; k < 2 * kPlaces; ++k) {
-    Reading r = NumberOf(k);
+  const auto exchange = [=](Reading& r) {
     const double apart_V = 1e-2 + curve_V * std::sin(1.0 + r.position) + r.pass * 1e-3;  // a reversal, too
     r.mean_V = {0.1 * r.position + apart_V, 0.0, 0.1 * r.position, 0.0};
-    if (k >= n) std::swap(r.mean_V[0], r.mean_V[2]);
-    try {
-      RequireNotExchanged(a, b, r, kept);
-    } catch (const DeviceFault&) {
-      return k;
-    }
-    kept.push_back(r);
-  }
-  return 2 * kPlaces;
+    if (r.reading >= n) std::swap(r.mean_V[0], r.mean_V[2]);
+  };
+  return PassUntilNoticed(exchange, [&](const Reading& r, const auto& kept) { RequireNotExchanged(a, b, r, kept); });
 }
 
 TEST(RequireNotExchanged, SpotsDifferAgainstEachOtherAsInThePassBefore) {
@@ -129,15 +130,13 @@ TEST(RequireNotExchanged, SpotsDifferAgainstEachOtherAsInThePassBefore) {
   EXPECT_EQ(PassUntilExchangeIsNoticed(8, 1e-6), 16);  // less than ten times the noise
 }
 
-constexpr double kNoise = 1e-7;
-
-/// Shows a place and noise of about kNoise, or what a fault makes of that.
+/// Shows a place and noise of about kNoiseOfOne, or what a fault makes of that.
 class Shows : public InstrumentSet {
  public:
   using Fault = std::function<double(const std::vector<double>& so_far)>;
   explicit Shows(Fault fault) : fault_(std::move(fault)) {}
   Reading Read() override {
-    shown_.push_back(place + kNoise * std::sin(17.0 * static_cast<double>(shown_.size() + 1)));
+    shown_.push_back(place + kNoiseOfOne * std::sin(17.0 * static_cast<double>(shown_.size() + 1)));
     Reading reading;
     reading.autocollimator_yaw_rad = fault_(shown_);
     return reading;
@@ -145,7 +144,7 @@ class Shows : public InstrumentSet {
   void Arm(int, int) override {}
   LatchedSamples Latched() override {
     LatchedSamples latched;
-    for (int k = 0; k < 40; ++k, place += kNoise) latched.samples.push_back(Read());
+    for (int k = 0; k < 40; ++k, place += kNoiseOfOne) latched.samples.push_back(Read());
     return latched;
   }
   double place = 0.0;
@@ -156,17 +155,16 @@ class Shows : public InstrumentSet {
 };
 
 /// Twelve places, an attempt more for each fault: of how many readings are wrong, and what was said.
-std::string Measured(const Shows::Fault& fault, double noise = kNoise) {
+std::string Measured(const Shows::Fault& fault, double noise = kNoiseOfOne) {
   Shows shows(fault);
-  const auto& columns = FormatOf("turntable_autocollimator").columns;
-  DoubtedInstruments doubted(shows, {{*std::ranges::find(columns, "autocollimator_x_arcsec", &ReadingColumn::name), noise, 1e-3}});
+  DoubtedInstruments doubted(shows, {{X().column, noise, 1e-3}});
   int wrong = 0, faults = 0;
   std::string said;
   for (int place = 0; place < 12; ++place) {
     shows.place = 1e-4 * std::sin(1.0 + place);
     for (int attempt = 0; attempt < 3; ++attempt) {
       try {
-        if (std::abs(doubted.Read().autocollimator_yaw_rad - shows.place) > 3.0 * kNoise) ++wrong;
+        if (std::abs(doubted.Read().autocollimator_yaw_rad - shows.place) > 3.0 * kNoiseOfOne) ++wrong;
         break;
       } catch (const DeviceFault& caught) {
         ++faults;
@@ -184,14 +182,14 @@ std::string Measured(const Shows::Fault& fault, double noise = kNoise) {
 
 TEST(DoubtedInstruments, KeepNothingOfDeadStuckLateAndRangelessOnesAndAllOfGoodOnes) {
   const std::pair<Shows::Fault, double> cases[] = {
-      {[](const auto& all) { return all.back(); }, kNoise},                            // good
-      {[](const auto& all) { return std::round(all.back() / 3e-7) * 3e-7; }, kNoise},  // shown in steps of three times its noise
-      {[](const auto&) { return 0.0; }, kNoise},                                       // dead
-      {[](const auto& all) { return all[std::min<std::size_t>(all.size() - 1, 5)]; }, kNoise},  // stuck from the sixth on
-      {[](const auto& all) { return all[all.size() < 2 ? 0 : all.size() - 2]; }, kNoise},       // late by one
-      {[](const auto& all) { return all.back() + (all.size() == 5 ? 1e-4 : 0.0); }, kNoise},      // one spike
-      {[](const auto& all) { return all[all.size() - (all.size() % 3 == 0 ? 2 : 1)]; }, kNoise},  // an old answer again, each third time
-      {[](const auto& all) { return 1e3 * all.back(); }, kNoise},                               // in another unit
+      {[](const auto& all) { return all.back(); }, kNoiseOfOne},                            // good
+      {[](const auto& all) { return std::round(all.back() / 3e-7) * 3e-7; }, kNoiseOfOne},  // shown in steps of three times its noise
+      {[](const auto&) { return 0.0; }, kNoiseOfOne},                                       // dead
+      {[](const auto& all) { return all[std::min<std::size_t>(all.size() - 1, 5)]; }, kNoiseOfOne},  // stuck from the sixth on
+      {[](const auto& all) { return all[all.size() < 2 ? 0 : all.size() - 2]; }, kNoiseOfOne},       // late by one
+      {[](const auto& all) { return all.back() + (all.size() == 5 ? 1e-4 : 0.0); }, kNoiseOfOne},      // one spike
+      {[](const auto& all) { return all[all.size() - (all.size() % 3 == 0 ? 2 : 1)]; }, kNoiseOfOne},  // an old answer again, each third time
+      {[](const auto& all) { return 1e3 * all.back(); }, kNoiseOfOne},                               // in another unit
       {[](const auto&) { return 0.0; }, 0.0}};  // of one that claims nothing nothing is asked
   for (const auto& [fault, noise] : cases) EXPECT_KEPT(Measured(fault, noise));
 }
@@ -205,9 +203,8 @@ Reading OfHob(double table_deg, double hob_deg) {
 }
 
 TEST(RequireGoesAlong, WhatFollowsGoesTheWayThatItShouldWithinHalfOfItAndARangedOneWithinAHundredthOfItsRange) {
-  const auto& columns = FormatOf("hob_transmission").columns;
-  const ReadingColumn& column = *std::ranges::find(columns, "hob_encoder_deg", &ReadingColumn::name);
-  ClaimedColumn claim{column, 0.0, 0.0, [](const Reading& r) { return 20.0 * r.measured_rad; }, true};
+  ClaimedColumn claim{ClaimOf("hob_transmission", "hob_encoder_deg").column, 0.0, 0.0,
+                      [](const Reading& r) { return 20.0 * r.measured_rad; }, true};
   const Reading before = OfHob(10.0, 200.0);
   EXPECT_NO_THROW(RequireGoesAlong({claim}, OfHob(12.0, 240.01), before));
   EXPECT_NO_THROW(RequireGoesAlong({claim}, OfHob(12.0, -119.99), before));  // of a counter that begins anew every turn

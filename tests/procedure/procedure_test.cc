@@ -1,13 +1,11 @@
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/settings.h"
-#include "twin/core/errors.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -49,11 +47,9 @@ class LogBench : public Clock,
   Acquisition Acquire(int n_samples, bool keep_raw) override {
     Acquisition block;
     block.start = now;
-    block.status = next_status;
     block.n_samples = n_samples;
     for (ChannelBlock& channel : block.channel) channel = {1.0, 0.1, 0.9, 1.1};
     if (keep_raw) block.raw.assign(static_cast<std::size_t>(n_samples) * kChannels, 7);
-    if (next_status == ReadingStatus::kMissing) throw BenchError("adc: no reply");
     return block;
   }
   AutocollimatorReading Read() override { return {yaw_rad, tilt_rad}; }
@@ -72,7 +68,6 @@ class LogBench : public Clock,
   Time now{};
   Table target, reference;
   double yaw_rad = 0.0, tilt_rad = 0.0;
-  ReadingStatus next_status = ReadingStatus::kOk;
   std::vector<Mounting> mountings;
   std::vector<Reading> readings;
   std::vector<std::size_t> raw_sizes;
@@ -158,15 +153,6 @@ TEST(Stability, ReadsTheRestingBenchAtItsInterval) {
   EXPECT_EQ(readings[5].time - readings[4].time, std::chrono::seconds(10));
 }
 
-TEST(CarryOut, AnInvalidBlockBecomesAReadingWithAReasonAndNoNumbers) {
-  LogBench log;
-  log.next_status = ReadingStatus::kSaturated;
-  const auto readings = CarryOutOn(log, FullCircleOnly(4, {0}, {1}));
-  ASSERT_EQ(readings.size(), 4u);
-  EXPECT_EQ(readings[0].status, ReadingStatus::kSaturated);
-  EXPECT_TRUE(std::isnan(readings[0].mean_V[0]));
-}
-
 TEST(CarryOut, PlansAsManyReadingsAsItMakes) {
   LogBench log;
   Scenario scenario = With({"calibration", "stability", "verification", "full_circle"});
@@ -195,17 +181,6 @@ TEST(CarryOut, KeepsRawBlocksOnlyWhenAsked) {
   CarryOutOn(with, scenario);
   EXPECT_EQ(without.raw_sizes[0], 0u);
   EXPECT_EQ(with.raw_sizes[0], static_cast<std::size_t>(RotaryOf(scenario).adc.samples) * kChannels);
-}
-
-TEST(CarryOut, ADeadDeviceStopsTheRunAndLosesNothingThatWasRead) {
-  LogBench log;
-  Scenario scenario = FullCircleOnly(4, {0}, {1});
-  RotaryBench bench = log.Bench();
-  const auto die_after_two = [&](const Progress& p) {
-    if (p.readings_done == 2) log.next_status = ReadingStatus::kMissing;
-  };
-  EXPECT_THROW(CarryOut(bench, scenario, log, die_after_two), BenchError);
-  EXPECT_EQ(log.readings.size(), 2u);
 }
 
 }  // namespace

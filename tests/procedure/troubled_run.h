@@ -3,7 +3,7 @@
 #include <string>
 
 #include "tests/support/memory_log.h"
-#include "tests/support/restless_bench.h"
+#include "tests/support/rotary_scenario.h"
 #include "tests/support/troubled_bench.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"

@@ -1,6 +1,6 @@
 #include "twin/procedure/watch.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "tests/procedure/troubled_run.h"
 #include "tests/support/kept_text.h"
@@ -197,43 +197,19 @@ Standstill AfterTheStop(ScriptedBench& scripted, const Options& options = {}) {
   return StopBoth(bench, options);
 }
 
-TEST(StopBoth, IsSureOfTablesThatSayThatTheyStandAndDo) {
-  ScriptedBench bench;
-  bench.target.state.moving = bench.reference.state.moving = true;
-  const Standstill stands = AfterTheStop(bench);
-  EXPECT_TRUE(stands.is_sure) << stands.why_not;
-  EXPECT_EQ(bench.target.stops, 1);
-  EXPECT_EQ(bench.reference.stops, 1);
-}
-
-TEST(StopBoth, IsNotSureOfAFrozenControllerThatStillSaysMoving) {
-  ScriptedBench bench;
-  bench.reference.state.moving = true;
-  bench.reference.obeys = false;
-  const Standstill stands = AfterTheStop(bench);
-  EXPECT_FALSE(stands.is_sure);
-  EXPECT_KEPT(stands.why_not);
-}
-
-/// More is asked in rest_test.cc.
-TEST(StopBoth, StopsBothByTheirOwnLimits) {
+/// What counts as rest is asked in rest_test.cc.
+TEST(StopBoth, TellsBothAndHoldsEachToItsOwnLimit) {
   ScriptedBench bench;
   bench.target.while_looked_at = [](ScriptedTable& table) { table.state.encoder_rad += 8.0 * units::arcsec; };
   Options options;
   options.target.in_position_rad = 20.0 * units::arcsec;
   options.reference.in_position_rad = 1.0 * units::arcsec;
   EXPECT_TRUE(AfterTheStop(bench, options).is_sure) << "it may be 20 arcsec off";
+  EXPECT_EQ(std::pair(bench.target.stops, bench.reference.stops), std::pair(1, 1));
   std::swap(bench.target.while_looked_at, bench.reference.while_looked_at);
-  EXPECT_FALSE(AfterTheStop(bench, options).is_sure);
-}
-
-TEST(StopBoth, OneThatDoesNotAnswerKeepsNobodyFromStoppingTheOther) {
-  ScriptedBench bench;
-  bench.target.while_looked_at = [](ScriptedTable&) { throw DeviceFault(FaultKind::kTimeout, "target", "mute"); };
-  const Standstill stands = AfterTheStop(bench);
+  const Standstill stands = AfterTheStop(bench, options);
   EXPECT_FALSE(stands.is_sure);
-  EXPECT_EQ(stands.why_not, "target: mute");
-  EXPECT_EQ(bench.reference.stops, 1);
+  EXPECT_THAT(stands.why_not, testing::HasSubstr("reference"));
 }
 
 TEST(RealBench, IsBroughtBackToTheLastStopFromTheSideItWasApproachedFrom) {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "tests/sim/quiet_scenario.h"
+#include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -71,20 +71,6 @@ void MoveBoth(RotaryBench bench, double target_rad) {
   bench.reference.StartMove(-target_rad);
   bench.target.WaitSettled();
   bench.reference.WaitSettled();
-}
-
-TEST(Effects, CalibrationFindsTheGainAndTheRollThatWereHidden) {
-  Scenario scenario = Quiet();
-  RotaryOf(scenario).procedure.phases = {"calibration"};
-  scenario.effects = {Effect("psd_gain", "psd_b_x", {{"gain_error", 0.01}}),
-                      Effect("psd_roll", "psd_a", {{"roll", 0.005}})};
-  const test::TwinRun run = test::RunTwin(scenario);
-  const auto found = measure::Calibrate(run.readings, measure::NominalGeometry(scenario));
-  // Its prior of 2 % pulls by (u / 0.02)^2, with u about 1e-5 for a stated autocollimator noise of 0.02 arcsec.
-  EXPECT_NEAR(found.gain[2], 1.01, 1e-5);
-  EXPECT_NEAR(found.gain[0], 1.00, 1e-5);
-  EXPECT_NEAR(found.roll_rad[0], 0.005, 1e-5);
-  EXPECT_NEAR(found.roll_rad[1], 0.0, 1e-5);
 }
 
 TEST(Effects, StretchOrPullTheSpotOfTheirDetectorOnly) {

@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "tests/core/input_error.h"
-#include "tests/sim/quiet_scenario.h"
 #include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"

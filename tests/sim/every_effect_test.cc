@@ -4,11 +4,18 @@
 
 #include "tests/support/angle_benches.h"
 #include "tests/support/small_scenario.h"
+#include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
+#include "twin/benches/registry.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/reading_column.h"
+#include "twin/sim/changed_keys.h"
+#include "twin/sim/empirical_signal.h"
+#include "twin/sim/own_tables.h"
 
 // What holds of the twin of every bench that has few readings.
-namespace twinbench {
+namespace twinbench::sim {
 namespace {
 
 using units::arcsec;
@@ -104,5 +111,128 @@ TEST_P(EveryTwin, GivesTheSameBitsForTheSameSeedAndOthersForAnother) {
 INSTANTIATE_TEST_SUITE_P(Bench, EveryTwin, testing::ValuesIn(kQuickBenches),
                          [](const auto& tested) { return tested.param.name; });
 
+EmpiricalSettings ByTime() {
+  EmpiricalSettings table;
+  table.channel = "psd_b_y";
+  table.by = "time";
+  table.time_s = {10.0, 20.0, 40.0};
+  table.value_m = {1e-6, 3e-6, -1e-6};
+  return table;
+}
+
+TEST(Empirical, GoesStraightBetweenItsTimesAndStaysOutside) {
+  const EmpiricalSignal signal({ByTime()}, "psd_b_y");
+  EXPECT_DOUBLE_EQ(signal.At(1, 10.0), 1e-6);
+  EXPECT_DOUBLE_EQ(signal.At(1, 12.5), 1.5e-6);
+  EXPECT_DOUBLE_EQ(signal.At(7, 30.0), 1e-6);
+  EXPECT_DOUBLE_EQ(signal.At(7, 40.0), -1e-6);
+  EXPECT_EQ(signal.At(1, 9.0), 1e-6);
+  EXPECT_EQ(signal.At(1, 400.0), -1e-6);
+  EXPECT_EQ(EmpiricalSignal({ByTime()}, "psd_a_y").At(1, 20.0), 0.0);
+}
+
+TEST(Empirical, ByTimeIsShownByTheTwinThatFollows) {
+  Scenario scenario = test::SmallNoiseFree();
+  const auto readings = test::RunTwin(scenario).readings;
+  const auto shown = [&] { return BenchOf(scenario).follow(scenario, readings)->Predict(); };
+  const Eigen::MatrixXd plain = shown();
+  EmpiricalSettings table = ByTime();
+  table.time_s = {ToSeconds(readings.at(30).time), ToSeconds(readings.at(33).time),
+                  ToSeconds(readings.at(50).time)};
+  scenario.empiricals = {table};
+  const Eigen::MatrixXd change = shown() - plain;
+  const EmpiricalSignal signal({table}, "psd_b_y");
+  double most_V = 0.0;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const Duration half_block = BlockTime(RotaryOf(scenario).adc, readings[i].n_samples) / 2;
+    const double expected_V = 2000.0 * signal.At(readings[i].reading, ToSeconds(readings[i].time + half_block));
+    EXPECT_NEAR(change(static_cast<Eigen::Index>(i), 3), expected_V, 1e-9) << i;
+    most_V = std::max(most_V, std::abs(expected_V));
+  }
+  EXPECT_GT(most_V, 1e-3);
+}
+
+TEST(OwnTables, AreLeftOutOfARecordThatWasTakenAtOtherTimes) {
+  std::vector<Reading> record(3);
+  for (int i = 0; i < 3; ++i) record[static_cast<std::size_t>(i)].reading = i;
+  for (int i = 0; i < 3; ++i) record[static_cast<std::size_t>(i)].time = Time(FromSeconds(2.0 * i));
+  EmpiricalSettings own, other, without, by_time = ByTime();
+  own.reading = other.reading = without.reading = {0, 2, 9};
+  own.time_s = {0.0, 4.0, 18.0};
+  other.time_s = {0.0, 4.001, 18.0};
+  std::vector<EmpiricalSettings> tables = {other, own, without, by_time};
+  LeaveOutForeignTables(record, tables);
+  ASSERT_EQ(tables.size(), 3u);
+  EXPECT_EQ(tables[0].time_s, own.time_s);
+  EXPECT_TRUE(tables[1].time_s.empty());
+  EXPECT_EQ(tables[2].by, "time");
+}
+
+// What holds of every row of a catalogue that says which key an effect changes.
+
+EffectSettings AtPlace(const EffectEntry& entry, const std::string& place) {
+  EffectSettings effect = test::PlainEffect(entry);
+  effect.where = place;
+  return effect;
+}
+
+std::vector<std::string> PlacesOf(const EffectEntry& entry) {
+  return entry.places.empty() ? std::vector<std::string>{""} : entry.places;
+}
+
+bool ChangesKeys(const EffectEntry& entry) {
+  return std::ranges::any_of(entry.parameters, [](const EffectParameter& p) { return !p.changes.empty(); });
+}
+
+/// Text of the scenario without its effects: its keys.
+std::string KeysIn(Scenario scenario) {
+  scenario.effects.clear();
+  return WriteScenario(scenario);
+}
+
+TEST(ChangedKeys, EveryRowNamesAKeyOfItsBenchAndChangesItAtEveryPlaceAndAtEachDifferently) {
+  int rows = 0;
+  for (const std::string& bench : BenchNames()) {
+    const Scenario nominal = LoadScenario(test::ScenarioPath(bench + ".toml"));
+    for (const EffectEntry& entry : EffectCatalogue(bench)) {
+      if (!ChangesKeys(entry)) continue;
+      std::set<std::string> seen = {KeysIn(nominal)};
+      for (const std::string& place : PlacesOf(entry)) {
+        Scenario actual = nominal;
+        actual.effects = {AtPlace(entry, place)};
+        ChangeKeys(actual);
+        EXPECT_TRUE(seen.insert(KeysIn(actual)).second) << bench << " " << entry.name << " " << place;
+        ++rows;
+      }
+    }
+  }
+  EXPECT_GE(rows, 40);
+}
+
+TEST(ChangedKeys, AreAddedToMultipliedAndDividedAsTheirRowsSay) {
+  Scenario actual = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
+  const RotarySettings nominal = RotaryOf(actual);
+  EffectSettings gain{"psd_gain", "psd_b_x", {{"gain_error", 0.004}}, ""};
+  EffectSettings distance{"psd_distance", "both", {{"distance_error", 2e-3}}, ""};
+  EffectSettings pitch{"grating_pitch", "", {{"pitch_error", 0.25}}, ""};
+  actual.effects = {gain, gain, distance, pitch};
+  ChangeKeys(actual);
+  const RotarySettings& changed = RotaryOf(actual);
+  EXPECT_EQ(changed.amplifier.gain_error[2], nominal.amplifier.gain_error[2] + 0.004 + 0.004);
+  EXPECT_EQ(changed.amplifier.gain_error[1], nominal.amplifier.gain_error[1]);
+  EXPECT_EQ(changed.psd_a.distance_m, nominal.psd_a.distance_m + 2e-3);
+  EXPECT_EQ(changed.psd_b.distance_m, nominal.psd_b.distance_m + 2e-3);
+  EXPECT_EQ(changed.grating.lines_per_m, nominal.grating.lines_per_m / 1.25);
+}
+
+TEST(ChangedKeys, EffectsThatDoNoMoreNeedNothingElse) {
+  Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
+  for (const char* name : {"psd_roll", "slip", "wavelength_offset"})
+    scenario.effects.push_back(test::PlainEffect(*FindEffect(name, kRotaryBench)));
+  const std::vector<EffectSettings> left = BeyondKeys(scenario);
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_EQ(left.front().name, "slip");
+}
+
 }  // namespace
-}  // namespace twinbench
+}  // namespace twinbench::sim

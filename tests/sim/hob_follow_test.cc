@@ -141,15 +141,12 @@ TEST(HobFollow, SlopesAreClosedForms) {
   }
 }
 
-/// A machine without errors and noise: one head, one turn each way, 180 samples a turn.
+/// A machine without errors: one head, one turn each way, 180 samples a turn.
 Scenario QuietMachine() {
-  Scenario s;
-  s.bench = kHobBench;
-  s.noise_free = true;
+  Scenario s = WithoutFreeOrders();
+  HobOf(s).transmission.harmonics.clear();
+  HobOf(s).table_encoder.eccentricity_m = 0.0;
   HobOf(s).hob_procedure.heads_rad = {0.0};
-  HobOf(s).hob_procedure.turns = 1;
-  HobOf(s).hob_procedure.samples_per_turn = 180;
-  HobOf(s).hob_encoder.lines = 8192;  // a whole number of lines between samples would hide what repeats with them
   return s;
 }
 

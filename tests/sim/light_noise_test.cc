@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "tests/sim/quiet_scenario.h"
 #include "tests/support/night.h"
+#include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/twin/psd_noise.h"
 #include "twin/benches/rotary_4dof/twin/speckle.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"

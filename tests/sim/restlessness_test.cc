@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "tests/core/input_error.h"
-#include "tests/sim/quiet_scenario.h"
 #include "tests/support/kept_text.h"
+#include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/table_stack.h"
 #include "twin/sim/axes.h"

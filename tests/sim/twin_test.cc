@@ -7,8 +7,8 @@
 
 #include "optics/irradiance.h"
 #include "tests/core/input_error.h"
-#include "tests/sim/quiet_scenario.h"
 #include "tests/support/kept_text.h"
+#include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/errors.h"
 

@@ -12,7 +12,7 @@
 #include "hw_bridge/open_machine.h"
 #include "hw_bridge/serve/server.h"
 #include "tests/support/memory_log.h"
-#include "tests/support/troubled_machine.h"
+#include "tests/support/troubled_bench.h"
 #include "twin/benches/registry.h"
 #include "twin/core/device_fault.h"
 #include "twin/procedure/machine_options.h"

@@ -5,7 +5,6 @@
 #include "hw_bridge/ad/ad_source.h"
 #include "hw_bridge/control/line_link.h"
 #include "hw_bridge/open_bench.h"
-#include "tests/support/troubled_bench.h"
 #include "twin/core/device_fault.h"
 
 namespace twinbench::test {
@@ -102,11 +101,7 @@ ServedRun RunServed(const ServedTwin& served, const Scenario& scenario, const Ru
     bench.simulation->Restart();
     const procedure::Options careful = CarefulOptions(file, run, before);
     Injecting sink(served, options.faults, run.log);
-    TroubledBench watched(bench, [&](const std::string& device, const std::string& request, CallAnswer&) {
-      if (options.before_call) options.before_call(device, request, static_cast<int>(run.log.readings.size()));
-    });
-    RotaryBench asked = watched.Bench();
-    procedure::CarryOut(asked, scenario, sink, {}, careful);
+    procedure::CarryOut(bench, scenario, sink, {}, careful);
   } catch (const DeviceFault& fault) {
     run.stopped_by = FaultName(fault.kind());
     run.said = fault.what();

@@ -6,7 +6,7 @@
 
 #include "hw_bridge/bench_file.h"
 #include "tests/support/memory_log.h"
-#include "tests/support/restless_bench.h"
+#include "tests/support/rotary_scenario.h"
 #include "tests/support/served_twin.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 
@@ -28,8 +28,6 @@ struct RunOptions {
   std::string tables = "scpi";        // scpi | esp | pty
   std::map<int, std::string> faults;  // injected when so many readings are kept
   std::function<void(hw::BenchFile&)> alter;
-  /// Called before every call of a device, with the number of readings that are kept.
-  std::function<void(const std::string& device, const std::string& request, int kept)> before_call;
 };
 
 /// Why comedi cannot be tried here; empty if it can.
