@@ -1,8 +1,8 @@
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <chrono>
-#include <future>
+#include <thread>
 
 #include "tests/hw_serve/serving.h"
 #include "tests/hw_serve/virtual_bench.h"

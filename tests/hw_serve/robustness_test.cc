@@ -1,17 +1,13 @@
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <malloc.h>
 
 #include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <memory>
-#include <random>
 
 #include "hw_bridge/serve/iiod_buffer.h"
 #include "tests/hw_serve/serving.h"
-#include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
-#include "twin/core/errors.h"
 
 namespace twinbench::test {
 namespace {
@@ -53,38 +49,6 @@ TEST(Robustness, ALineOrAPayloadThatIsTooLongIsAnErrorAndTheEnd) {
   EXPECT_EQ(iiod.Ask("WRITE psd-adc16 serial 500000000"), "-7");
   EXPECT_TRUE(iiod.Ends());
   ExpectAlive(served);
-}
-
-TEST(Robustness, RandomBytesHarmNobody) {
-  ServedTwin served(OnFreePorts(kAtOnce));
-  std::mt19937 random(20240611);
-  for (int round = 0; round < 60; ++round) {
-    for (const int port : {served.at().iiod_port, served.at().scpi_port, served.at().esp_port}) {
-      std::string bytes(random() % 3000, '\0');
-      for (char& c : bytes) c = static_cast<char>(random() % 8 == 0 ? "\n;:?* \r"[random() % 7] : random());
-      TcpClient client(port);
-      client.Send(bytes);
-    }
-  }
-  ExpectAlive(served);
-}
-
-TEST(Robustness, RandomWordsOfTheProtocolsHarmNobody) {
-  ServedTwin served(OnFreePorts(kAtOnce));
-  const std::vector<std::string> words = {
-      "OPEN", "READBUF", "CLOSE", "READ", "WRITE", "SET", "PRINT", "psd-adc16", "rotary-target", "trigger0",
-      "DEBUG", "INPUT", "BUFFER", "fault", "voltage0", "scale", "0", "-1", "100", "1600", "\n", "\r\n", "\n", "\n",
-      "0000001f", "ffffffff", "BUFFERS_COUNT", "99999999999999999999", "1PA", "1e308", "ROT1:ANGL", "ROT2:SETT?",
-      "ROT1:LIM:UPP", "CLOC:HOLD ON", "SIM:REST", "SIM:FAUL target,limit", "1WS", "2OR", ";", ","};
-  std::mt19937 random(7);
-  for (int round = 0; round < 150; ++round) {
-    std::string text;
-    for (int k = 0; k < 60; ++k) text += words[random() % words.size()] + (random() % 5 != 0 ? " " : "");
-    TcpClient(served.at().iiod_port).Send(text + "\n");
-    TcpClient(served.at().scpi_port).Send(text + "\n");
-    TcpClient(served.at().esp_port).Send(text + "\n");
-  }
-  EXPECT_EQ(TcpClient(served.at().iiod_port).Ask("VERSION"), "0.24.v0.24  ");
 }
 
 TEST(Robustness, AClientThatSaysNothingIsLeft) {
