@@ -80,6 +80,7 @@ TEST_F(Attack, OnlyARunOfTheTwinIsMadeAgain) {
   Succeed({"export", "run", "--readings", "readings.csv"});
   Succeed({"import", "readings.csv", "--scenario", "small.toml", "-o", "imported"});
   ExpectRefused({"run", "small.toml", "-o", "imported", "--force"});
+  ExpectRefused({"import", "readings.csv", "--scenario", "small.toml", "-o", "run"});
   Write("scenario.toml", kSmall);
   ExpectRefused({"run", "scenario.toml", "-o", ".", "--force"});
 }

@@ -40,12 +40,6 @@ TEST_F(Evaluate, SeparateRepeatsTheSeparationOfTheRun) {
   for (const auto& [key, value] : again.items()) EXPECT_EQ(value, results.at("separation").at(key)) << key;
 }
 
-TEST_F(Evaluate, AnImportedRunSeparatesToTheSameNumbers) {
-  Succeed({"import", "readings.csv", "--scenario", "small.toml", "-o", "imported"});
-  EXPECT_EQ(Json({"separate", "imported", "--json", "-"}), Json({"separate", "run", "--json", "-"}));
-  EXPECT_EQ(ReadingsOf("imported"), Read("readings.csv"));
-}
-
 TEST_F(Evaluate, AReadingsFileWithAScenarioSeparatesLikeTheFolder) {
   for (const char* estimator : {"rigorous", "published"}) {
     const auto from_file =

@@ -5,7 +5,7 @@
 #include "twin/core/run_record.h"
 #include "twin/core/stream.h"
 
-/// `serve` and `measure` of every bench with a machine; serve_test.cc has what the rotary one does.
+/// `serve` and `measure` of every bench; serve_test.cc has what only the rotary one does.
 namespace twinbench::test {
 namespace {
 
@@ -15,13 +15,9 @@ using testing::HasSubstr;
 struct Machine {
   const char *name, *scenario, *axis, *limits;
 };
-std::string Served(const std::string& scenario) {
-  return Contents(TWINBENCH_TEST_DATA "/machine/served_" + scenario + ".toml");
-}
-
 class ServedMachineProgram : public ServedProgram, public ::testing::WithParamInterface<Machine> {
  protected:
-  ServedMachineProgram() : ServedProgram(GetParam().name, Served(GetParam().scenario)) {}
+  ServedMachineProgram() : ServedProgram(GetParam().scenario, ServedScenario(GetParam().scenario)) {}
 
   std::unique_ptr<Process> ServeAt(const std::string& speed, const std::string& machine = "esp") {
     return Serve({"--token", "--speed", speed, "--tables", machine});
@@ -133,7 +129,7 @@ TEST_P(ServedMachineProgram, ItsOwnTwinIsABenchToo) {
 }
 
 TEST_F(ProgramHere, ARecordingOfAMachineIsAskedWhatItWasAskedOnly) {
-  Write("small.toml", Served("stops"));
+  Write("small.toml", Contents(TWINBENCH_TEST_DATA "/machine/served_stops.toml"));
   Write("bench.toml", "kind = \"twin\"\n");
   Write("replay.toml", "kind = \"replay\"\nrecord = \"own\"\n");
   Succeed({"measure", "small.toml", "--bench", "bench.toml", "-o", "own"});
@@ -156,7 +152,8 @@ std::string NameOfMachine(const ::testing::TestParamInfo<Machine>& machine) {
 }
 INSTANTIATE_TEST_SUITE_P(Machines, EveryBench, ::testing::ValuesIn(kMachines), NameOfMachine);
 INSTANTIATE_TEST_SUITE_P(Others, EveryBench,
-                         ::testing::Values(kFreeformMachine, Machine{"Sweep", "sweep", "shaft", kNarrow_deg}),
+                         ::testing::Values(kFreeformMachine, Machine{"Sweep", "sweep", "shaft", kNarrow_deg},
+                                           Machine{"Rotary", "rotary", "", ""}),
                          NameOfMachine);
 INSTANTIATE_TEST_SUITE_P(Machines, ServedMachineProgram, ::testing::ValuesIn(kMachines), NameOfMachine);
 INSTANTIATE_TEST_SUITE_P(Machines, MachineThatMoves, ::testing::Values(kMachines[0], kMachines[3]), NameOfMachine);  // on paths; turning on

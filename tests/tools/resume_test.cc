@@ -1,10 +1,12 @@
+#include <gmock/gmock.h>
 
 #include <cstdlib>
 #include <random>
 #include <set>
 
-#include "tests/support/night.h"
+#include "tests/core/input_error.h"
 #include "tests/tools/program_here.h"
+#include "tools/twinbench/measured_run.h"
 #include "twin/core/run_record.h"
 
 /// Runs that are broken off at any moment and taken up again by another process.
@@ -88,13 +90,16 @@ TEST_F(ResumedRun, IsTheUndisturbedOneHoweverOftenItIsKilled) {
   EXPECT_GE(moments.size(), static_cast<std::size_t>(kills / 4)) << "they should come at different moments";
 }
 
-TEST_F(ResumedRun, CountsAnAttemptAtTheReadingThatWasUnderWay) {
+TEST_F(ResumedRun, CountsAnAttemptAtTheReadingThatWasUnderWayAndIsEvaluatedAndNotOverwrittenBefore) {
   Process run(At(""), Measure("killed"));
   run.Await(4);
   run.Kill();
   const auto kept = static_cast<int>(Kept("killed"));
   ASSERT_GT(kept, 0);
   ASSERT_LT(kept, kReadings);
+  Refusal({"run", "long.toml", "-o", "killed"});
+  const Outcome evaluated = Call({"separate", "killed", "--json", "-"});  // as far as it got
+  EXPECT_TRUE(evaluated.exit_code == 0 || evaluated.err.find("; expected ") != std::string::npos) << evaluated.err;
   Succeed(Measure("killed"));
   const auto attempts = RunRecord::Open(At("killed"))->FailedAttempts();
   ASSERT_EQ(attempts.size(), 1u);
@@ -150,89 +155,51 @@ TEST_F(ResumedRun, PlaysARecordingBackToTheSameReadings) {
   EXPECT_THAT(other.err, testing::Not(testing::HasSubstr("stand")));  // nothing was asked of tables
 }
 
-/// Runs that are killed in the middle.
-class KilledRun : public ProgramHere {
- protected:
-  KilledRun() {
-    static duration<double> lasts{};
-    BeginWith("kill", [this] {
-      // 2 * 13 + 2 * 13 + 4 * 36 * 16 = 2356 readings, one transaction each; so few positions are soon separated.
-      std::string passes = "1";
-      for (int k = 1; k < 16; ++k) passes += k % 2 == 1 ? ", -1" : ", 1";
-      Write("long.toml", "bench = \"rotary_4dof\"\n[mechanics]\nfidelity = \"kinematic\"\n[procedure]\npositions = 36\npasses = [" +
-                             passes + "]\n");
-      const auto start = steady_clock::now();
-      Succeed({"run", "long.toml", "-o", "undisturbed"});
-      lasts = steady_clock::now() - start;
-    });
-    duration_ = lasts;
-    readings_ = ReadingsOf("undisturbed");
+// How long ago a run began, told by a record and by what a computer's clocks show when it is taken up again.
+
+using testing::ElementsAre, testing::HasSubstr;
+
+const ClockMark kBegun{"a-b-c", 5000.0, 1.7e9};
+
+/// A run of which one reading was kept 100 s behind its begin, and then it was killed.
+struct RunToTakeUp {
+  RunToTakeUp() {
+    begun.record = RunRecord::Create(folder.path(), {"test", "iio:bench", 1, "2023-11-14T22:13:20Z", "rotary_4dof"});
+    begun.record->AppendEvent(Time{}, "clock", TextOf(kBegun));
+    Reading kept;
+    kept.time = Time(std::chrono::seconds(100));
+    begun.record->Append(kept, {});
+    begun.readings = {kept};
+  }
+  /// Behind the one that says when the run began.
+  std::vector<std::string> Notes() const {
+    std::vector<std::string> texts;
+    for (const RecordedEvent& event : begun.record->Events()) texts.push_back(event.text);
+    texts.erase(texts.begin());
+    return texts;
   }
 
-  /// Kills a run after so many of the ten lines of progress that it writes, and some moments later.
-  void KillAfterTenths(int tenths, const std::string& name) {
-    Process run(At(""), {"run", "long.toml", "-o", name});
-    run.Await(tenths);
-    std::this_thread::sleep_for(std::uniform_real_distribution<>(0.0, 0.05)(random_) * duration_);
-    if (run.Runs()) run.Kill();
-  }
-
-  /// @return how many lines `text` has, all of them whole lines at the beginning of the undisturbed readings.
-  std::ptrdiff_t ExpectPrefix(const std::string& text) const {
-    EXPECT_TRUE(text.ends_with('\n'));
-    const std::ptrdiff_t lines = std::count(text.begin(), text.end(), '\n');
-    // Columns of what came along with readings - where encoders stood - are there from the first reading on.
-    const std::size_t compared = lines == 1 ? text.size() - 1 : text.size();
-    EXPECT_EQ(text.substr(0, compared), readings_.substr(0, compared));
-    return lines;
-  }
-
-  duration<double> duration_{};
-  std::string readings_;
-  std::mt19937_64 random_{2007};
+  TemporaryFolder folder;
+  tools::BegunRun begun;
 };
 
-TEST_F(KilledRun, HoldsAPrefixOfTheUndisturbedRunByteForByte) {
-  int cut_short = 0;
-  std::set<std::ptrdiff_t> lengths;
-  const int moments = ByNight(10, 5);
-  for (int moment = 0; moment < moments; ++moment) {
-    const std::string name = "killed" + std::to_string(moment);
-    KillAfterTenths(1 + moment % 7, name);
-    const std::ptrdiff_t lines = ExpectPrefix(Succeed({"export", name}));
-    lengths.insert(lines);
-    if (lines < std::count(readings_.begin(), readings_.end(), '\n')) ++cut_short;
-  }
-  // On a busy machine a kill may come late, but not most of them.
-  EXPECT_GT(cut_short, moments / 2) << "the kills came too late to show anything";
-  EXPECT_GT(std::ssize(lengths), moments / 2);
-}
-
-TEST_F(KilledRun, AtItsVeryStartHasNoRecordOrAGoodOne) {
-  for (int moment = 0; moment < 10; ++moment) {
-    const std::string name = "killed" + std::to_string(moment);
-    {
-      const Process run(At(""), {"run", "long.toml", "-o", name});
-      std::this_thread::sleep_for(std::chrono::milliseconds(2 * moment));  // at its end it is killed
-    }
-    const Outcome outcome = Call({"export", name});
-    if (outcome.exit_code == 0) {
-      ExpectPrefix(outcome.out);
+TEST(ResumedTime, IsNotMovedByAWallClockThatWasSetBetweenKillAndResume) {
+  for (const double set_s : {0.0, 86400.0, -86400.0}) {
+    const RunToTakeUp run;
+    EXPECT_EQ(tools::SinceBegin(run.begun, {"a-b-c", 5160.5, 1.7e9 + 160.5 + set_s}), FromSeconds(160.5));
+    if (set_s == 0.0) {
+      EXPECT_TRUE(run.Notes().empty());
     } else {
-      // A record appears whole or not at all; without one that is said in one line, as bad input.
-      EXPECT_FALSE(Exists(name + "/record.sqlite"));
-      EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
-      EXPECT_THAT(outcome.err, testing::HasSubstr(name));
+      EXPECT_THAT(run.Notes(), ElementsAre(HasSubstr(set_s > 0.0 ? "set by +86400.0 s" : "set by -86400.0 s")));
     }
   }
 }
 
-TEST_F(KilledRun, CanStillBeEvaluatedAsFarAsItGotAndIsNotOverwrittenByTheNext) {
-  KillAfterTenths(7, "killed");
-  const Outcome outcome = Call({"separate", "killed", "--json", "-"});
-  EXPECT_TRUE(outcome.exit_code == 0 || outcome.err.find("; expected ") != std::string::npos) << outcome.err;
-  EXPECT_TRUE(Exists("killed/scenario.toml"));
-  Refusal({"run", "long.toml", "-o", "killed"});
+TEST(ResumedTime, BehindARestartGoesByTheWallClockAndSaysSoButNeverBack) {
+  const RunToTakeUp later, back;
+  EXPECT_EQ(tools::SinceBegin(later.begun, {"d-e-f", 20.0, 1.7e9 + 700.0}), FromSeconds(700.0));
+  EXPECT_EQ(tools::SinceBegin(back.begun, {"d-e-f", 20.0, 1.7e9 - 3600.0}), FromSeconds(100.0)) << "behind its last reading";
+  for (const RunToTakeUp* run : {&later, &back}) EXPECT_THAT(run->Notes(), ElementsAre(HasSubstr("started anew")));
 }
 
 }  // namespace

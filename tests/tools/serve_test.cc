@@ -9,25 +9,7 @@ using testing::HasSubstr, testing::Not;
 
 class Served : public ServedProgram {
  protected:
-  /// What crosses the network is the same at every position.
-  static constexpr const char* kShort = R"(bench = "rotary_4dof"
-seed = 5
-[target.random]
-ex_arcsec = 4.0
-ez_arcsec = 5.0
-[reference.random]
-ez_arcsec = 12.0
-[reference.seating]
-ez_arcsec = 20.0
-[mechanics]
-fidelity = "kinematic"
-[procedure]
-positions = 6
-shifts = [0, 1]
-passes = [1, -1]
-sweep_points = 5
-)";  // 2 * 2 * 5 + 2 * 2 * 6 = 44 readings
-  Served() : ServedProgram("served", kShort) {}
+  Served() : ServedProgram("rotary", ServedScenario("rotary")) {}
 
   /// A SCPI command to the server of bench.toml, by somebody who is none of our programs.
   void Say(const std::string& command) {
@@ -116,22 +98,6 @@ TEST_F(Served, IsInvestigated) {
   for (const std::string set : second.at("sets")) same.insert(same.end(), {"--set", set});
   Succeed(same);
   EXPECT_EQ(ReadingsOf("inquiry/02-" + std::string(second.at("run"))), ReadingsOf("same"));
-}
-
-TEST_F(Served, AKilledMeasurementGoesOnToTheSameReadings) {
-  const auto server = Serve();
-  int kills = 0;
-  for (int k = 0; k < 4; ++k) {
-    const std::string name = "killed" + std::to_string(k);
-    Process run(At(""), Measure(name));
-    run.Await(1 + 2 * k);
-    if (run.Runs()) ++kills, run.Kill();
-    Succeed(Measure(name));
-    ExpectAsRun(name);
-  }
-  EXPECT_GE(kills, 2);
-  Replay("killed0", "played");
-  ExpectAsRun("played");
 }
 
 TEST_F(Served, APowerFailureOfTheServerIsGoneOnFromWithANewOne) {

@@ -16,6 +16,11 @@ class ServedProgram : public ProgramHere {
     readings_ = ReadingsOf("run");
   }
 
+  /// Of tests/data/machine/.
+  static std::string ServedScenario(const std::string& name) {
+    return Contents(TWINBENCH_TEST_DATA "/machine/served_" + name + ".toml");
+  }
+
   /// Starts a server and waits until it has said where it is.
   std::unique_ptr<Process> Serve(const std::vector<std::string>& options = {"--speed", "max"},
                                  const std::string& scenario = "small.toml") {
