@@ -34,7 +34,7 @@ inline Reading AnyReading(int number) {
 /// In every bit; what is not known must be so in both.
 inline void ExpectSame(const Reading& a, const Reading& b) {
   const auto places = [](const Reading& r) {
-    return std::tie(r.reading, r.setup, r.pass, r.direction, r.position, r.phase, r.status, r.n_samples, r.extra);
+    return std::tie(r.reading, r.setup, r.pass, r.direction, r.position, r.phase, r.status, r.n_samples, r.extra, r.quantities);
   };
   const auto numbers = [](const Reading& r) {
     std::vector<double> all = {

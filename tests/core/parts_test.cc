@@ -1,4 +1,4 @@
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <bit>
 #include <cmath>
@@ -6,7 +6,6 @@
 #include <random>
 
 #include "tests/core/input_error.h"
-#include "tests/support/kept_text.h"
 #include "twin/core/digest.h"
 #include "twin/core/distributions.h"
 #include "twin/core/elapsed_time.h"
@@ -115,24 +114,7 @@ TEST(PrintInUnit, IsReadBackToTheSameBitsWithEveryFactor) {
   }
 }
 
-const ClockMark kBegin{"a-b-c", 1000.0, 1.7e9};
-
-TEST(ElapsedTime, GoesByTheTimeSinceTheMachineWasStartedHoweverTheDaysClockIsSet) {
-  const Elapsed quiet = Between(kBegin, {"a-b-c", 1060.25, 1.7e9 + 60.3});
-  EXPECT_EQ(quiet.time, FromSeconds(60.25));
-  EXPECT_EQ(quiet.note, "");
-  for (const double set_s : {86400.0, -86400.0, 2.0}) {
-    const Elapsed jumped = Between(kBegin, {"a-b-c", 1060.25, 1.7e9 + 60.25 + set_s});
-    EXPECT_EQ(jumped.time, FromSeconds(60.25));
-    EXPECT_KEPT(jumped.note);
-  }
-}
-
-TEST(ElapsedTime, GoesByUtcBehindARestartAndSaysSo) {
-  const Elapsed restarted = Between(kBegin, {"d-e-f", 12.0, 1.7e9 + 600.5});
-  EXPECT_EQ(restarted.time, FromSeconds(600.5));
-  EXPECT_KEPT(restarted.note);
-}
+// How long ago something was, by two marks: tests/tools/resume_test.cc.
 
 TEST(ElapsedTime, KeepsAMarkAsText) {
   const ClockMark now = ClockMarkNow();

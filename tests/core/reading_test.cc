@@ -221,63 +221,52 @@ TEST(ReadingNames, LeadBackToTheirValues) {
   EXPECT_EQ(PhaseOf("idle"), std::nullopt);
 }
 
-// --- encoder_comparison ---
+/// A reading as somebody else writes it down, and what it says; NaN: nothing.
+struct ForeignReading {
+  std::string columns, row;
+  std::vector<std::pair<double Reading::*, double>> says;
+  ReadingStatus status = ReadingStatus::kOk;
+};
 
-constexpr const char* kAngles = "reading,phase,setup,pass,direction,position,time_s,reference_deg,measured_deg";
+constexpr const char *kAngles = "reference_deg,measured_deg",
+                     *kTurntable = "turntable_deg,multitooth_deg,autocollimator_x_arcsec,autocollimator_y_arcsec",
+                     *kHob = "table_encoder_deg,hob_encoder_deg,head_deg";
+constexpr const char* kPlan = "reading,time_s,setup,pass,direction,position,phase,";
 
-TEST(AngleReadings, AreKnownByTheirColumnsTakenToSINeedNoVelocityAndMayLackAValue) {
-  const auto readings =
-      ParseReadings(std::string(kAngles) + ",velocity_deg_s\n0,full_circle,0,0,0,0,0.08,360.5,0.75,-36\n");
-  ASSERT_EQ(readings.size(), 1u);
-  EXPECT_EQ(readings[0].direction, 0) << "at rest";
-  EXPECT_DOUBLE_EQ(readings[0].reference_rad, 360.5 * units::deg);
-  EXPECT_DOUBLE_EQ(readings[0].measured_rad, 0.75 * units::deg);
-  EXPECT_DOUBLE_EQ(readings[0].velocity_rad_s, -36.0 * units::deg);
-  EXPECT_EQ(readings[0].status, ReadingStatus::kOk);
-  const auto lacking = ParseReadings(std::string(kAngles) + "\n0,full_circle,0,0,1,0,0,1.5,\n");
-  EXPECT_EQ(lacking[0].status, ReadingStatus::kMissing);
-  EXPECT_TRUE(std::isnan(lacking[0].velocity_rad_s));
-}
-
-constexpr const char* kTurntableHeader =
-    "reading,time_s,setup,pass,direction,position,phase,turntable_deg,multitooth_deg,autocollimator_x_arcsec,"
-    "autocollimator_y_arcsec\n";
-
-TEST(TurntableReadings, AreKnownByTheirColumnsAndTakenToSI) {
-  const auto readings = ParseReadings(std::string(kTurntableHeader) + "0,0,0,0,1,0,full_circle,5,-5,1.25,-60\n" +
-                                      "1,2,0,0,1,1,full_circle,10,-10,,\n");
-  EXPECT_DOUBLE_EQ(readings[0].target_rad, 5.0 * units::deg);
-  EXPECT_DOUBLE_EQ(readings[0].reference_rad, -5.0 * units::deg);
-  EXPECT_DOUBLE_EQ(readings[0].autocollimator_yaw_rad, 1.25 * units::arcsec);
-  EXPECT_DOUBLE_EQ(readings[0].autocollimator_tilt_rad, -60.0 * units::arcsec);
-  EXPECT_EQ(readings[1].status, ReadingStatus::kMissing) << "the autocollimator showed nothing";
-  EXPECT_EQ(ParseReadings(Write(readings, kTurntableBench))[1].status, ReadingStatus::kMissing);
+TEST(ReadingsCsv, AreKnownByTheirColumnsTakenToSIAndMayLackAValue) {
+  const ForeignReading readings[] = {
+      {std::string(kAngles) + ",velocity_deg_s", "360.5,0.75,-36",
+       {{&Reading::reference_rad, 360.5 * units::deg}, {&Reading::measured_rad, 0.75 * units::deg},
+        {&Reading::velocity_rad_s, -36.0 * units::deg}}},
+      {kAngles, "1.5,2", {{&Reading::velocity_rad_s, kNaN}}},
+      {kAngles, "1.5,", {{&Reading::measured_rad, kNaN}}, ReadingStatus::kMissing},
+      {kTurntable, "5,-5,1.25,-60",
+       {{&Reading::target_rad, 5.0 * units::deg}, {&Reading::reference_rad, -5.0 * units::deg},
+        {&Reading::autocollimator_yaw_rad, 1.25 * units::arcsec}, {&Reading::autocollimator_tilt_rad, -60.0 * units::arcsec}}},
+      {kTurntable, "10,-10,,", {{&Reading::autocollimator_yaw_rad, kNaN}}, ReadingStatus::kMissing},
+      {std::string(kHob) + ",interferometer_arcsec", "0.5,11,180,2.5",
+       {{&Reading::measured_rad, 0.5 * units::deg}, {&Reading::reference_rad, 11.0 * units::deg}, {&Reading::head_rad, 180.0 * units::deg},
+        {&Reading::interferometer_rad, 2.5 * units::arcsec}}},
+      {std::string(kHob) + ",interferometer_arcsec", ",22,180,", {{&Reading::measured_rad, kNaN}}, ReadingStatus::kMissing},
+      {kHob, "0.5,11,180", {{&Reading::interferometer_rad, kNaN}}}};
+  for (const auto& [columns, row, says, status] : readings) {
+    SCOPED_TRACE(columns + ": " + row);
+    const Reading read = ParseReadings(kPlan + columns + "\n0,0.08,0,0,1,0,full_circle," + row + "\n").at(0);
+    EXPECT_EQ(read.status, status);
+    for (const auto& [number, SI] : says) EXPECT_THAT(read.*number, testing::NanSensitiveDoubleEq(SI));
+  }
+  const std::string at_rest = std::string(kPlan) + kAngles + "\n0,0.08,0,0,0,0,full_circle,1,1\n";
+  EXPECT_EQ(ParseReadings(at_rest)[0].direction, 0);
 }
 
 TEST(TurntableReadings, MayCountTheWayBackOfTheMultitoothTableAsPositive) {
-  const std::string head = kTurntableHeader;
+  const std::string head = std::string(kPlan) + kTurntable + "\n";
   const auto back = ParseReadings(head + "0,0,0,0,1,0,full_circle,0,10,0,0\n1,2,0,0,1,1,full_circle,5,15,0,0\n");
   EXPECT_DOUBLE_EQ(back[1].reference_rad, -15.0 * units::deg);
   const auto ours = ParseReadings(head + "0,0,0,0,1,0,full_circle,0,10,0,0\n1,2,0,0,1,1,full_circle,5,365,0,0\n");
   EXPECT_DOUBLE_EQ(ours[1].reference_rad, 365.0 * units::deg) << "a turn more is the same tooth";
   const auto neither = ParseReadings(head + "0,0,0,0,1,0,full_circle,0,10,0,0\n1,2,0,0,1,1,full_circle,5,77,0,0\n");
   EXPECT_DOUBLE_EQ(neither[1].reference_rad, 77.0 * units::deg) << "left for the evaluation to refuse";
-}
-
-constexpr const char* kHobHeader =
-    "reading,time_s,setup,pass,direction,position,phase,table_encoder_deg,hob_encoder_deg,head_deg";
-
-TEST(HobReadings, AreKnownByTheirColumnsTakenToSIAndNeedNoInterferometer) {
-  const auto readings = ParseReadings(std::string(kHobHeader) + ",interferometer_arcsec\n" +
-                                      "0,0,0,0,1,0,full_circle,0.5,11,180,2.5\n1,2,0,0,0,1,full_circle,,22,180,\n");
-  EXPECT_DOUBLE_EQ(readings[0].measured_rad, 0.5 * units::deg);
-  EXPECT_DOUBLE_EQ(readings[0].reference_rad, 11.0 * units::deg);
-  EXPECT_DOUBLE_EQ(readings[0].head_rad, 180.0 * units::deg);
-  EXPECT_DOUBLE_EQ(readings[0].interferometer_rad, 2.5 * units::arcsec);
-  EXPECT_EQ(readings[1].status, ReadingStatus::kMissing);
-  const auto without = ParseReadings(std::string(kHobHeader) + "\n0,0,0,0,1,0,full_circle,0.5,11,180\n");
-  EXPECT_EQ(without[0].status, ReadingStatus::kOk);
-  EXPECT_TRUE(std::isnan(without[0].interferometer_rad));
 }
 
 }  // namespace

@@ -145,13 +145,8 @@ TEST(ScenarioUncertainty, ComesBackFromTheFileThatIsWritten) {
       "[psd_b]\nu_distance_mm = { u = 0.25, dof = 8, distribution = \"triangular\" }\n[grating]\nu_point_mm = "
       "0.5\n");
   const Scenario again = ParseScenario(WriteScenario(s), "again.toml", "");
-  ASSERT_EQ(again.uncertainties.size(), s.uncertainties.size());
-  for (std::size_t i = 0; i < s.uncertainties.size(); ++i) {
-    EXPECT_EQ(again.uncertainties[i].key, s.uncertainties[i].key);
-    EXPECT_EQ(again.uncertainties[i].u, s.uncertainties[i].u);
-    EXPECT_EQ(again.uncertainties[i].dof, s.uncertainties[i].dof);
-    EXPECT_EQ(again.uncertainties[i].distribution, s.uncertainties[i].distribution);
-  }
+  const auto same = [](const StatedUncertainty& one) { return testing::FieldsAre(one.key, one.u, one.distribution, one.dof); };
+  EXPECT_THAT(again.uncertainties, ElementsAre(same(s.uncertainties.at(0)), same(s.uncertainties.at(1))));
 }
 
 TEST(ScenarioUncertainty, WhatCannotBeIsRefusedWithWhatIsExpected) {

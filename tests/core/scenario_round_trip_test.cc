@@ -295,15 +295,6 @@ TEST(WriteScenario, OfTheDefaultsIsReadBackAndReadsWell) {
   EXPECT_EQ(WriteScenario(ParseScenario(text, "resolved.toml", ".")), text);
 }
 
-TEST(WriteScenario, OfAnAngleComparisonHasNoKeyOfTheRotaryBench) {
-  Scenario scenario;
-  scenario.bench = kEncoderBench;
-  const std::string text = WriteScenario(scenario);
-  EXPECT_THAT(text, testing::HasSubstr("\n[encoder_procedure]\nkind = \"stops\"\n"));
-  for (const char* table : {"[laser]", "[target]", "[procedure]"})
-    EXPECT_THAT(text, testing::Not(testing::HasSubstr(table)));
-}
-
 TEST(WriteScenario, StandsAloneWithoutTheErrorsFile) {
   const TemporaryFolder folder;
   folder.Write("t.csv", "position_deg,ez_arcsec\n0,0.1\n180,-0.3\n");
@@ -312,13 +303,6 @@ TEST(WriteScenario, StandsAloneWithoutTheErrorsFile) {
   ExpectSameBits(ParseScenario(WriteScenario(scenario), "resolved.toml", "/elsewhere"), scenario);
   EXPECT_THAT(WriteScenario(scenario), testing::HasSubstr("[reference.errors]\nposition_deg = [0.0, 180.0]\n"));
   EXPECT_THAT(WriteScenario(scenario), testing::HasSubstr("ez_arcsec = [0.1, -0.3]\n"));
-}
-
-TEST(WriteScenario, RefusesANumberThatIsNotFinite) {
-  Scenario scenario;
-  scenario.bench = kRotaryBench;
-  RotaryOf(scenario).psd_a.roll_rad = std::nan("");
-  EXPECT_THROW(WriteScenario(scenario), std::logic_error);
 }
 
 }  // namespace

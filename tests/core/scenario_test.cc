@@ -371,23 +371,22 @@ TEST(EffectCatalogue, HasTheEffectsOfItsBenchOnly) {
   EXPECT_THROW(EffectCatalogue("lathe"), InputError);
 }
 
-class EveryBench : public testing::TestWithParam<std::string> {};
-
-TEST_P(EveryBench, HasDefaultsWithinBoundsAndPlacesThatExist) {
-  for (const EffectEntry& entry : EffectCatalogue(GetParam())) {
-    const std::set<std::string> places(entry.places.begin(), entry.places.end());
-    EXPECT_FALSE(entry.title.empty()) << entry.name;
-    EXPECT_TRUE(entry.default_place.empty() || places.contains(entry.default_place)) << entry.name;
-    for (const EffectParameter& parameter : entry.parameters) {
-      EXPECT_TRUE(std::isfinite(parameter.default_SI)) << entry.name << " " << parameter.name;
-      EXPECT_LE(parameter.lower_SI, parameter.default_SI) << entry.name << " " << parameter.name;
-      EXPECT_GE(parameter.upper_SI, parameter.default_SI) << entry.name << " " << parameter.name;
-      for (const std::string& place : parameter.only_at) EXPECT_TRUE(places.contains(place)) << entry.name;
+TEST(EffectCatalogue, HasDefaultsWithinBoundsAndPlacesThatExist) {
+  for (const std::string& bench : BenchNames()) {
+    for (const EffectEntry& entry : EffectCatalogue(bench)) {
+      SCOPED_TRACE(bench + " " + entry.name);
+      const std::set<std::string> places(entry.places.begin(), entry.places.end());
+      EXPECT_FALSE(entry.title.empty());
+      EXPECT_TRUE(entry.default_place.empty() || places.contains(entry.default_place));
+      for (const EffectParameter& parameter : entry.parameters) {
+        EXPECT_TRUE(std::isfinite(parameter.default_SI)) << parameter.name;
+        EXPECT_LE(parameter.lower_SI, parameter.default_SI) << parameter.name;
+        EXPECT_GE(parameter.upper_SI, parameter.default_SI) << parameter.name;
+        for (const std::string& place : parameter.only_at) EXPECT_TRUE(places.contains(place));
+      }
     }
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(EffectCatalogue, EveryBench, testing::ValuesIn(BenchNames()));
 
 }  // namespace
 }  // namespace twinbench
