@@ -1,14 +1,13 @@
 #include <sqlite3.h>
-#include <unistd.h>
 
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "optics/height_map.h"
 #include "optics/irradiance.h"
 #include "optics/stl.h"
+#include "tests/core/input_error.h"
 #include "tests/fuzz/file_of_bytes.h"
 #include "tests/fuzz/target.h"
 #include "twin/benches/names.h"
@@ -18,8 +17,6 @@
 /// Files that are no text.
 namespace twinbench::fuzz {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Optics throws std::runtime_error for a file that is none. What leaves is our own mistake.
 template <class Read>
@@ -40,31 +37,14 @@ void ReadMesh(std::string_view bytes) {
   ReadOptics(bytes, [](const std::string& path) { optics::Validate(optics::ReadStl(path, 1e-3)); });
 }
 
-/// A folder for one record, in memory where the system has such a place.
-class RecordFolder {
- public:
-  explicit RecordFolder(std::string_view bytes) {
-    const fs::path room = fs::exists("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path();
-    folder_ = room / ("twinbench-fuzz-" + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directory(folder_);
-    std::ofstream(folder_ / "record.sqlite", std::ios::binary) << bytes;
-  }
-  ~RecordFolder() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  RecordFolder(const RecordFolder&) = delete;
-  RecordFolder& operator=(const RecordFolder&) = delete;
-  std::string Path() const { return folder_.string(); }
-
- private:
-  fs::path folder_;
+/// A folder with one record.
+struct RecordFolder : TemporaryFolder {
+  explicit RecordFolder(std::string_view bytes) { Write("record.sqlite", std::string(bytes)); }
 };
 
 void ReadAll(const RecordFolder& folder) {
   try {
-    const auto record = RunRecord::Open(folder.Path());
+    const auto record = RunRecord::Open(folder.path());
     record->finished();
     record->provenance();
     record->Readings();
@@ -106,9 +86,9 @@ std::vector<std::string> MakeExr() {
 /// A short run of the rotary bench, and an imported one.
 std::vector<std::string> MakeRecord() {
   const RecordFolder folder("");
-  fs::remove(folder.Path() + "/record.sqlite");
+  std::filesystem::remove(folder.File("record.sqlite"));
   {
-    const auto record = RunRecord::Create(folder.Path(), {"fuzz", "twin", 1, "", kRotaryBench});
+    const auto record = RunRecord::Create(folder.path(), {"fuzz", "twin", 1, "", kRotaryBench});
     for (int k = 0; k < 3; ++k) {
       Reading reading;
       reading.reading = k;
@@ -125,7 +105,7 @@ std::vector<std::string> MakeRecord() {
     record->AppendEvent(Time{}, "target", "homed");
     record->Finish();
   }
-  return {Contents(folder.Path() + "/record.sqlite")};
+  return {Contents(folder.File("record.sqlite"))};
 }
 
 /// A record of ours in which somebody has changed values: lines of a table, a column, a row and the value in SQL's own words.
@@ -134,7 +114,7 @@ void ReadRecordValues(std::string_view bytes) {
   const RecordFolder folder(whole);
   {
     sqlite3* database = nullptr;
-    sqlite3_open((folder.Path() + "/record.sqlite").c_str(), &database);
+    sqlite3_open(folder.File("record.sqlite").c_str(), &database);
     const auto run = [&](const std::string& sql) { sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr); };
     for (const char* table : {"provenance", "readings", "raw_blocks", "events", "calls", "attempts", "finished"})
       run(std::string("DROP TRIGGER IF EXISTS no_UPDATE_") + table);

@@ -7,12 +7,14 @@
 /// `fuzz_forever <target> [options of libFuzzer] [folders of inputs]`
 namespace {
 
-const twinbench::fuzz::Target* chosen = nullptr;
+void (*chosen)(std::string_view bytes) = nullptr;
 
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
-  chosen = *argc > 1 ? twinbench::fuzz::TargetOf((*argv)[1]) : nullptr;
+  for (const auto& target : twinbench::fuzz::Targets()) {
+    if (*argc > 1 && std::string_view(target.name) == (*argv)[1]) chosen = target.read;
+  }
   if (!chosen) {
     std::fprintf(stderr, "expected a target:");
     for (const auto& target : twinbench::fuzz::Targets()) std::fprintf(stderr, " %s", target.name);
@@ -25,6 +27,6 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  chosen->read({reinterpret_cast<const char*>(bytes), size});
+  chosen({reinterpret_cast<const char*>(bytes), size});
   return 0;
 }

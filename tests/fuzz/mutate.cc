@@ -1,9 +1,9 @@
-#include "tests/fuzz/mutate.h"
-
 #include <algorithm>
 #include <array>
 #include <random>
 #include <string_view>
+
+#include "tests/fuzz/target.h"
 
 namespace twinbench::fuzz {
 namespace {

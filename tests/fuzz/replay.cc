@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "tests/fuzz/file_of_bytes.h"
-#include "tests/fuzz/mutate.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/sanitized.h"
 

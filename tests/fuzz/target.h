@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,14 +20,20 @@ struct Target {
   std::vector<std::string> (*made_seeds)() = nullptr;
 };
 
-/// All there are.
-std::span<const Target> Targets();
-/// @return null if there is none of that name.
-const Target* TargetOf(std::string_view name);
-
 std::span<const Target> TextTargets();
 std::span<const Target> FileTargets();
 std::span<const Target> ConversationTargets();
-std::span<const Target> JsonTargets();
+
+/// All there are.
+inline std::vector<Target> Targets() {
+  std::vector<Target> all;
+  for (const auto family : {TextTargets(), FileTargets(), ConversationTargets()}) all.insert(all.end(), family.begin(), family.end());
+  return all;
+}
+
+/// Input number `number` that is made of the seeds: the same for the same arguments on every machine. One to eight changes of a seed:
+/// bits, bytes, pieces left out, doubled, moved or taken from another seed, numbers and separators that readers stumble over.
+/// @param seeds  Not empty.
+std::string Mutated(const std::vector<std::string>& seeds, std::uint64_t number);
 
 }  // namespace twinbench::fuzz

@@ -1,3 +1,4 @@
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "hw_bridge/bench_file.h"
@@ -15,8 +16,15 @@
 #include "twin/core/scenario.h"
 #include "twin/core/table_errors.h"
 #include "twin/import/import.h"
+#include "twin/report/certificate/laboratory.h"
+#include "twin/report/page/diagnosis_page.h"
+#include "twin/report/page/investigation_page.h"
+#include "twin/report/page/modest_json.h"
+#include "twin/report/page/page_json.h"
+#include "twin/report/page/plan_page.h"
+#include "twin/report/page/run_page.h"
 
-/// What people and other programs write as text.
+/// What people and other programs write as text; JSON, too, that commands or other versions have written for a page.
 namespace twinbench::fuzz {
 namespace {
 
@@ -103,12 +111,52 @@ void ReadAnswer(std::string_view bytes) {
   hw::ParseAddress(answer);
 }
 
+/// Whoever reads the file answers for exceptions of the JSON library with the file's name (PageOf in tools).
+template <class Show>
+void ShowPage(std::string_view bytes, Show show) {
+  try {
+    RefusingIsRight([&] { report::PageJson(show(report::ParseModestJson(std::string(bytes), "fuzz"))); });
+  } catch (const nlohmann::json::exception&) {
+  }
+}
+
+report::PageSource Source() {
+  report::PageSource source;
+  source.name = "fuzz";
+  return source;
+}
+
+void PageOfDiagnosis(std::string_view bytes) {
+  ShowPage(bytes, [](const nlohmann::json& diagnosis) {
+    return report::Page{"fuzz", "diagnosis", report::VerdictOf(diagnosis).text, {}, report::DiagnosisSections(diagnosis)};
+  });
+}
+
+void PageOfResults(std::string_view bytes) {
+  ShowPage(bytes, [](const nlohmann::json& results) { return report::RunPage(Source(), results, {}); });
+}
+
+void PageOfPlan(std::string_view bytes) {
+  ShowPage(bytes, [](const nlohmann::json& plan) { return report::PlanPage(Source(), plan); });
+}
+
+void PageOfInvestigation(std::string_view bytes) {
+  ShowPage(bytes, [](const nlohmann::json& found) { return report::InvestigationPage(Source(), found); });
+}
+
+void ReadLaboratoryFile(std::string_view bytes) {
+  RefusingIsRight([&] { certificate::ReadLaboratory(std::string(bytes), "fuzz"); });
+}
+
 constexpr Target kTextTargets[] = {
     {"scenario", ReadScenario, "scenarios"}, {"override", ReadOverride, ""},
     {"readings", ReadReadings, ""},          {"recording", ReadRecording, ""},
     {"errors_map", ReadErrorsMap, ""},       {"bench_file", ReadBenchFile, ""},
     {"machine_file", ReadMachineFile, ""},   {"dialogue", ReadDialogue, "hw_bridge/dialogues"},
     {"program_file", ReadProgramFile, ""},   {"answer", ReadAnswer, ""},
+    {"page_of_diagnosis", PageOfDiagnosis, ""}, {"page_of_results", PageOfResults, ""},
+    {"page_of_plan", PageOfPlan, ""},           {"page_of_investigation", PageOfInvestigation, ""},
+    {"laboratory", ReadLaboratoryFile, ""},
 };
 
 }  // namespace

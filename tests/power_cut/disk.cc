@@ -139,14 +139,7 @@ int open(const char* path, int flags, ...) {
   return Opened(Real<int(const char*, int, ...)>("open")(path, flags, mode), path, flags, was_there);
 }
 
-int open64(const char* path, int flags, ...) {
-  va_list more;
-  va_start(more, flags);
-  const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(more, mode_t) : 0;
-  va_end(more);
-  const bool was_there = access(path, F_OK) == 0;
-  return Opened(Real<int(const char*, int, ...)>("open64")(path, flags, mode), path, flags, was_there);
-}
+int open64(const char* path, int flags, ...) __attribute__((alias("open")));
 
 int close(int handle) {
   {
@@ -160,9 +153,7 @@ ssize_t pwrite(int handle, const void* data, size_t size, off_t at) {
   return WriteAt(handle, data, size, at);
 }
 
-ssize_t pwrite64(int handle, const void* data, size_t size, off_t at) {
-  return WriteAt(handle, data, size, at);
-}
+ssize_t pwrite64(int handle, const void* data, size_t size, off_t at) __attribute__((alias("pwrite")));
 
 ssize_t write(int handle, const void* data, size_t size) {
   State& state = TheState();

@@ -1,7 +1,6 @@
 #include "tests/power_cut/write_log.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 
 #include "twin/core/errors.h"

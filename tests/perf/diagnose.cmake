@@ -1,2 +1,0 @@
-add_executable(bench_diagnose diagnose_bench.cc)
-target_link_libraries(bench_diagnose PRIVATE twinbench_benches benchmark::benchmark)

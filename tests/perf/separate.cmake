@@ -1,2 +1,0 @@
-add_executable(bench_separate separate_bench.cc)
-target_link_libraries(bench_separate PRIVATE twinbench_rotary_4dof benchmark::benchmark)
