@@ -55,10 +55,16 @@ const verdictOf = (page) => until(async () => {
 
 const kServed = ["--set", "procedure.positions=12", "--set", 'mechanics.fidelity="linear"'];
 
+/** A twin that is served, once its bench file is there; the port of its controllers is `scpi`. */
+async function serve(bench, ...more) {
+  const program = start("serve", scenario("rotary_4dof"), ...kServed, "--iiod-port", "0", "--scpi-port", "0", "--esp-port", "0", "--no-pty", "--write-bench", bench, ...more);
+  await until(() => existsSync(join(folder, bench)), () => "no bench file");
+  program.scpi = Number(readFileSync(join(folder, bench), "utf8").match(/kind = "scpi"[^[]*tcp:127\.0\.0\.1:(\d+)/)[1]);
+  return program;
+}
+
 test("a served twin is seen while it is measured, and stopped by the page as by Ctrl-C", async () => {
-  start("serve", scenario("rotary_4dof"), ...kServed, "--speed", "400", "--iiod-port", "0", "--scpi-port", "0", "--esp-port", "0", "--no-pty", "--write-bench", "bench.toml");
-  await until(() => existsSync(join(folder, "bench.toml")), () => "no bench file");
-  const port = Number(readFileSync(join(folder, "bench.toml"), "utf8").match(/kind = "scpi"[^[]*tcp:127\.0\.0\.1:(\d+)/)[1]);
+  const { scpi } = await serve("bench.toml", "--speed", "400");
   const measure = start("measure", scenario("rotary_4dof"), ...kServed, "--bench", "bench.toml", "-o", "seen", "--web", "0");
   const page = await openAddress(await addressOf(measure));
 
@@ -82,7 +88,7 @@ test("a served twin is seen while it is measured, and stopped by the page as by 
   await pause.click();
   await page.locator('#pause-said[data-state="paused"]').waitFor();
   const k = Number((await paused.innerText()).match(/^Paused at reading (\d+): everything stands$/)[1]);
-  const look = async () => (await ask(port, "ROT1:STAT?", "ROT2:STAT?")).map((answer) => answer.split(","));
+  const look = async () => (await ask(scpi, "ROT1:STAT?", "ROT2:STAT?")).map((answer) => answer.split(","));
   for (const state of await look()) assert.equal(state[2], "0", "the controller says that it does not move");
   const held = await page.locator("#counted").innerText();
   await new Promise((done) => setTimeout(done, 700)); // at this speed some twenty readings, and one more look at the tables
@@ -120,29 +126,17 @@ test("a served twin is seen while it is measured, and stopped by the page as by 
   await page.close();
 });
 
-test("a page without the token, or with another, is refused and moves nothing", async () => {
-  const run = start("run", scenario("rotary_4dof"), "-o", "refused", "--web", "0");
-  const address = new URL(await addressOf(run));
-  const stop = (token, headers = {}) => fetch(`${address.origin}/stop?token=${token}`, { method: "POST", headers });
-  const token = address.searchParams.get("token");
-  for (const answer of [await fetch(address.origin), await stop(""), await stop(`${token}0`), await stop(token, { Origin: "http://evil.example" })])
-    assert.equal(answer.status, 403);
-  assert.equal(await run.ended, 0, run.err);
-});
-
 test("a served twin shows where clients have moved its tables, and is stopped from its page", async () => {
-  const serve = start("serve", scenario("rotary_4dof"), ...kServed, "--speed", "100", "--iiod-port", "0", "--scpi-port", "0", "--esp-port", "0", "--no-pty", "--write-bench", "watched.toml", "--web", "0");
-  const page = await openAddress(await addressOf(serve));
-  await until(() => existsSync(join(folder, "watched.toml")), () => "no bench file");
-  const port = Number(readFileSync(join(folder, "watched.toml"), "utf8").match(/kind = "scpi"[^[]*tcp:127\.0\.0\.1:(\d+)/)[1]);
+  const served = await serve("watched.toml", "--speed", "100", "--web", "0");
+  const page = await openAddress(await addressOf(served));
   const target = page.locator(".now dd").first();
   await until(async () => /^0(\.0+)?°$/.test(await target.innerText()), () => "the target does not begin at 0");
-  await ask(port, "ROT1:ANGL 30;STAT?");
+  await ask(served.scpi, "ROT1:ANGL 30;STAT?");
   await until(async () => /^(30(\.0+)?|29\.99+\d*|30\.00+\d*)°$/.test(await target.innerText()), () => "the target is not seen to get to 30 deg");
   assert.deepEqual(await faultsOf(page), []);
   await page.getByRole("button", { name: "Stop serving" }).click();
   await page.locator("#stop-sure").click();
-  assert.equal(await serve.ended, 0, serve.err);
+  assert.equal(await served.ended, 0, served.err);
   assert.equal(await verdictOf(page), "Nothing is served any more: the program ended with exit code 0");
   assert.deepEqual(page.said, []);
   await page.close();
@@ -169,12 +163,18 @@ async function isPaused(address) {
   await told.cancel();
 }
 
-test("on a phone nothing of a paused run's page is beside the screen, and stop and resume are beside each other", async () => {
-  write("phone.toml", kSmallRun);
-  const run = start("run", "phone.toml", "-o", "phone", "--web", "0");
+/** A small run of that name, under way and paused. */
+async function pausedRun(name) {
+  write(`${name}.toml`, kSmallRun);
+  const run = start("run", `${name}.toml`, "-o", name, "--web", "0");
   const address = new URL(await addressOf(run));
   assert.equal(await tell(address, "pause"), 202);
   await isPaused(address);
+  return [run, address];
+}
+
+test("on a phone nothing of a paused run's page is beside the screen, and stop and resume are beside each other", async () => {
+  const [run, address] = await pausedRun("phone");
   const page = await openAddress(address.href);
   await page.locator('#pause-said[data-state="paused"]').waitFor();
   await page.setViewportSize({ width: 390, height: 844 });
@@ -188,11 +188,7 @@ test("on a phone nothing of a paused run's page is beside the screen, and stop a
 });
 
 test("a pause changes no bit of a twin's run", async () => {
-  write("held.toml", kSmallRun);
-  const run = start("run", "held.toml", "-o", "held", "--web", "0");
-  const address = new URL(await addressOf(run));
-  assert.equal(await tell(address, "pause"), 202);
-  await isPaused(address);
+  const [run, address] = await pausedRun("held");
   assert.equal(await tell(address, "resume"), 202);
   assert.equal(await run.ended, 0, run.err);
   twinbench("run", "held.toml", "-o", "unheld");

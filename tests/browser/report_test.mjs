@@ -19,8 +19,21 @@ before(() => {
 });
 after(close);
 
+/** What a page of results shows, in a browser whose console stays silent. */
+function shown(what, file, look) {
+  test(what, async () => {
+    const page = await open(file);
+    await look(page);
+    assert.deepEqual(page.said, []);
+    await page.close();
+  });
+}
+
 /** The library draws what has changed some frames later. */
 const drawnAgain = (page) => page.waitForTimeout(500);
+
+const kIndexError = "Turntable: index error EZ [arcsec]";
+const cardOf = (page, heading) => page.locator("figure.card").filter({ has: page.getByRole("heading", { name: heading, exact: true }) });
 
 /** Of those that can be looked at as polar plots. */
 const firstCurve = (page) => page.locator("figure.card").filter({ has: page.getByRole("button", { name: "Linear" }) }).first();
@@ -33,8 +46,7 @@ const boxOf = async (part) => {
 const plots = (page) => page.locator(".plot");
 
 for (const run of kRuns) {
-  test(`${run}: every plot is drawn, the console is silent, contrast and names of all controls pass in light and dark`, async () => {
-    const page = await open(`${run}/report.html`);
+  shown(`${run}: every plot is drawn, the console is silent, contrast and names of all controls pass in light and dark`, `${run}/report.html`, async (page) => {
     assert.ok((await plots(page).count()) >= 4);
     const marks = await plots(page).evaluateAll((all) => all.map((plot) => plot.querySelectorAll("svg path, svg polygon, svg polyline, canvas").length));
     assert.ok(marks.every((n) => n > 3), `marks in each plot: ${marks}`);
@@ -49,22 +61,17 @@ for (const run of kRuns) {
     assert.deepEqual(await faultsOf(page), []);
     await drawnAgain(page);
     assert.deepEqual((await faintOf(page)).faint, []);
-    assert.deepEqual(page.said, []);
-    await page.close();
   });
 }
 
-test("a page opens with what the run says: its title, tiles with U and units, and polar plots with theirs", async () => {
-  const page = await open("turntable/report.html");
+shown("a page opens with what the run says: its title, tiles with U and units, and polar plots with theirs", "turntable/report.html", async (page) => {
   assert.match(await page.locator("h1").innerText(), /: turntable$/);
   assert.match(await page.locator(".subtitle").innerText(), /simulated, seed \d+ · \d+ readings in \d+:\d\d h/);
   assert.match(await page.locator(".tile").first().innerText(), /Largest error\s+\S+ ± \S+ arcsec\s+Turntable: index error EZ, at \S+°/);
   assert.match(await firstCurve(page).locator("h3").innerText(), /\[arcsec\]$/);
-  await page.close();
 });
 
-test("a circle has both directions, says how much its deviations are magnified, and its errors are ranked", async () => {
-  const page = await open("circles/report.html");
+shown("a circle has both directions, says how much its deviations are magnified, and its errors are ranked", "circles/report.html", async (page) => {
   const card = page.locator("#errors .choice figure.card");
   assert.match(await card.locator("h3").innerText(), /^Radial deviation, mounting \d \((bar|grid)\), .* \[µm\]$/);
   assert.deepEqual(await card.locator(".legend .entry").allInnerTexts(), ["counter-clockwise", "clockwise"]);
@@ -75,11 +82,9 @@ test("a circle has both directions, says how much its deviations are magnified, 
   assert.ok((await times()) > whole);
   const shares = (await page.locator("#table-errors-ranked tbody tr td:last-child").allInnerTexts()).map((text) => Number(text.match(/[\d.]+/)[0]));
   assert.ok(shares.length > 5 && shares.every((share, k) => k === 0 || share <= shares[k - 1]), String(shares));
-  await page.close();
 });
 
-test("on a phone no label of a plot is cut off, and on paper no plot and no table", async () => {
-  const page = await open("circles/report.html");
+shown("on a phone no label of a plot is cut off, and on paper no plot and no table", "circles/report.html", async (page) => {
   for (const [width, media, parts, within] of [[390, "screen", ".plot svg text", ".plot"], [700, "print", ".plot svg, table", ".card"]]) {
     await page.setViewportSize({ width, height: 900 });
     await page.emulateMedia({ media });
@@ -91,7 +96,6 @@ test("on a phone no label of a plot is cut off, and on paper no plot and no tabl
     }).map((part) => part.textContent.slice(0, 40)), [parts, within]);
     assert.deepEqual(cut, [], media);
   }
-  await page.close();
 });
 
 test("a page of four shifts is below 3 MB", () => {
@@ -99,10 +103,8 @@ test("a page of four shifts is below 3 MB", () => {
   assert.ok(statSync(join(folder, "rotary/report.html")).size < 3e6);
 });
 
-test("the pointer on a plot shows value, uncertainty and truth", async () => {
-  const page = await open("turntable/report.html");
-  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "Turntable: index error EZ [arcsec]", exact: true }) });
-  await card.getByRole("button", { name: "Linear" }).click();
+shown("the pointer on a plot shows value, uncertainty and truth", "turntable/report.html", async (page) => {
+  const card = await linear(page);
   const box = await boxOf(card.locator(".plot"));
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   const tip = card.locator(".tip");
@@ -111,12 +113,10 @@ test("the pointer on a plot shows value, uncertainty and truth", async () => {
   assert.match(text, /position \d+°/);
   assert.match(text, /estimate\s+\S+ ± \S+ arcsec/);
   assert.match(text, /truth\s+\S+ arcsec/);
-  await page.close();
 });
 
-test("the plotted numbers are those of results.json", async () => {
-  const page = await open("turntable/report.html");
-  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "Turntable: index error EZ [arcsec]", exact: true }) });
+shown("the plotted numbers are those of results.json", "turntable/report.html", async (page) => {
+  const card = cardOf(page, kIndexError);
   await card.getByRole("button", { name: "Numbers" }).click();
   const shown = await card.locator(".numbers tbody tr").first().locator("td").allInnerTexts();
   const { default: results } = await import(join(folder, "turntable/results.json"), { with: { type: "json" } });
@@ -124,11 +124,9 @@ test("the plotted numbers are those of results.json", async () => {
   assert.equal(Number(shown[0].replace("−", "-")), table.position_deg[0]);
   assert.equal(Number(shown[1].replace("−", "-")), Number(table.ez_arcsec[0].toPrecision(6)));
   assert.equal(Number(shown[2]), Number(table.u_ez_arcsec[0].toPrecision(6)));
-  await page.close();
 });
 
-test("by keys alone a plot is reached, read, zoomed and shown whole again, and a series hidden", async () => {
-  const page = await open("rotary/report.html");
+shown("by keys alone a plot is reached, read, zoomed and shown whole again, and a series hidden", "rotary/report.html", async (page) => {
   const focused = () => page.evaluate(() => [document.activeElement.className, document.activeElement.innerText, document.activeElement.getAttribute("role")]);
   const tabTo = async (wanted) => {
     for (let n = 0; n < 60; ++n) {
@@ -160,13 +158,10 @@ test("by keys alone a plot is reached, read, zoomed and shown whole again, and a
   await page.keyboard.press("0");
   await drawnAgain(page);
   assert.deepEqual(await labels(), whole);
-  assert.deepEqual(page.said, []);
-  await page.close();
 });
 
-test("on a polar plot pointer and cursor keys show the value at an angle", async () => {
-  const page = await open("turntable/report.html");
-  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "Turntable: index error EZ [arcsec]", exact: true }) });
+shown("on a polar plot pointer and cursor keys show the value at an angle", "turntable/report.html", async (page) => {
+  const card = cardOf(page, kIndexError);
   await card.locator(".plot").focus();
   for (let n = 0; n < 5; ++n) await page.keyboard.press("ArrowRight");
   await card.locator(".tip").waitFor();
@@ -176,11 +171,9 @@ test("on a polar plot pointer and cursor keys show the value at an angle", async
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2 - 60);
   await drawnAgain(page);
   assert.match(await card.locator(".tip").innerText(), /position 90°/);
-  await page.close();
 });
 
-test("wheel with Ctrl zooms, wheel alone does not", async () => {
-  const page = await open("turntable/report.html");
+shown("wheel with Ctrl zooms, wheel alone does not", "turntable/report.html", async (page) => {
   const card = firstCurve(page);
   await card.getByRole("button", { name: "Linear" }).click();
   const labels = () => card.locator(".plot svg text").allTextContents();
@@ -195,7 +188,6 @@ test("wheel with Ctrl zooms, wheel alone does not", async () => {
   await page.keyboard.up("Control");
   await drawnAgain(page);
   assert.notDeepEqual(await labels(), whole);
-  await page.close();
 });
 
 /** Numbers at the axis below a plot, in its own minus signs. */
@@ -204,16 +196,15 @@ const numbersBelow = async (card) => {
   const texts = await card.locator(".plot svg text").evaluateAll((all) => all.map((text) => ({ text: text.textContent, at: text.getBoundingClientRect() })));
   return texts.filter(({ at }) => at.y > box.y + box.height - 46 && at.y < box.y + box.height - 25).map(({ text }) => Number(text.replace("\u2212", "-"))).filter(Number.isFinite);
 };
-const linear = async (page, heading) => {
-  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: heading, exact: true }) });
+const linear = async (page) => {
+  const card = cardOf(page, kIndexError);
   await card.getByRole("button", { name: "Linear" }).click();
   await drawnAgain(page);
   return card;
 };
 
-test("a rectangle is zoomed into by pointer, by button and by Shift, and shown whole again", async () => {
-  const page = await open("turntable/report.html");
-  const card = await linear(page, "Turntable: index error EZ [arcsec]");
+shown("a rectangle is zoomed into by pointer, by button and by Shift, and shown whole again", "turntable/report.html", async (page) => {
+  const card = await linear(page);
   const plot = card.locator(".plot");
   const box = await boxOf(plot);
   const drag = async (from, to) => {
@@ -241,13 +232,10 @@ test("a rectangle is zoomed into by pointer, by button and by Shift, and shown w
   await page.keyboard.up("Shift");
   within(await numbersBelow(card), 0.6 * 350 - 2, 0.8 * 350 + 2);
   assert.deepEqual(await faultsOf(page), []);
-  assert.deepEqual(page.said, []);
-  await page.close();
 });
 
-test("a rectangle is moved, sized and zoomed into by keys alone, told in words, and left by Escape", async () => {
-  const page = await open("turntable/report.html");
-  const card = await linear(page, "Turntable: index error EZ [arcsec]");
+shown("a rectangle is moved, sized and zoomed into by keys alone, told in words, and left by Escape", "turntable/report.html", async (page) => {
+  const card = await linear(page);
   const plot = card.locator(".plot");
   const whole = await numbersBelow(card);
   const readout = () => card.locator(".readout").innerText();
@@ -268,12 +256,9 @@ test("a rectangle is moved, sized and zoomed into by keys alone, told in words, 
   await page.keyboard.press("0");
   await drawnAgain(page);
   assert.deepEqual(await numbersBelow(card), whole);
-  assert.deepEqual(page.said, []);
-  await page.close();
 });
 
-test("every plot with axes takes a rectangle, bars along their places, and no other does", async () => {
-  const page = await open("turntable/report.html");
+shown("every plot with axes takes a rectangle, bars along their places, and no other does", "turntable/report.html", async (page) => {
   const cards = page.locator("figure.card").filter({ has: page.getByRole("button", { name: "Zoom in" }) });
   const told = { plane: 0, bars: 0, none: 0 };
   for (let k = 0; k < (await cards.count()); ++k) {
@@ -294,12 +279,9 @@ test("every plot with axes takes a rectangle, bars along their places, and no ot
     assert.equal(await card.locator(".plot").getAttribute("data-zoomed"), "yes");
   }
   assert.ok(told.plane > 0 && told.bars > 0 && told.none > 0, JSON.stringify(told));
-  assert.deepEqual(page.said, []);
-  await page.close();
 });
 
-test("choosing another residual draws another plot", async () => {
-  const page = await open("diagnosed/report.html");
+shown("choosing another residual draws another plot", "diagnosed/report.html", async (page) => {
   const choice = page.locator("#residuals .choice");
   const title = () => choice.locator("figcaption h3").innerText();
   const before = await title();
@@ -307,11 +289,9 @@ test("choosing another residual draws another plot", async () => {
   await choice.locator("select").first().selectOption(other);
   assert.notEqual(await title(), before);
   assert.match(await page.locator(".verdict").innerText(), /psd_roll at psd_b/);
-  await page.close();
 });
 
-test("a picture of the light tells its values by cursor keys and under the pointer", async () => {
-  const page = await open("rotary/report.html");
+shown("a picture of the light tells its values by cursor keys and under the pointer", "rotary/report.html", async (page) => {
   const card = page.locator("#light figure.card").first();
   await card.locator(".picture").focus();
   await page.keyboard.press("ArrowLeft");
@@ -320,7 +300,6 @@ test("a picture of the light tells its values by cursor keys and under the point
   assert.ok(painted > 1);
   await card.locator("canvas").hover({ position: { x: 5, y: 5 } });
   assert.match(await card.locator(".readout").innerText(), /: 0 W\/mm2$/);
-  await page.close();
 });
 
 test("pages of plans and investigations are drawn and pass the same checks", async () => {
