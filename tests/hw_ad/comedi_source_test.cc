@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "hw_bridge/ad/comedi_source.h"
 #include "hw_bridge/numbers/comedi_numbers.h"
 #include "tests/core/input_error.h"
 #include "tests/hw_ad/backend_test.h"

@@ -3,11 +3,9 @@
 
 #include <regex>
 
-#include "hw_bridge/ad/iio_source.h"
 #include "hw_bridge/numbers/iio_numbers.h"
 #include "tests/core/input_error.h"
 #include "tests/hw_ad/backend_test.h"
-#include "tests/hw_ad/held_twin.h"
 #include "tests/hw_control/faults.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/rotary_scenario.h"

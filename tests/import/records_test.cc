@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/import/importing.h"
 #include "tests/support/kept_text.h"

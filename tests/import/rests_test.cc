@@ -6,7 +6,6 @@
 #include <functional>
 #include <numeric>
 #include <random>
-#include <set>
 
 #include "tests/import/importing.h"
 #include "tests/support/kept_text.h"

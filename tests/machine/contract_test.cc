@@ -4,7 +4,6 @@
 
 #include "tests/core/input_error.h"
 #include "tests/machine/benches.h"
-#include "tests/machine/driven_twin.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/machine_run.h"

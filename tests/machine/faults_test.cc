@@ -4,7 +4,6 @@
 #include <thread>
 
 #include "tests/machine/benches.h"
-#include "tests/machine/driven_twin.h"
 #include "tests/support/machine_run.h"
 #include "tests/support/sanitized.h"
 #include "twin/benches/circular_motion/columns.h"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/machine/benches.h"
-#include "tests/machine/driven_twin.h"
 #include "tests/support/rotary_scenario.h"
 #include "tools/twinbench/planned_run.h"
 #include "tools/twinbench/real_bench.h"

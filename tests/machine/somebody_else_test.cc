@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "tests/machine/benches.h"
-#include "tests/machine/driven_twin.h"
 #include "tests/support/troubled_bench.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/core/bench_format.h"

@@ -3,13 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "mechanics/plant.h"
 #include "mechanics/stack.h"
-#include "tests/mechanics/test_units.h"
 
-/// What the tests of plants share and compare.
+/// Units of the room's tests, and what those of plants share and compare.
 namespace twinbench::mechanics {
+
+inline constexpr double kPi = std::numbers::pi;
+inline constexpr double kDegree = kPi / 180.0;
+inline constexpr double kArcsec = kDegree / 3600.0;
+inline constexpr double kMicrometre = 1e-6;
 
 inline constexpr std::array<Fidelity, 3> kAll = {Fidelity::kKinematic, Fidelity::kLinear, Fidelity::kBullet};
 inline constexpr std::array<Fidelity, 2> kBodies = {Fidelity::kLinear, Fidelity::kBullet};

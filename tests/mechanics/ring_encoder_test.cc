@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "mechanics/encoder_signal.h"
-#include "tests/mechanics/test_units.h"
+#include "tests/mechanics/plant_runs.h"
 
 namespace twinbench::mechanics {
 namespace {

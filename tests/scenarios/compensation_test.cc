@@ -7,7 +7,6 @@
 #include "tests/separate/index_spectrum.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/night.h"
-#include "twin/model/follow.h"
 
 // A compensation that the twins are commanded by, and what another measurement then shows.
 namespace twinbench {
@@ -161,33 +160,6 @@ TEST(CommandedCompensation, MovesTheTurntableAndNotTheReading) {
     // The roll of 10 mrad takes 5e-5 of it, the roundness of the crosshair's scale less.
     EXPECT_NEAR(moved_rad / arcsec, sent_rad / arcsec, 1e-3) << i;
   }
-}
-
-/// Readings of a noise-free run without errors of tables, against the twin on its course.
-double LargestOff(const Scenario& scenario, const std::vector<double>& shown) {
-  const std::vector<Reading> readings = test::ReadingsOf(scenario);
-  const Eigen::MatrixXd predicted = BenchOf(scenario).follow(scenario, readings)->Predict();
-  double largest = 0.0;
-  for (std::size_t i = 0; i < readings.size(); ++i)
-    largest = std::max(largest, std::abs(predicted(static_cast<Eigen::Index>(i), 0) - shown[i]));
-  return largest;
-}
-
-TEST(CommandedCompensation, IsFollowedByTheTwinOfARecord) {
-  Scenario scenario = PlainTurntable();
-  TurntableOf(scenario).turntable.compensation = kThirds;
-  std::vector<double> shown;
-  for (const Reading& reading : test::ReadingsOf(scenario)) shown.push_back(reading.autocollimator_yaw_rad);
-  EXPECT_LT(LargestOff(scenario, shown) / arcsec, 1e-6);
-}
-
-TEST(CommandedCompensation, IsFollowedByTheTwinOfARecordOfTheHobbingMachine) {
-  Scenario scenario = DriveOrders({"noise_free=true", "transmission.harmonics=[]", "hob_procedure.samples_per_turn=120"});
-  HobOf(scenario).transmission.compensation = kThirds;
-  std::vector<double> shown;
-  for (const Reading& r : test::ReadingsOf(scenario))
-    shown.push_back(r.measured_rad - HobOf(scenario).transmission.Ratio() * r.reference_rad);
-  EXPECT_LT(LargestOff(scenario, shown) / arcsec, 1e-4);
 }
 
 TEST(CommandedCompensation, TakesTheIndexErrorOutOfTheRotaryTarget) {

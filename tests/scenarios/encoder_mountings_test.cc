@@ -4,7 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/scenarios/encoder_scenario_run.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
@@ -89,10 +88,31 @@ TEST(EncoderMountings, AreScoredByTheDifferenceThatTheySee) {
 
 // The answer that scenarios/encoder_heads.toml promises.
 
-using test::EncoderScenarioRun, test::Figure;
+/// A shipped scenario of the encoders carried out; results and score are evaluations of their own, each made by whoever asks.
+struct EncoderScenarioRun {
+  Scenario scenario;
+  Estimator estimator;
+  std::vector<Reading> readings;
+
+  nlohmann::json Results() const { return benches::encoder::Evaluate(scenario, readings, estimator).results; }
+  nlohmann::json Score() const {
+    return benches::encoder::ScoreRun(scenario, readings, sim::EncoderTwin(scenario).Truth(), estimator).json;
+  }
+};
+
+EncoderScenarioRun RunEncoderScenario(const std::string& file, const std::vector<std::string>& overrides,
+                                             Estimator estimator = Estimator::kRigorous) {
+  const Scenario scenario = LoadScenario(test::ScenarioPath(file), overrides);
+  return {scenario, estimator, test::RunEncoderTwin(scenario).readings};
+}
+
+/// By the path of a JSON pointer.
+double Figure(const nlohmann::json& json, const char* path) {
+  return json.at(nlohmann::json::json_pointer(path)).get<double>();
+}
 
 EncoderScenarioRun HeadsRun(const std::vector<std::string>& overrides, Estimator estimator = Estimator::kRigorous) {
-  return test::RunEncoderScenario("encoder_heads.toml", overrides, estimator);
+  return RunEncoderScenario("encoder_heads.toml", overrides, estimator);
 }
 
 const std::vector<std::string> kFiveHeads = {"encoder_procedure.heads_deg=[0, 90, 180, 270, 37]"};
@@ -158,7 +178,7 @@ TEST(EncoderHeads, GiveTheSameByThePublishedEquationsLessCertainly) {
 // The answer that scenarios/encoder_coast.toml promises.
 
 EncoderScenarioRun Coasted(const std::vector<std::string>& overrides, Estimator estimator = Estimator::kRigorous) {
-  return test::RunEncoderScenario("encoder_coast.toml", overrides, estimator);
+  return RunEncoderScenario("encoder_coast.toml", overrides, estimator);
 }
 
 double Chi2(const EncoderScenarioRun& run) {

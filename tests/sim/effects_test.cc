@@ -199,13 +199,6 @@ TEST(Effects, MoveTheSpotsByTheirClosedForms) {
   }
 }
 
-TEST(Effects, TheWavelengthFollowsTheRoom) {
-  Scenario warm = Quiet();
-  warm.environment.temperature_degC = 22.0;
-  Pair pair(Effect("wavelength_temperature", "", {{"wavelength_per_kelvin", 0.25e-9}}), warm);
-  EXPECT_NEAR(pair.Difference()[0], kV_m * SpotA_m(0.0, kSinTheta + 600e3 * 0.5e-9), 1e-9);
-}
-
 TEST(Effects, AMountCreepsAfterEveryMounting) {
   const double a = 3.0 * units::arcsec;
   Pair pair(Effect("mount_creep", "tilt", {{"amplitude", a}, {"time_constant", 600.0}}));
@@ -319,21 +312,6 @@ TEST(Effects, CrosstalkBringsTheChannelBeforeInTheScanList) {
     EXPECT_NEAR(mixed[1], plain[1] + 0.02 * plain[before], 1e-12);
     for (const int c : {0, 2}) EXPECT_EQ(mixed[c], plain[c]);
   }
-}
-
-TEST(Effects, OutliersHitTheirShareOfReadings) {
-  Scenario scenario = Quiet();
-  scenario.effects = {Effect("outliers", "", {{"fraction", 0.1}, {"size", 10e-6}})};
-  Twin twin(scenario);
-  int hits = 0;
-  constexpr int kReadings = 2000;
-  for (int k = 0; k < kReadings; ++k) {
-    const Volts v = Read(twin);
-    hits +=
-        std::any_of(v.begin(), v.end(), [](double x) { return std::abs(x) > 0.5 * 10e-6 * kV_m * 0.99; }) ? 1 : 0;
-  }
-  // Binomial: 200 +- sqrt(180) = 13; 4 of them.
-  EXPECT_NEAR(hits, 200, 54);
 }
 
 TEST(Effects, ConventionsExchangeAndInvertChannelsAndAReversedScaleReadsTheMirroredError) {

@@ -104,6 +104,14 @@ TEST(HobFollow, KnowsTheKeysOfTheScenario) {
   }
 }
 
+TEST(HobFollow, GoesWhereACompensationLeads) {
+  Scenario s = WithoutFreeOrders();
+  HobOf(s).transmission.harmonics.clear();
+  HobOf(s).table_encoder.eccentricity_m = 0.0;
+  HobOf(s).transmission.compensation = CompensationTable{{0.0, 120.0 * deg, 240.0 * deg}, {0.0, 6.0 * arcsec, -3.0 * arcsec}};
+  EXPECT_LT(Off_arcsec(s), 1.5e-4) << "6 arcsec beside the place, on a slope of 9 arcsec in 120 deg";
+}
+
 // Inertia is left out; at 50 r/min of the hob the line of the worm lies at 3.4 Hz, the torsion at 80 Hz.
 TEST(HobFollow, DiffersFromBulletByWhatInertiaDoesToTheLines) {
   Scenario s = WithoutFreeOrders();

@@ -154,7 +154,21 @@ TEST(RotaryFollow, SaysWhatBodiesByBulletShow) {
   EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-10);
 }
 
-class RotaryFollowEffect : public testing::TestWithParam<EffectEntry> {};
+class FollowedEffect : public testing::TestWithParam<EffectEntry> {
+ public:
+  /// All but what nobody can foresee.
+  static auto Of(const char* bench) {
+    std::vector<EffectEntry> entries = EffectCatalogue(bench);
+    std::erase_if(entries, [](const EffectEntry& e) { return e.name == "outliers"; });
+    return testing::ValuesIn(entries);
+  }
+  static std::string Name(const testing::TestParamInfo<EffectEntry>& tested) { return tested.param.name; }
+};
+class RotaryFollowEffect : public FollowedEffect {};
+class EncoderFollowEffect : public FollowedEffect {};
+
+INSTANTIATE_TEST_SUITE_P(All, RotaryFollowEffect, FollowedEffect::Of(kRotaryBench), FollowedEffect::Name);
+INSTANTIATE_TEST_SUITE_P(All, EncoderFollowEffect, FollowedEffect::Of(kEncoderBench), FollowedEffect::Name);
 
 TEST_P(RotaryFollowEffect, IsFollowed) {
   for (const std::string& where : GetParam().places.empty() ? std::vector<std::string>{""} : GetParam().places) {
@@ -168,15 +182,6 @@ TEST_P(RotaryFollowEffect, IsFollowed) {
     EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m) << effect.name << " " << where;
   }
 }
-
-std::vector<EffectEntry> ForeseeableRotaryEffects() {
-  std::vector<EffectEntry> entries = EffectCatalogue(kRotaryBench);
-  std::erase_if(entries, [](const EffectEntry& e) { return e.name == "outliers"; });
-  return entries;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, RotaryFollowEffect, testing::ValuesIn(ForeseeableRotaryEffects()),
-                         [](const auto& tested) { return tested.param.name; });
 
 // At 20 Hz a block of 16 ms holds 0.84 of a tone's amplitude, a sixth of a turn later than at its begin.
 TEST(RotaryFollow, AveragesAToneOverTheBlock) {
@@ -335,8 +340,6 @@ double Apart_rad(const Scenario& scenario) {
   return apart_rad;
 }
 
-class EncoderFollowEffect : public testing::TestWithParam<EffectEntry> {};
-
 // Where the reference errs, the shaft's angle is solved for; the rest is rounding of angles of some turns.
 TEST_P(EncoderFollowEffect, IsFollowedAtStopsAndInMotion) {
   for (const char* kind : {"stops", "sweep"}) {
@@ -345,15 +348,6 @@ TEST_P(EncoderFollowEffect, IsFollowedAtStopsAndInMotion) {
     EXPECT_LT(Apart_rad(s), 1e-12) << GetParam().name << " " << kind;
   }
 }
-
-std::vector<EffectEntry> ForeseeableAngleEffects() {
-  std::vector<EffectEntry> entries = EffectCatalogue(kEncoderBench);
-  std::erase_if(entries, [](const EffectEntry& e) { return e.name == "outliers"; });
-  return entries;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, EncoderFollowEffect, testing::ValuesIn(ForeseeableAngleEffects()),
-                         [](const auto& tested) { return tested.param.name; });
 
 TEST(EncoderFollow, HasAShaftUnderBothAndADeviceBesideIt) {
   const Scenario s = Bench("stops");

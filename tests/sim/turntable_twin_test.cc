@@ -270,6 +270,14 @@ TEST(TurntableFollow, KnowsTheKeysOfTheScenario) {
     EXPECT_LT(TurntableOff_arcsec(Altered(Careful(), keys)), kSameTurntable_arcsec) << keys[0];
 }
 
+/// Where nothing else errs.
+TEST(TurntableFollow, GoesWhereACompensationLeads) {
+  Scenario s = Careful();
+  TurntableOf(s).turntable.harmonics = {};
+  TurntableOf(s).turntable.compensation = CompensationTable{{0.0, 120.0 * deg, 240.0 * deg}, {0.0, 6.0 * arcsec, -3.0 * arcsec}};
+  EXPECT_LT(TurntableOff_arcsec(s), kSameTurntable_arcsec);
+}
+
 // Settled means within a hundredth of an arcsecond.
 TEST(TurntableFollow, DiffersFromBulletByLessThanTheServosWindow) {
   Scenario s = Careful();

@@ -1,11 +1,31 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <numbers>
+#include <string>
+#include <vector>
 
-#include "tests/support/csv_rows.h"
+#include "twin/core/csv.h"
 
 namespace twinbench::test {
+
+using CsvRow = std::map<std::string, std::string>;  // by column
+
+/// Rows of a table of the independent oracle.
+inline std::vector<CsvRow> ReadCsvRows(const std::string& path) {
+  const CsvTable table = ReadCsv(path);
+  std::vector<CsvRow> rows;
+  for (const CsvTable::Row& row : table.rows) {
+    rows.emplace_back();
+    for (std::size_t i = 0; i < row.fields.size(); ++i) rows.back()[table.columns[i]] = row.fields[i];
+  }
+  return rows;
+}
+
+inline double Number(const CsvRow& row, const std::string& column) {
+  return std::stod(row.at(column));
+}
 
 /// ex, ey, ez [rad] and dx, dy, dz [m] of a table, in the frame of its base.
 using OracleError = std::array<double, 6>;

@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
-#include <vector>
 
 namespace twinbench::test {
 namespace {
