@@ -99,19 +99,6 @@ TEST(HeldClockOfTheBench, ScansAreStampedAtTheirInstants) {
   for (int s = 0; s < 100; ++s) EXPECT_EQ(scans.stamps_ns[s], 1000 + std::llround(s * 1e9 * kChannels / 3e5));
 }
 
-TEST(HeldClockOfTheBench, ABlockWithoutLightIsZerosAndSaysSo) {
-  ServedTwin served(OnFreePorts(kAtOnce));
-  TcpClient scpi(served.at().scpi_port), iiod(served.at().iiod_port);
-  BufferClient adc(served.at().iiod_port, 10);
-  EXPECT_EQ(scpi.Ask("CLOC:HOLD ON;:GON:MOVE 7200,0;*OPC?"), "1");  // 2 deg: both spots are beside the PSDs
-  EXPECT_EQ(adc.Read(10).raw, std::vector<std::int16_t>(40, 0));
-  EXPECT_EQ(iiod.AskNumber("READ psd-adc16 light"), 9);
-  EXPECT_EQ(iiod.Line(), std::string("no_light\0", 9));
-  EXPECT_EQ(scpi.Ask("GON:MOVE 0,0;*OPC?"), "1");
-  adc.Read(10);
-  EXPECT_EQ(iiod.AskNumber("READ psd-adc16 light"), 3);
-}
-
 TEST(HeldClockOfTheBench, AFifoThatRunsFullLeavesAStepInTheTimeStamps) {
   Scenario scenario = test::RotaryScenario();
   RotaryOf(scenario).adc.fifo_samples = 1024;

@@ -82,12 +82,6 @@ TEST_F(Scpi, TheEventRegisterTellsCommandFromExecutionErrors) {
   EXPECT_EQ(scpi.Ask("*STB?"), "0");
 }
 
-TEST_F(Scpi, TimePassesByAsMuchAsIsAskedFor) {
-  const long long before = scpi.AskNumber("CLOC:NOW?");
-  EXPECT_EQ(scpi.AskNumber("CLOC:WAIT? 123456789"), before + 123456789);
-  EXPECT_EQ(scpi.AskNumber("SIM:REST;CLOC:NOW?"), 0);
-}
-
 using testing::ElementsAre;
 
 TEST(ScpiText, AKeywordIsItsShortOrItsLongFormInAnyCaseAndANumberBehindItIsOneIfItIsLeftOut) {

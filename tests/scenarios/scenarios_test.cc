@@ -99,12 +99,6 @@ TEST_P(EveryScenario, RunsWithEveryReadingValid) {
   for (const Reading& reading : readings) EXPECT_EQ(reading.status, ReadingStatus::kOk) << reading.reading;
 }
 
-TEST_P(EveryScenario, ReadsTheSameFromItsResolvedForm) {
-  const Scenario scenario = LoadScenario(test::ScenarioPath(GetParam()));
-  const std::string resolved = WriteScenario(scenario);
-  EXPECT_EQ(WriteScenario(ParseScenario(resolved, "resolved", "")), resolved);
-}
-
 TEST_P(EveryScenario, AllowsTheRunsThatItsBenchOffersNext) {
   const Scenario scenario = LoadScenario(test::ScenarioPath(GetParam()));
   for (const plan::NextRun& next : BenchOf(scenario).next_runs(scenario))

@@ -412,14 +412,5 @@ TEST(TakeBlock, RefusesWhatMakesNoSense) {
   refused([](auto&, auto& adc, auto&) { adc.rate_Hz = 0.0; });
 }
 
-TEST(AdBlock, BecomesAnAcquisition) {
-  const AdBlock block = Take(Rich(6e-3), {.n_samples = 3, .keep_raw = true});
-  const Acquisition acquisition = block.ToAcquisition(Time(Duration(7)));
-  EXPECT_EQ(acquisition.start, Time(Duration(7)));
-  EXPECT_EQ(acquisition.n_samples, 3);
-  EXPECT_EQ(acquisition.channel[2].mean_V, block.channel[2].mean_V);
-  EXPECT_EQ(acquisition.raw, block.raw);
-}
-
 }  // namespace
 }  // namespace twinbench::sim

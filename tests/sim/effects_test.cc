@@ -268,17 +268,6 @@ TEST(Effects, ReclampFrameMakesAReseatRunReadLikeAReclampRun) {
   EXPECT_GT(differs_V, 1e-3);
 }
 
-TEST(Effects, ABearingAtHalfFrequencyTellsOneTurnFromTheNext) {
-  const double tilt = 1.5 * units::arcsec;
-  Pair pair(Effect("bearing_half_frequency", "", {{"order", 0.5}, {"tilt", tilt}}));
-  const Volts first = pair.Difference();
-  pair.Do([](RotaryBench bench) { MoveBoth(bench, 2.0 * units::kPi); });
-  const Volts next = pair.Difference();
-  // Half a turn of the tilt's direction: its sum over both PSDs' y changes sign.
-  EXPECT_NEAR(first[1] + first[3], -(next[1] + next[3]), 1e-7);
-  EXPECT_GT(std::hypot(first[1] + first[3], first[1] - first[3]), 1e-4);
-}
-
 TEST(Effects, ASlipComesAtItsReadingAndStays) {
   Pair pair(Effect("slip", "lateral", {{"shift", 5e-6}, {"at_reading", 2.0}}));
   EXPECT_NEAR(pair.Difference()[0], 0.0, 1e-12);

@@ -85,15 +85,6 @@ TEST(EncoderTwin, DrawsTheNoiseOfAReadingFromItsNumberAlone) {
   EXPECT_EQ(alone.measured_rad, all[77].measured_rad);
 }
 
-TEST(EncoderTwin, ReadsInStepsOfItsResolution) {
-  Scenario scenario = Noisy();
-  EncoderOf(scenario).device.resolution_rad = 0.1 * deg;
-  for (const Reading& r : RunEncoderTwin(scenario).readings) {
-    const double steps = r.measured_rad / EncoderOf(scenario).device.resolution_rad;
-    EXPECT_NEAR(steps, std::round(steps), 1e-9);
-  }
-}
-
 TEST(EncoderTwin, ShowsTheMeanOfAStopsReadingsWhereNoiseTeachesItBetweenItsStepsAndReadsOnceInMotion) {
   Scenario scenario = Noisy();
   EncoderOf(scenario).device.resolution_rad = EncoderOf(scenario).device.noise_rad;
