@@ -127,6 +127,30 @@ TEST_F(TwoCommands, TakeAFaceTableToTheErrorsOfTheTable) {
   EXPECT_EQ(Json({"diagnose", "again.csv", "--scenario", "run/scenario.toml", "--json", "-"}).at("verdict"), found_.at("verdict"));
 }
 
+/// scenarios/samples/face_table.py says what it hid.
+TEST_F(TwoCommands, TakeClampingsOfAPolygonToTheErrorsOfTableAndFaces) {
+  const std::vector<double> faces = {0.0, -1.2, 0.7,  2.1, -0.4, -1.9,
+                                     0.9, 1.5,  -2.2, 0.3, 1.1,  -0.9};  // their mean is zero
+  Named("faces.csv", Contents(std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/samples/face_table.csv"), {});
+  EXPECT_EQ(found_.at("verdict"), "none");
+  const nlohmann::json separation = nlohmann::json::parse(Read("run/results.json")).at("separation");
+  EXPECT_TRUE(separation.at("not_separable").empty());
+  const nlohmann::json &table = separation.at("turntable"), &polygon = separation.at("multitooth");
+  ASSERT_EQ(table.at("position_deg").size(), 12U);
+  ASSERT_EQ(polygon.at("position_deg").size(), 12U);
+  for (std::size_t k = 0; k < 12; ++k) {
+    const double angle_deg = table.at("position_deg")[k], u = table.at("u_ez_arcsec")[k];
+    const double true_arcsec = 2.4 * Cosine(1.0, angle_deg, -90.0 + 28.64788975654116) +
+                               0.9 * Cosine(2.0, angle_deg, 0.0) + 0.4 * Cosine(6.0, angle_deg, 0.0);
+    EXPECT_NEAR(table.at("ez_arcsec")[k], true_arcsec, 4.0 * u) << angle_deg;
+    EXPECT_LT(u, 0.05);
+    const auto face =
+        static_cast<std::size_t>(std::lround(12.0 - polygon.at("position_deg")[k].get<double>() / 30.0)) % 12;
+    EXPECT_NEAR(polygon.at("ez_arcsec")[k], faces[face], 4.0 * polygon.at("u_ez_arcsec")[k].get<double>())
+        << "face " << face;
+  }
+}
+
 TEST_F(TwoCommands, LookBeforeAnythingIsWritten) {
   Write("hal.txt", HalSamples(DriveAxis({.turns = 0.1}, LostMotion)));
   const std::string text = Succeed({"import", "hal.txt", "--look", "--map", "halsampler"});

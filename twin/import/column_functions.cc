@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "twin/core/errors.h"
 #include "twin/core/reading.h"
@@ -114,6 +115,42 @@ std::vector<double> Distinct(std::vector<double> x, const std::string&) {
   std::ranges::sort(x);
   const auto end = std::unique(x.begin(), x.end(), [](double a, double b) { return b - a < kSame; });
   return {static_cast<double>(end - x.begin())};
+}
+
+/// Of angles that stand evenly round a turn, some of which may be missing or come twice; else the number of
+/// different ones.
+std::vector<double> Seats(std::vector<double> x, const std::string&) {
+  constexpr double kSame_deg = 1e-3, kOff = 0.02;  // of a step: what writing angles down may have cost
+  std::erase_if(x, [](double value) { return !std::isfinite(value); });
+  if (x.empty()) return {0.0};
+  const double first = x.front();
+  for (double& value : x)
+    value = std::fmod(std::fmod(value - first, kTurn_deg) + kTurn_deg + 0.5 * kSame_deg, kTurn_deg);
+  std::ranges::sort(x);
+  x.erase(std::unique(x.begin(), x.end(), [](double a, double b) { return b - a < kSame_deg; }), x.end());
+  const auto different = static_cast<double>(x.size());
+  double step_deg = kTurn_deg - x.back() + x.front();
+  for (std::size_t i = 1; i < x.size(); ++i) step_deg = std::min(step_deg, x[i] - x[i - 1]);
+  const double seats = std::round(kTurn_deg / step_deg);
+  const bool are_even = std::ranges::all_of(x, [seats](double value) {
+    return std::abs(std::remainder((value - 0.5 * kSame_deg) * seats / kTurn_deg, 1.0)) < kOff;
+  });
+  return {are_even ? seats : different};
+}
+
+/// Angles numbered as they lie round the circle, wherever they come again.
+std::vector<double> Places(std::vector<double> x, const std::string&) {
+  constexpr double kSame_deg = 1e-6;
+  const auto at = [](double angle_deg) {
+    if (!std::isfinite(angle_deg)) return 0L;
+    return std::lround((angle_deg - kTurn_deg * std::floor(angle_deg / kTurn_deg + kSame_deg)) / kSame_deg);
+  };
+  std::map<long, double> number;
+  for (const double angle_deg : x) number[at(angle_deg)] = 0.0;
+  double next = 0.0;
+  for (auto& [where, own] : number) own = next++;
+  for (double& angle_deg : x) angle_deg = number[at(angle_deg)];
+  return x;
 }
 
 /// What errors of the first orders of both shafts, and a line, make of an angle of two that go together.
@@ -248,7 +285,9 @@ OfColumn ColumnFunction(std::string_view name) {
                                               {"sense", Sense},
                                               {"whole", Whole},
                                               {"unwrapped", Unwrapped},
-                                              {"distinct", Distinct}});
+                                              {"distinct", Distinct},
+                                              {"seats", Seats},
+                                              {"places", Places}});
   return FindIn(kFunctions, name);
 }
 

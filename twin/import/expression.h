@@ -13,11 +13,14 @@
 /// signs: [Axis 1.ActPos]; numbers from the text above a table by their names; `index` (0, 1, ...), `count` (rows),
 /// `time_s`. Functions: sin cos tan asin acos atan atan2 sqrt abs (angles in rad), sind cosd (in deg), min max,
 /// before(x), the sum of x over all earlier rows; turns(x), x by its turn where x goes round once, in whatever
-/// unit; correction(x), an error by its turn, x in rad or in 16 bit about 32768; is(column, word), 1 where the column has the word, else 0;
-/// parts(x), how often x was another than in the row before; step(x), x less that of the row before; sense(x), +1 or -1 as x in deg goes
-/// on; whole(x), the middle one of all x to one part in a thousand; middle(x) and span(x), of the lowest and the highest x; only(a, b), 0 where a
-/// is not above b, else no number; distinct(x), how many different values x has; unwrapped(x) of an angle in deg that starts again at a turn; ratio(a, b), how far a goes with b;
-/// whole_turns(a, b), the smallest number of turns of a that is a whole number of turns of b.
+/// unit; correction(x), an error by its turn, x in rad or in 16 bit about 32768; is(column, word), 1 where the
+/// column has the word, else 0; parts(x), how often x was another than in the row before; step(x), x less that of
+/// the row before; sense(x), +1 or -1 as x in deg goes on; whole(x), the middle one of all x to one part in a
+/// thousand; middle(x) and span(x), of the lowest and the highest x; only(a, b), 0 where a is not above b, else no
+/// number; distinct(x), how many different values x has; seats(x), how many places evenly round a turn x in deg is
+/// of; places(x), the number of each angle in deg as they lie round the circle; unwrapped(x) of an angle in deg
+/// that starts again at a turn; ratio(a, b), how far a goes with b; whole_turns(a, b), the smallest number of turns
+/// of a that is a whole number of turns of b.
 ///
 /// Written here because no such library is among the packages that the program needs, and columns of a million rows
 /// are to go through it as a whole.

@@ -35,7 +35,9 @@ struct AverageSettings {
 /// A quantity that formulas need and files give under many names: in a column, or in a line of text above its rows.
 struct Sought {
   std::string name;                    // as formulas have it, with its unit: "angle_deg"
-  std::string kind = "value";          // value: another in most rows | condition: holds for many rows, also in a line | any | turn: a way round
+  // value: another in most rows | condition: holds for many rows, also in a line | any | turn: a way round |
+  // column: either, in a column only, where it has no unit a word too
+  std::string kind = "value";
   std::vector<std::string> words;      // what it is called, in small letters, the clearest first
   std::vector<std::string> otherwise;  // where it is not found: the first formula of which every name is known
   std::string note;                    // what is said then, if that is a number; {}: the value

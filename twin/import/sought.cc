@@ -8,6 +8,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
+#include "twin/import/clampings.h"
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
 #include "twin/import/expression.h"
@@ -42,9 +43,10 @@ bool IsTurn(const Column& column) {
 bool CanBe(const Column& column, const Sought& sought) {
   constexpr double kSeldom = 0.25;
   if (sought.kind == "turn") return IsTurn(column);
+  if (sought.kind == "column" && !column.IsNumber()) return UnitOf(sought).dimension == Dimension::kPure;
   if (!column.IsNumber() || !UnitFits(column, sought)) return false;
   if (sought.kind == "value") return ShareOfChanges(column) > kSeldom;
-  return sought.kind == "any" || ShareOfChanges(column) <= kSeldom;
+  return sought.kind == "any" || sought.kind == "column" || ShareOfChanges(column) <= kSeldom;
 }
 
 /// "{}" is the value that was taken.
@@ -91,11 +93,11 @@ class Seeker {
     return std::ranges::find(found_, sought.name, &Column::name) != found_.end();
   }
 
-  /// In a column, with a unit that says what it is; an angle needs none.
+  /// In a column, with a unit that says what it is; an angle and what has no unit need none.
   bool HasSurely(const std::string& name) const {
     const auto found = std::ranges::find(found_, name, &Column::name);
     const auto unit = UnitAtEnd(name);
-    return found != found_.end() && unit && (unit->dimension == Dimension::kAngle || UnitNamed(found->unit));
+    return found != found_.end() && (!unit || unit->dimension == Dimension::kAngle || UnitNamed(found->unit));
   }
 
   bool GivesANumber(const std::string& formula) const { return std::isfinite(Evaluated(formula).front()); }
@@ -139,18 +141,18 @@ class Seeker {
   }
 
   std::vector<double> StatedOf(const Sought& sought) const {
-    if (sought.words.empty() || sought.kind == "value") return {};
+    if (sought.words.empty() || sought.kind == "value" || sought.kind == "column") return {};
     return sought.kind == "turn" ? StatedTurns(track_) : StatedValues(track_, sought.words, UnitOf(sought));
   }
 
-  /// A column that says no unit is in that of the name; an angle that stays within a turn of rad, in rad.
+  /// A column that says no unit is in that of the name; a place that stays within a turn of rad, in rad.
   std::vector<double> InUnitOf(const Sought& sought, const Column& column) {
     constexpr double kMoreThanATurn_rad = 6.4;
     const NamedUnit to = UnitOf(sought);
     auto has = UnitNamed(column.unit);
     if (!has && to.dimension != Dimension::kPure) {
       const bool is_rad =
-          to.dimension == Dimension::kAngle && column.value.size() > 20 &&
+          to.name == "deg" && column.value.size() > 20 &&
           std::ranges::all_of(column.value, [](double x) { return !(std::abs(x) > kMoreThanATurn_rad); });
       has = is_rad ? UnitNamed("rad") : to;
       assumed_.push_back(fmt::format("the unit of \"{}\" is not said and taken as {}", column.name, has->name));
@@ -281,6 +283,7 @@ void TakeSought(Map& map, Recording& recording) {
       for (std::string& key : map.set) FillInKey(seeker, sought, key);
     }
     seeker.Finish();
+    PlaceClampings(map, recording, track);
   }
 }
 

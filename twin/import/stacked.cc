@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "twin/import/clampings.h"
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
 #include "twin/import/unit_names.h"
@@ -47,13 +48,29 @@ int WayIn(const std::string& name) {
   return 0;
 }
 
-/// "CCW [µm]" says a way round and a unit only: it is the quantity that has such a unit.
-std::string OwnNameOf(const Map& map, const Column& column) {
+/// What of a table was read one way round, or in one clamping.
+struct ColumnSide {
+  int turn = 0;  // 0: the name says none
+  ClampingSaid clamping;
+
+  bool IsOne() const { return turn != 0 || clamping.Any(); }
+  bool operator==(const ColumnSide&) const = default;
+};
+
+ColumnSide SideOf(const Map& map, const Column& column) {
+  return {WayIn(column.name), SeeksClampings(map) ? ClampingOf(column) : ClampingSaid{}};
+}
+
+/// "CCW [µm]" says a way round and a unit only: it is the quantity that has such a unit. "clamping 2" is what was
+/// read there.
+std::string OwnNameOf(const Map& map, const Column& column, const ColumnSide& side) {
   for (const Sought& sought : map.sought) {
     if (ClearnessBy(column.name, sought.words) > 0 && sought.kind == "value") return column.name;
   }
   const auto unit = UnitNamed(column.unit);
   for (const Sought& sought : map.sought) {
+    if (side.clamping.Any() && sought.kind == "value" && &sought != &map.sought.front())
+      return sought.words.front();
     const auto own = UnitAtEnd(sought.name);
     if (sought.kind == "value" && own && !IsAnAngle(sought) && !sought.words.empty() && (!unit || unit->dimension == own->dimension))
       return sought.words.front();
@@ -61,41 +78,49 @@ std::string OwnNameOf(const Map& map, const Column& column) {
   return column.name;
 }
 
-/// One way round of a table.
 struct Part {
   const Column* value;
   const Column* angle;  // null: that of all
-  int turn;
+  ColumnSide side;
 };
 
 std::vector<Part> PartsOf(const Map& map, const Track& track) {
   std::vector<Part> parts;
   for (const Column& column : track.columns) {
-    const int turn = column.IsNumber() ? WayIn(column.name) : 0;
-    if (turn == 0 || SaysWhere(map, column)) continue;
-    const auto angle = std::ranges::find_if(
-        track.columns, [&](const Column& c) { return c.IsNumber() && SaysWhere(map, c) && WayIn(c.name) == turn; });
-    parts.push_back({&column, angle == track.columns.end() ? nullptr : &*angle, turn});
+    const ColumnSide side = column.IsNumber() ? SideOf(map, column) : ColumnSide{};
+    if (!side.IsOne() || SaysWhere(map, column)) continue;
+    const auto angle = std::ranges::find_if(track.columns, [&](const Column& c) {
+      return c.IsNumber() && SaysWhere(map, c) && SideOf(map, c) == side;
+    });
+    parts.push_back({&column, angle == track.columns.end() ? nullptr : &*angle, side});
   }
   return parts;
+}
+
+/// "x 30 deg" has the angle of its clamping behind it, not its own unit.
+std::string UnitOfValues(const Part& part) {
+  const auto unit = UnitNamed(part.value->unit);
+  return part.side.clamping.ends_in_angle && unit && unit->name == "deg" ? "" : part.value->unit;
 }
 
 /// Columns of the rows in which each part has a value.
 class Stack {
  public:
-  Stack(const Map& map, const Track& track, const std::vector<Part>& parts) : track_(track), parts_(parts) {
+  Stack(const Map& map, const Track& track, const std::vector<Part>& parts)
+      : map_(map), track_(track), parts_(parts) {
     for (const Column& column : track.columns) {
-      if (WayIn(column.name) == 0) shared_.push_back({column.name, column.unit, {}, column.words});
+      if (IsShared(column)) shared_.push_back({column.name, column.unit, {}, column.words});
     }
-    value_ = {OwnNameOf(map, *parts.front().value), parts.front().value->unit, {}, {}};
+    value_ = {OwnNameOf(map, *parts.front().value, parts.front().side), UnitOfValues(parts.front()), {}, {}};
     if (parts.front().angle) angle_ = {"angle", parts.front().angle->unit, {}, {}};
   }
 
   void Into(Track& track) {
     for (std::size_t k = 0; k < parts_.size(); ++k) Take(parts_[k], static_cast<double>(k));
     std::vector<Column> columns = std::move(shared_);
-    for (Column* column : {&angle_, &value_, &direction_, &run_}) {
-      if (!column->value.empty()) columns.push_back(std::move(*column));
+    for (Column* column : {&angle_, &value_, &direction_, &run_, &clamping_, &offset_}) {
+      if (std::ranges::any_of(column->value, [](double x) { return std::isfinite(x); }))
+        columns.push_back(std::move(*column));
     }
     track.columns = std::move(columns);
     track.time_s.resize(track.Rows());
@@ -104,33 +129,40 @@ class Stack {
   }
 
  private:
+  bool IsShared(const Column& column) const { return !SideOf(map_, column).IsOne(); }
+
   /// Rows that ways share are gone through once forward and once back.
   void Take(const Part& part, double run) {
-    const bool is_back = !part.angle && part.turn != parts_.front().turn;
+    const bool is_back = !part.angle && part.side.turn != parts_.front().side.turn;
     for (std::size_t k = 0; k < track_.Rows(); ++k) {
       const std::size_t row = is_back ? track_.Rows() - 1 - k : k;
       if (!std::isfinite(part.value->value[row])) continue;
       std::size_t kept = 0;
       for (const Column& column : track_.columns) {
-        if (WayIn(column.name) == 0) shared_[kept++].value.push_back(column.value[row]);
+        if (IsShared(column)) shared_[kept++].value.push_back(column.value[row]);
       }
       if (part.angle) angle_.value.push_back(part.angle->value[row]);
       value_.value.push_back(part.value->value[row]);
-      direction_.value.push_back(part.turn);
+      direction_.value.push_back(part.side.turn == 0 ? kNaN : part.side.turn);
       run_.value.push_back(run);
+      clamping_.value.push_back(part.side.clamping.number);
+      offset_.value.push_back(part.side.clamping.turned_deg);
     }
   }
 
+  const Map& map_;
   const Track& track_;
   const std::vector<Part>& parts_;
   std::vector<Column> shared_;
-  Column angle_, value_, direction_{"direction", "", {}, {}}, run_{"run", "", {}, {}};
+  Column angle_, value_, direction_{"direction", "", {}, {}}, run_{"run", "", {}, {}},
+      clamping_{"clamping", "", {}, {}}, offset_{"offset", "deg", {}, {}};
 };
 
 }  // namespace
 
 void StackTurns(const Map& map, Track& track) {
   if (std::ranges::find(map.sought, "turn", &Sought::kind) == map.sought.end()) return;
+  TakeClampingLines(map, track);
   const Track whole = track;
   const std::vector<Part> parts = PartsOf(map, whole);
   if (!parts.empty()) Stack(map, whole, parts).Into(track);
