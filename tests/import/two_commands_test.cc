@@ -151,6 +151,26 @@ TEST_F(TwoCommands, TakeClampingsOfAPolygonToTheErrorsOfTableAndFaces) {
   }
 }
 
+/// scenarios/samples/autocollimator_sweep.py says what it hid.
+TEST_F(TwoCommands, TakeASweepToTheScaleOfTheAutocollimator) {
+  Write("sweep.csv", Contents(std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/samples/autocollimator_sweep.csv"));
+  EXPECT_THAT(Succeed({"import", "sweep.csv", "-o", "run"}), HasSubstr("scale                   1.004"));
+  const nlohmann::json shown = nlohmann::json::parse(Read("run/results.json")).at("autocollimator");
+  const auto expect = [&shown](const char* name, double truth, double most_u) {
+    EXPECT_NEAR(shown.at(name).at("value"), truth, 4.0 * shown.at(name).at("u").get<double>()) << name;
+    EXPECT_LT(shown.at(name).at("u"), most_u) << name;
+  };
+  expect("scale", 1.0042, 1e-4);
+  expect("crosstalk_mrad", 3.0, 0.1);
+  expect("reversal_arcsec", 0.0, 0.01);
+  EXPECT_EQ(shown.at("sense"), 1);
+  EXPECT_FALSE(shown.contains("nonlinearity_arcsec")) << "it is straight";
+  ASSERT_EQ(shown.at("ripple").size(), 1U);
+  const nlohmann::json& ripple = shown.at("ripple")[0];
+  EXPECT_NEAR(ripple.at("period_arcsec"), 12.4, 4.0 * ripple.at("u_period_arcsec").get<double>());
+  EXPECT_NEAR(ripple.at("amplitude_arcsec"), 0.21, 4.0 * ripple.at("u_amplitude_arcsec").get<double>());
+}
+
 TEST_F(TwoCommands, LookBeforeAnythingIsWritten) {
   Write("hal.txt", HalSamples(DriveAxis({.turns = 0.1}, LostMotion)));
   const std::string text = Succeed({"import", "hal.txt", "--look", "--map", "halsampler"});

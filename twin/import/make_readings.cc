@@ -174,6 +174,7 @@ Reading& Maker::Append(const Session& session, const Course& course, const Block
   reading.reading = static_cast<int>(imported.readings.size());
   reading.time = Time(FromSeconds(MeanOf(session.time_s, block)));
   reading.setup = setup_;
+  reading.phase = PhaseOf(map_.course.phase).value_or(reading.phase);
   reading.pass = first_pass_ + course.pass[at];
   reading.direction = course.direction[at];
   if (reading.pass != last_pass_) position_ = 0;

@@ -96,6 +96,8 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
   course.Add("wrap", kDeg, UpTo(1e7), &map.course.wrap_rad,
              "the reference starts again here; 0: at 360 if it does");
   course.Add("clock_offset", kSecond, Within(1e10), &map.course.clock_offset_s, "added to the second file's clock");
+  course.Text("phase", &map.course.phase, {"full_circle", "calibration", "stability", "verification"},
+              "of all readings");
   Table average(keys, "average");
   average.Add(
       "most_readings", kPure, {12, 1000000}, &map.average.most_readings,

@@ -26,6 +26,7 @@ struct CourseSettings {
   double turn_m = 0.0;          // linear axes: the way that counts as one turn; 0: 360 mm, a degree a millimetre
   double wrap_rad = 0.0;        // the reference starts again at this angle; 0: at 360 deg if it does
   double clock_offset_s = 0.0;  // added to the clock of the second file
+  std::string phase = "full_circle";  // of all readings
 };
 
 struct AverageSettings {

@@ -10,6 +10,7 @@
 #include "twin/benches/turntable_autocollimator/polygon_results.h"
 #include "twin/benches/turntable_autocollimator/series_json.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
+#include "twin/benches/turntable_autocollimator/sweep_results.h"
 #include "twin/core/errors.h"
 #include "twin/core/written_number.h"
 #include "twin/report/curve_score.h"
@@ -280,6 +281,10 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
       analysis.separation ? SeparationJson(*analysis.separation, scenario) : nlohmann::json();
   report::Evaluation evaluation{ResultsOf(analysis, scenario), separation, analysis.not_separated,
                                 SummaryOf(analysis)};
+  if (const auto sweep = separate::turntable::AnalyseSweep(readings)) {
+    if (analysis.stops.empty()) evaluation.summary.clear();  // nothing was asked of a table
+    AddSweep(*sweep, evaluation);
+  }
   if (analysis.separation) AddTilt(analysis, scenario, evaluation);
   if (analysis.separation) evaluation.misfits = {report::WidenedMisfit("the separation of both tables", analysis.separation->scale)};
   if (analysis.separation) evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };

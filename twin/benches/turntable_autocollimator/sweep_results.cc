@@ -1,0 +1,105 @@
+#include "twin/benches/turntable_autocollimator/sweep_results.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/core/units.h"
+#include "twin/report/json_units.h"
+
+namespace twinbench::benches::turntable {
+namespace {
+
+using separate::turntable::CollimatorSweep;
+using separate::turntable::SweptAxis;
+using separate::turntable::SweptRipple;
+using separate::turntable::SweptValue;
+
+constexpr const char* kOtherSense =
+    "the autocollimator counts against the reference: errors of a table come out with the other sign unless one of "
+    "them is turned round";
+constexpr const char* kDoesNotFollow = "the autocollimator does not follow the reference: it has no scale here";
+
+nlohmann::json SweptJson(const SweptValue& v, double unit) {
+  return {{"value", report::In(unit, v.value)}, {"u", report::In(unit, v.u)}};
+}
+
+nlohmann::json RipplesJson(const std::vector<SweptRipple>& ripples) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const SweptRipple& r : ripples)
+    json.push_back({{"period_arcsec", report::Arcsec(r.period_rad.value)},
+                    {"u_period_arcsec", report::Arcsec(r.period_rad.u)},
+                    {"amplitude_arcsec", report::Arcsec(r.amplitude_rad.value)},
+                    {"u_amplitude_arcsec", report::Arcsec(r.amplitude_rad.u)}});
+  return json;
+}
+
+nlohmann::json SweepNotes(const SweptAxis& axis) {
+  nlohmann::json notes = nlohmann::json::array();
+  if (axis.Sense() < 0) notes.push_back(kOtherSense);
+  if (axis.Sense() == 0) notes.push_back(kDoesNotFollow);
+  return notes;
+}
+
+nlohmann::json SweepJson(const CollimatorSweep& sweep) {
+  const SweptAxis& axis = sweep.axis;
+  nlohmann::json json = {{"readings", sweep.readings},
+                         {"axis", sweep.is_along_y ? "y" : "x"},
+                         {"reference_from_arcsec", report::Arcsec(sweep.lowest_rad)},
+                         {"reference_to_arcsec", report::Arcsec(sweep.highest_rad)},
+                         {"ripple", RipplesJson(axis.ripples)},
+                         {"shortest_ripple_arcsec", report::Arcsec(axis.shortest_period_rad)},
+                         {"residual_rms_arcsec", report::Arcsec(axis.residual_rms_rad)},
+                         {"dof", axis.dof},
+                         {"notes", SweepNotes(axis)}};
+  if (axis.Sense() == 0) return json;
+  json["sense"] = axis.Sense();
+  json["scale"] = SweptJson(axis.scale, 1.0);
+  if (std::isfinite(axis.scale_in_middle.value)) json["scale_in_middle"] = SweptJson(axis.scale_in_middle, 1.0);
+  if (std::isfinite(axis.bend_rad.value)) json["nonlinearity_arcsec"] = SweptJson(axis.bend_rad, units::arcsec);
+  if (std::isfinite(axis.reversal_rad.value)) json["reversal_arcsec"] = SweptJson(axis.reversal_rad, units::arcsec);
+  if (sweep.crosstalk) json["crosstalk_mrad"] = SweptJson(*sweep.crosstalk, units::mrad);
+  return json;
+}
+
+std::string SweptLine(const char* name, const SweptValue& v, double unit, const char* unit_name, int digits) {
+  return fmt::format("{:22}  {:.{}f} ± {:.{}f}{}\n", name, v.value / unit, digits, v.u / unit, digits, unit_name);
+}
+
+std::string SweepText(const CollimatorSweep& sweep) {
+  const SweptAxis& axis = sweep.axis;
+  std::string text = fmt::format("{} readings of a sweep of the autocollimator's {} from {:.2f} to {:.2f} arcsec\n",
+                                 sweep.readings, sweep.is_along_y ? "y" : "x", sweep.lowest_rad / units::arcsec,
+                                 sweep.highest_rad / units::arcsec);
+  if (axis.Sense() != 0) text += SweptLine("scale", axis.scale, 1.0, "", 6);
+  if (std::isfinite(axis.scale_in_middle.value))
+    text += SweptLine("scale in the middle", axis.scale_in_middle, 1.0, "", 6);
+  if (std::isfinite(axis.bend_rad.value))
+    text += SweptLine("off a straight line", axis.bend_rad, units::arcsec, " arcsec at most", 3);
+  for (const SweptRipple& r : axis.ripples)
+    text += SweptLine("ripple", r.amplitude_rad, units::arcsec,
+                      fmt::format(" arcsec, period {:.3f} ± {:.3f} arcsec", r.period_rad.value / units::arcsec,
+                                  r.period_rad.u / units::arcsec)
+                          .c_str(),
+                      4);
+  if (axis.ripples.empty())
+    text += fmt::format("ripple                  none from {:.2f} arcsec of period on\n",
+                        axis.shortest_period_rad / units::arcsec);
+  if (std::isfinite(axis.reversal_rad.value))
+    text += SweptLine("forward less backward", axis.reversal_rad, units::arcsec, " arcsec", 4);
+  if (sweep.crosstalk)
+    text += SweptLine(sweep.is_along_y ? "x by y" : "y by x", *sweep.crosstalk, units::mrad, " mrad", 3);
+  text += fmt::format("residuals               {:.4f} arcsec rms\n", axis.residual_rms_rad / units::arcsec);
+  for (const auto& note : SweepNotes(axis)) text += fmt::format("note: {}\n", note.get<std::string>());
+  return text;
+}
+
+}  // namespace
+
+void AddSweep(const CollimatorSweep& sweep, report::Evaluation& evaluation) {
+  evaluation.results["autocollimator"] = SweepJson(sweep);
+  evaluation.summary += SweepText(sweep);
+}
+
+}  // namespace twinbench::benches::turntable
