@@ -171,6 +171,39 @@ TEST_F(TwoCommands, TakeASweepToTheScaleOfTheAutocollimator) {
   EXPECT_NEAR(ripple.at("amplitude_arcsec"), 0.21, 4.0 * ripple.at("u_amplitude_arcsec").get<double>());
 }
 
+/// scenarios/samples/spindle_probe.py says what it hid. Widths of its curves, less what noise adds to a width.
+TEST_F(TwoCommands, TakeSpindleProbesToErrorMotions) {
+  Write("spindle.csv", Contents(std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/samples/spindle_probe.csv"));
+  EXPECT_THAT(Succeed({"import", "spindle.csv", "-o", "run"}), HasSubstr("8 turns"));
+  const nlohmann::json results = nlohmann::json::parse(Read("run/results.json"));
+  const auto width = [](auto curve) {
+    double low = 1e9, high = -1e9;
+    for (int k = 0; k < 180; ++k) low = std::min(low, curve(2.0 * k)), high = std::max(high, curve(2.0 * k));
+    return high - low;
+  };
+  const auto x = [](double deg) { return 0.6 * Cosine(2.0, deg, 0.0) + 0.25 * Cosine(5.0, deg, -90.0); };
+  const auto y = [](double deg) { return 0.4 * Cosine(3.0, deg, 0.3 * 57.29577951308232); };
+  std::map<std::string, nlohmann::json> found;
+  for (const auto& motion : results.at("iso230_7")) found[motion.at("motion")] = motion.at("values");
+  const auto expect = [&found](const char* motion, const char* value, double truth, const char* unit = "_um") {
+    const nlohmann::json& v = found.at(motion).at(value);
+    const double u = v.at(std::string("u") + unit), bias = v.at(std::string("bias") + unit);
+    EXPECT_NEAR(v.at(std::string("value") + unit).get<double>() - bias, truth, 4.0 * u) << motion << " " << value;
+    EXPECT_LT(u, 0.1 * truth) << motion << " " << value;
+  };
+  expect("radial_fixed_x", "synchronous", width(x));
+  expect("radial_fixed_y", "synchronous", width(y));
+  expect("axial", "fundamental", 0.6);
+  expect("axial", "residual", 0.4);
+  expect("tilt_fixed_x", "synchronous", 2.2, "_arcsec");
+  expect("tilt_fixed_y", "synchronous", 1.6, "_arcsec");
+  EXPECT_NEAR(found.at("radial_fixed_x").at("asynchronous").at("value_um"), 0.1, 0.06)
+      << "3.5 a turn, twice 0.05 apart, and noise";
+  EXPECT_NEAR(results.at("eccentricity").at("probe_1_um").at("value"), 9.0, 0.01);
+  EXPECT_FALSE(results.contains("artefact")) << "two probes do not separate it";
+  EXPECT_THAT(Call({"diagnose", "run"}).err, HasSubstr("not diagnosed"));
+}
+
 TEST_F(TwoCommands, LookBeforeAnythingIsWritten) {
   Write("hal.txt", HalSamples(DriveAxis({.turns = 0.1}, LostMotion)));
   const std::string text = Succeed({"import", "hal.txt", "--look", "--map", "halsampler"});

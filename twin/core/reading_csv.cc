@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "twin/core/another_instrument.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/csv.h"
 #include "twin/core/errors.h"
@@ -60,12 +61,21 @@ void Harmonise(Reading& reading, const std::vector<ReadingColumn>& columns) {
   }
 }
 
-/// Those without which a reading of this file is missing.
+/// Those without which a reading of this file is missing. What the bench shows otherwise is not missed where
+/// another instrument was read alone.
 std::vector<ReadingColumn> NeededIn(const CsvTable& table, std::vector<ReadingColumn> columns) {
-  std::erase_if(columns, [&table](const ReadingColumn& column) {
+  const auto has_none = [&table](const ReadingColumn& column) {
     const auto at = table.Column(column.name);
     const auto is_empty = [&at](const CsvTable::Row& row) { return row.fields[*at].empty(); };
-    return column.may_be_absent && (!at || std::ranges::all_of(table.rows, is_empty));
+    return !at || std::ranges::all_of(table.rows, is_empty);
+  };
+  const bool is_of_another =
+      std::ranges::any_of(columns,
+                          [&](const ReadingColumn& c) { return IsOfAnotherInstrument(c) && !has_none(c); }) &&
+      std::ranges::all_of(columns,
+                          [&](const ReadingColumn& c) { return c.role != ColumnRole::kShown || has_none(c); });
+  std::erase_if(columns, [&](const ReadingColumn& column) {
+    return (column.may_be_absent || (is_of_another && column.role == ColumnRole::kShown)) && has_none(column);
   });
   return columns;
 }
@@ -93,12 +103,16 @@ void CheckOrder(const CsvTable& table, const CsvTable::Row& row, const Reading& 
                      "time order");
 }
 
-/// The columns to write: the status only if it says something.
+/// The columns to write: the status only if it says something, those of another instrument only if it was read.
 std::vector<ReadingColumn> ColumnsFor(const std::vector<Reading>& readings, const BenchFormat& bench) {
   const bool all_ok =
       std::ranges::all_of(readings, [](const Reading& r) { return r.status == ReadingStatus::kOk; });
   std::vector<ReadingColumn> columns = bench.columns;
   if (all_ok) std::erase_if(columns, [](const ReadingColumn& column) { return column.name == kStatusColumn; });
+  std::erase_if(columns, [&readings](const ReadingColumn& column) {
+    return IsOfAnotherInstrument(column) &&
+           std::ranges::all_of(readings, [&column](const Reading& r) { return column.print(r).empty(); });
+  });
   return columns;
 }
 

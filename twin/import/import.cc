@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "twin/core/another_instrument.h"
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/import/guess.h"
@@ -22,13 +23,17 @@ namespace {
 
 constexpr std::size_t kFewest = 12;  // readings that are worth a diagnosis of a bench that compares nothing
 
+/// What a bench shows is not asked for where the map gives what another instrument showed in its place.
 void RequireColumns(const BenchFormat& bench, const Map& map, const std::vector<Recording>& recordings) {
+  const auto is_given = [&map](const ReadingColumn& column) {
+    return std::ranges::any_of(map.columns, [&column](const MappedColumn& c) { return c.column == column.name; });
+  };
+  const bool is_of_another = std::ranges::any_of(
+      bench.columns, [&](const ReadingColumn& c) { return IsOfAnotherInstrument(c) && is_given(c); });
   std::string missing;
   for (const ReadingColumn& column : bench.columns) {
-    if (!column.MustBeThere() || !column.number) continue;
-    const bool given =
-        std::ranges::any_of(map.columns, [&column](const MappedColumn& c) { return c.column == column.name; });
-    if (!given) missing += (missing.empty() ? "" : ", ") + column.name;
+    if (!column.MustBeThere() || !column.number || (is_of_another && column.role == ColumnRole::kShown)) continue;
+    if (!is_given(column)) missing += (missing.empty() ? "" : ", ") + column.name;
   }
   if (!missing.empty())
     throw InputError(recordings[0].file,

@@ -1,3 +1,5 @@
+#include "twin/benches/rotary_4dof/columns.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -23,12 +25,33 @@ std::vector<ReadingColumn> Voltages() {
   return columns;
 }
 
+/// In the place of the voltages; written only where they were read.
+std::vector<ReadingColumn> Probes() {
+  std::vector<ReadingColumn> columns;
+  const auto add = [&columns](const Quantity& field, double to_SI) {
+    columns.push_back(NumberColumn(field.column, to_SI, ColumnRole::kShownToo, field));
+    columns.back().may_be_absent = true;
+  };
+  for (int probe = 0; probe < kMostProbes; ++probe) add(ProbeRadial_m(probe), units::um);
+  add(kProbeAxial_m, units::um);
+  add(kProbeTiltX_rad, units::arcsec);
+  add(kProbeTiltY_rad, units::arcsec);
+  return columns;
+}
+
 bool HasScatter(const Reading& r) {
   return r.n_samples > 0 &&
          std::any_of(r.std_V.begin(), r.std_V.end(), [](double std_V) { return std::isfinite(std_V); });
 }
 
 }  // namespace
+
+bool ShowsProbes(const std::vector<Reading>& readings) {
+  return std::ranges::any_of(readings, [](const Reading& r) {
+    return std::ranges::any_of(r.quantities,
+                               [](const auto& q) { return q.first.starts_with("probe_") && std::isfinite(q.second); });
+  });
+}
 
 std::vector<ReadingColumn> Columns() {
   const std::vector<ReadingColumn> commanded = {
@@ -43,7 +66,7 @@ std::vector<ReadingColumn> Columns() {
       NumberColumn(
           "autocollimator_tilt_arcsec", units::arcsec, ColumnRole::kOptional,
           [](auto& r) -> auto& { return r.autocollimator_tilt_rad; })};
-  return Joined({CommonColumns(false), commanded, Voltages(), ConditionColumns(), autocollimator});
+  return Joined({CommonColumns(false), commanded, Voltages(), Probes(), ConditionColumns(), autocollimator});
 }
 
 std::vector<DesiredColumn> Desired() {

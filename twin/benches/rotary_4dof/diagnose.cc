@@ -6,6 +6,7 @@
 #include <span>
 
 #include "twin/benches/rotary_4dof/bench.h"
+#include "twin/benches/rotary_4dof/columns.h"
 #include "twin/benches/rotary_4dof/diagnose.h"
 #include "twin/benches/rotary_4dof/estimators/calibrate.h"
 #include "twin/benches/rotary_4dof/estimators/separate.h"
@@ -231,8 +232,21 @@ TwinComparison ComparisonWith(const std::vector<Reading>& readings, const Scenar
   return comparison;
 }
 
+namespace {
+
+/// The twin has no probes: it cannot say what they should have shown.
+void RefuseProbes(const std::vector<Reading>& readings) {
+  if (ShowsProbes(readings))
+    throw InputError("the readings",
+                     "displacements of probes are not diagnosed: their error motions are in results.json",
+                     "voltages of the PSDs");
+}
+
+}  // namespace
+
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& as_read, const Scenario& stated,
                                 const diagnose::DiagnoseOptions& options) {
+  RefuseProbes(as_read);
   std::vector<Reading> readings = Wanted(as_read);
   std::vector<diagnose::Cause> decided;
   if (!diagnose::IsExcluded(options, "convention")) decided = UndoLabelBlunder(stated, readings);
@@ -250,6 +264,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& as_read, const Scena
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& as_read, const Scenario& stated, Estimator estimator) {
+  RefuseProbes(as_read);
   const std::vector<Reading> readings = Wanted(as_read);
   const Scenario scenario = AsRead(stated, readings, estimator);
   const model::FollowMaker follow = FollowOnPsds(estimator == Estimator::kPublished);

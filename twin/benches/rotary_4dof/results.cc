@@ -6,7 +6,9 @@
 
 #include "twin/benches/rotary_4dof/analysis.h"
 #include "twin/benches/rotary_4dof/bench.h"
+#include "twin/benches/rotary_4dof/columns.h"
 #include "twin/benches/rotary_4dof/error_motion_results.h"
+#include "twin/benches/rotary_4dof/probe_results.h"
 #include "twin/benches/rotary_4dof/tables.h"
 #include "twin/benches/rotary_4dof/uncertainty_parts.h"
 #include "twin/core/errors.h"
@@ -64,6 +66,7 @@ report::ScoredRun ScoreOf(const Analysis& analysis, const nlohmann::json& truth)
 }  // namespace
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
+  if (ShowsProbes(readings)) return EvaluateProbes(scenario, readings);
   const Analysis analysis = Analyse(scenario, readings, estimator);
   nlohmann::json results = ToJson(analysis);
   AddCalibrationParts(analysis, readings, scenario, results["calibration"]);

@@ -256,6 +256,13 @@ void CheckWidths(const ScenarioText& text, const ChainSettings& chain) {
                      "both adc.dnl_file and adc.dnl_lsb say how wide codes are", "one of them");
 }
 
+void AddProbes(Keys& keys, ProbeSettings& s) {
+  Table t(keys, "probes");
+  t.Add("angles", kDeg, Within(360), &s.angles_rad, "where radial displacement probes stand, counter-clockwise");
+  t.Add("reversed_mounting", kPure, {-1, 100000}, &s.reversed_mounting,
+        "in which artefact and probes were turned by half a turn; -1: none");
+}
+
 void CheckVibration(const ScenarioText& text, const MechanicsSettings& m) {
   if (m.vibration_frequency_Hz.size() == m.vibration_velocity_m_s.size()) return;
   throw InputError(Place(text, "mechanics.vibration_velocity_um_s", "mechanics.vibration_frequency_Hz"),
@@ -299,6 +306,7 @@ void AddKeys(Keys& keys, Scenario& s) {
   AddRestlessness(keys, own.mechanics);
   AddEnvironment(keys, s.environment);
   AddAutocollimator(keys, own.autocollimator);
+  AddProbes(keys, own.probes);
   AddProcedure(keys, own.procedure);
 }
 

@@ -121,6 +121,13 @@ struct ChainSettings {
   std::string dnl_file;      // adc.dnl_file: as it was measured, by code; absolute once loaded
 };
 
+/// [probes]: displacement probes at an artefact on the target, in the place of grating and PSDs. Only recordings of
+/// others have them.
+struct ProbeSettings {
+  std::vector<double> angles_rad = {0.0, 0.25 * units::turn};  // of the radial ones, counter-clockwise
+  int reversed_mounting = -1;  // where artefact and probes were turned by half a turn (Donaldson); -1: none
+};
+
 struct RotarySettings {
   LaserSettings laser;
   GratingSettings grating;
@@ -137,6 +144,7 @@ struct RotarySettings {
   Eigen::Vector2d mount_tilt_rad = Eigen::Vector2d::Zero();  // [reference] mount_tilt_arcsec: about x and y
   MechanicsSettings mechanics = BodiesOnAQuietFloor();
   AutocollimatorSettings autocollimator;
+  ProbeSettings probes;
   ProcedureSettings procedure;
 };
 

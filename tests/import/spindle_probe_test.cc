@@ -1,0 +1,64 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "tests/import/importing.h"
+#include "twin/core/reading_column.h"
+
+// Displacements and tilts of a spindle: other names, orders, units and separators than the sample's.
+namespace twinbench::imports {
+namespace {
+
+using testing::HasSubstr, testing::Not;
+
+class SpindleProbe : public Importing {
+ protected:
+  static double In(const Reading& r, const char* column) { return Quantity{column}(r); }
+};
+
+TEST_F(SpindleProbe, IsGuessedByItsProbes) {
+  std::string text = "angle_deg,probe_x_um,probe_y_um,tilt_x_arcsec,tilt_y_arcsec\n";
+  for (int k = 0; k < 144; ++k)
+    text += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f}\n", 5 * k, 1.0 + 0.01 * k, 2.0, -0.5, 0.25 * k);
+  const Imported taken = Take(text);
+  ASSERT_EQ(taken.bench, "rotary_4dof") << taken.story;
+  EXPECT_THAT(taken.story, HasSubstr("taken as --map spindle_probe"));
+  ASSERT_EQ(taken.readings.size(), 144U);
+  EXPECT_NEAR(taken.readings[100].target_rad / units::deg, 500.0, 1e-9);
+  EXPECT_NEAR(In(taken.readings[100], "probe_1_um") / units::um, 2.0, 1e-9);
+  EXPECT_NEAR(In(taken.readings[100], "probe_tilt_y_arcsec") / units::arcsec, 25.0, 1e-9);
+  EXPECT_TRUE(std::isnan(In(taken.readings[100], "probe_axial_um")));
+}
+
+/// Such readings are whole although no voltage is there, in a file as well, whose columns are those that were read.
+TEST_F(SpindleProbe, StaysWholeInAFile) {
+  std::string text = "Winkel [°];Taster X [mm];Taster Y [mm];axial [nm]\n";
+  for (int k = 0; k < 100; ++k)
+    text += fmt::format("{};{:.6f};{:.6f};{}\n", (18 * k) % 360, 0.001 * k, 0.002, 10 * k);
+  const Imported taken = Take(text, "spindle_probe");
+  std::stringstream file;
+  WriteReadingsCsv(taken.readings, taken.bench, file);
+  EXPECT_THAT(file.str(), HasSubstr("probe_axial_um"));
+  EXPECT_THAT(file.str(), Not(HasSubstr("probe_tilt_x_arcsec")));
+  const std::vector<Reading> read = ParseReadingsCsv(file, "again.csv", taken.bench);
+  ASSERT_EQ(read.size(), 100U);
+  for (const Reading& r : read) EXPECT_EQ(r.status, ReadingStatus::kOk);
+  EXPECT_NEAR(In(read[7], "probe_1_um") / units::um, 7.0, 1e-9);
+  EXPECT_NEAR(In(read[7], "probe_axial_um") / units::um, 0.07, 1e-9);
+}
+
+TEST_F(SpindleProbe, KnowsAReversal) {
+  std::string text = "theta (rad)\tprobe 1 (um)\torientation\n";
+  for (const char* way : {"normal", "reversed"})
+    for (int k = 0; k < 72; ++k) text += fmt::format("{:.6f}\t{:.3f}\t{}\n", units::turn * k / 24.0, 0.1 * k, way);
+  const Imported taken = Take(text, "spindle_probe");
+  EXPECT_EQ(taken.readings.front().setup, 0);
+  EXPECT_EQ(taken.readings.back().setup, 1);
+  EXPECT_THAT(taken.set, testing::Contains("probes.reversed_mounting=1"));
+}
+
+}  // namespace
+}  // namespace twinbench::imports

@@ -1,0 +1,191 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "twin/benches/rotary_4dof/columns.h"
+#include "twin/benches/rotary_4dof/estimators/probe_separation.h"
+#include "twin/benches/rotary_4dof/estimators/standing_orders.h"
+#include "twin/core/units.h"
+
+// Displacement probes at an artefact that turns: the motions that the readings were made of, in closed form.
+namespace twinbench::separate::rotary {
+namespace {
+
+using benches::rotary::ProbeRadial_m;
+using units::um;
+
+using Curve = std::function<double(double)>;  // of an angle [rad], in um
+
+double AxisX_um(double a) {
+  return 0.5 * std::cos(2.0 * a) + 0.3 * std::sin(5.0 * a);
+}
+double AxisY_um(double a) {
+  return 0.4 * std::cos(3.0 * a + 0.6);
+}
+double Artefact_um(double a) {
+  return 0.8 * std::cos(3.0 * a) + 0.35 * std::sin(4.0 * a + 0.2);
+}
+
+struct Spun {
+  std::vector<double> at_rad;  // of the probes
+  int turns = 6, angles = 120;
+  double noise_um = 0.0, off_deg = 0.0;  // off_deg: readings that lie beside the grid, by turn
+  bool both = false;                     // a second mounting, reversed
+  unsigned seed = 3;
+};
+
+std::vector<Reading> Made(const Spun& of, const Curve& artefact_um) {
+  std::mt19937_64 random(of.seed);
+  std::normal_distribution<double> noise(0.0, of.noise_um);
+  std::vector<Reading> readings;
+  for (int setup = 0; setup < (of.both ? 2 : 1); ++setup) {
+    for (int k = 0; k < of.turns * of.angles; ++k) {
+      const double a = units::turn * k / of.angles + of.off_deg * units::deg * (k / of.angles);
+      Reading& r = readings.emplace_back();
+      r.setup = setup;
+      r.pass = setup;
+      r.target_rad = std::fmod(a, units::turn);
+      for (std::size_t i = 0; i < of.at_rad.size(); ++i) {
+        const double f = of.at_rad[i], axis_um = AxisX_um(a) * std::cos(f) + AxisY_um(a) * std::sin(f);
+        ProbeRadial_m(static_cast<int>(i))(r) =
+            (artefact_um(a - f) + 7.0 * std::cos(a - f) + (setup == 0 ? axis_um : -axis_um) + noise(random)) * um;
+      }
+    }
+  }
+  return readings;
+}
+
+RadialMotion Separated(const Spun& of, const Curve& artefact_um) {
+  std::vector<Quantity> columns;
+  std::vector<std::size_t> radial;
+  for (std::size_t i = 0; i < of.at_rad.size(); ++i) {
+    columns.push_back(ProbeRadial_m(static_cast<int>(i)));
+    radial.push_back(i);
+  }
+  return SeparateRadial(TurnsOf(Made(of, artefact_um), columns), radial, of.at_rad, of.both ? 1 : -1);
+}
+
+/// Order 1 and the constant aside.
+void ExpectCurve(const ErrorMotion& motion, const Curve& truth_um, double within_um, const char* what) {
+  const Eigen::Index n = motion.contour.size();
+  Eigen::VectorXd rest = motion.contour / um;
+  for (Eigen::Index k = 0; k < n; ++k) rest[k] -= truth_um(motion.angle_rad[k]);
+  const Eigen::VectorXd c = motion.angle_rad.array().cos(), s = motion.angle_rad.array().sin();
+  rest.array() -= rest.mean();
+  const double of_c = 2.0 * c.dot(rest) / static_cast<double>(n), of_s = 2.0 * s.dot(rest) / static_cast<double>(n);
+  rest -= of_c * c + of_s * s;
+  EXPECT_LT(rest.cwiseAbs().maxCoeff(), within_um) << what;
+}
+
+TEST(ProbeMotion, OfTwoProbesHasTheArtefactInIt) {
+  const RadialMotion two = Separated({.at_rad = {0.0, 0.5 * units::kPi}}, [](double) { return 0.0; });
+  EXPECT_EQ(two.separated_by, "");
+  ExpectCurve(*two.x, AxisX_um, 1e-9, "x");
+  ExpectCurve(*two.y, AxisY_um, 1e-9, "y");
+  ExpectCurve(
+      *two.rotating, [](double a) { return AxisX_um(a) * std::cos(a) + AxisY_um(a) * std::sin(a); }, 1e-9,
+      "along a direction that turns");
+  EXPECT_FALSE(two.artefact);
+}
+
+TEST(ProbeMotion, OfProbesThatStandAskewIsAlongXAndY) {
+  const RadialMotion two = Separated({.at_rad = {0.3, 1.5}}, [](double) { return 0.0; });
+  ExpectCurve(*two.x, AxisX_um, 1e-9, "x");
+  ExpectCurve(*two.y, AxisY_um, 1e-9, "y");
+}
+
+TEST(ProbeMotion, IsSeparatedByReversal) {
+  for (const std::vector<double>& at : {std::vector<double>{0.0}, std::vector<double>{0.0, 0.5 * units::kPi}}) {
+    const RadialMotion motion = Separated({.at_rad = at, .both = true}, Artefact_um);
+    EXPECT_EQ(motion.separated_by, "reversal");
+    ExpectCurve(at.size() == 1 ? *motion.along : *motion.x, AxisX_um, 1e-9, "x");
+    if (motion.y) ExpectCurve(*motion.y, AxisY_um, 1e-9, "y");
+    ExpectCurve(*motion.artefact, Artefact_um, 1e-9, "artefact");
+  }
+}
+
+TEST(ProbeMotion, IsSeparatedByProbesWhereTheirAnglesTellIt) {
+  const RadialMotion three = Separated({.at_rad = {0.0, 100.0 * units::deg, 213.0 * units::deg}}, Artefact_um);
+  EXPECT_EQ(three.separated_by, "probes");
+  EXPECT_TRUE(std::ranges::none_of(three.lost_orders, [](int order) { return order < 15; }));
+  ExpectCurve(*three.x, AxisX_um, 1e-9, "x");
+  ExpectCurve(*three.y, AxisY_um, 1e-9, "y");
+  ExpectCurve(*three.artefact, Artefact_um, 1e-9, "artefact");
+}
+
+/// At every third of a turn an artefact's orders 3 n show the same to all probes, which no motion of an axis does,
+/// and 3 n +- 1 what a motion shows.
+TEST(ProbeMotion, NamesOrdersThatEvenlySpacedProbesDoNotTell) {
+  const RadialMotion three = Separated({.at_rad = {0.0, units::turn / 3.0, 2.0 * units::turn / 3.0}}, Artefact_um);
+  std::vector<int> lost;
+  for (int order = 2; order < 60; ++order) {
+    if (order % 3 != 0) lost.push_back(order);
+  }
+  EXPECT_EQ(three.lost_orders, lost);
+}
+
+TEST(ProbeMotion, TakesReadingsAtOtherAnglesFromTurnToTurn) {
+  const std::vector<Quantity> columns = {ProbeRadial_m(0)};
+  const std::vector<ProbeTurns> turns =
+      TurnsOf(Made({.at_rad = {0.0}, .angles = 720, .off_deg = 0.2}, [](double) { return 0.0; }), columns);
+  ASSERT_EQ(turns.size(), 1U);
+  EXPECT_TRUE(turns[0].is_interpolated);
+  EXPECT_GE(turns[0].Turns(), 5);
+  ExpectCurve(OfTurns(turns[0].angle_rad, turns[0].shown[0]), AxisX_um, 1e-3, "between the readings");
+  EXPECT_TRUE(TurnsOf({}, columns).empty());
+}
+
+/// The spread of what comes out, over many runs, is the u that is stated: of the contour at one angle.
+TEST(ProbeMotion, StatesWhatItScattersBy) {
+  double of_x = 0.0, of_artefact = 0.0, stated_x = 0.0, stated_artefact = 0.0;
+  constexpr int kTimes = 60;
+  for (unsigned seed = 1; seed <= kTimes; ++seed) {
+    const RadialMotion m = Separated({.at_rad = {0.0, 100.0 * units::deg, 213.0 * units::deg},
+                                      .turns = 4,
+                                      .angles = 60,
+                                      .noise_um = 0.02,
+                                      .seed = seed},
+                                     [](double) { return 0.0; });
+    for (Eigen::Index k = 0; k < 60; ++k) {
+      of_x += std::pow(m.x->contour[k] / um - AxisX_um(m.x->angle_rad[k]), 2) / (60.0 * kTimes);
+      of_artefact += std::pow(m.artefact->contour[k] / um, 2) / (60.0 * kTimes);
+    }
+    stated_x += m.x->cov.diagonal().mean() / (um * um) / kTimes;
+    stated_artefact += m.artefact->cov.diagonal().mean() / (um * um) / kTimes;
+  }
+  EXPECT_NEAR(of_x / stated_x, 1.0, 0.1);
+  EXPECT_NEAR(of_artefact / stated_artefact, 1.0, 0.15);
+}
+
+/// A wave of 0.8 um in noise of 0.04 um at 720 angles: the points of the mean turn lie 2 x 0.8 um apart and some
+/// noise more, the wave does not, and in 40 runs the truth lies within what is stated as a normal number does.
+TEST(ProbeMotion, KeepsOrdersThatStandOutOfNoise) {
+  double of_u2 = 0.0, of_points_um = 0.0;
+  constexpr int kTimes = 40;
+  for (unsigned seed = 1; seed <= kTimes; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise(0.0, 0.04);
+    const Eigen::VectorXd angle_rad = Eigen::VectorXd::LinSpaced(720, 0.0, units::turn * 719.0 / 720.0);
+    Eigen::MatrixXd turns(3, 720);
+    for (Eigen::Index t = 0; t < 3; ++t)
+      for (Eigen::Index k = 0; k < 720; ++k)
+        turns(t, k) = (0.8 * std::cos(2.0 * angle_rad[k]) + noise(random)) * um;
+    const ErrorMotion plain = OfTurns(angle_rad, turns), standing = OfStandingOrders(plain);
+    const auto value = EvaluateErrorMotion(standing, PlotCentre::kLeastSquares, {100, seed}).synchronous;
+    of_u2 += std::pow((value.value / um - 1.6) / (value.u / um), 2) / kTimes;
+    of_points_um += (plain.contour.maxCoeff() - plain.contour.minCoeff()) / um / kTimes;
+    for (Eigen::Index k = 0; k < 720; k += 90)
+      EXPECT_NEAR(standing.contour[k] + standing.scatter[static_cast<std::size_t>(k)][1], turns(1, k), 1e-15)
+          << "a turn is what it was";
+  }
+  EXPECT_NEAR(of_u2, 1.0, 0.6);
+  EXPECT_GT(of_points_um, 1.68) << "what this is good for";
+  const ErrorMotion one = OfTurns(Eigen::VectorXd::LinSpaced(8, 0.0, 5.0), Eigen::RowVectorXd::Random(8));
+  EXPECT_EQ(OfStandingOrders(one).contour, one.contour) << "of one turn no noise is known";
+}
+
+}  // namespace
+}  // namespace twinbench::separate::rotary
