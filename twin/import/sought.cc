@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "twin/core/errors.h"
@@ -214,19 +215,25 @@ std::vector<std::string> NamesIn(const std::string& list) {
   return names;
 }
 
-bool IsOfKind(const Recording& recording, const Map& map) {
-  return std::ranges::all_of(recording.tracks, [&map](const Track& own) {
-    if (map.guess_clock == "none" && own.HasClock()) return false;
-    Track track = own;
-    StackTurns(map, track);
-    Seeker seeker(map.sought, track);
-    seeker.Find();
-    const bool has_columns = std::ranges::any_of(map.guess_by, [&seeker](const std::string& list) {
-      return std::ranges::all_of(NamesIn(list),
-                                 [&seeker](const std::string& name) { return seeker.HasSurely(name); });
-    });
-    return has_columns && (map.guess_only.empty() || seeker.GivesANumber(map.guess_only));
-  });
+/// The most columns by which a track is of the map's kind; 0: it is not.
+std::size_t ColumnsOfKind(const Track& own, const Map& map) {
+  if (map.guess_clock == "none" && own.HasClock()) return 0;
+  Track track = own;
+  StackTurns(map, track);
+  Seeker seeker(map.sought, track);
+  seeker.Find();
+  std::size_t most = 0;
+  for (const std::string& list : map.guess_by) {
+    const std::vector<std::string> names = NamesIn(list);
+    if (std::ranges::all_of(names, [&seeker](const std::string& name) { return seeker.HasSurely(name); })) most = std::max(most, names.size());
+  }
+  return map.guess_only.empty() || most == 0 || seeker.GivesANumber(map.guess_only) ? most : 0;
+}
+
+std::size_t ColumnsOfKind(const Recording& recording, const Map& map) {
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (const Track& track : recording.tracks) fewest = std::min(fewest, ColumnsOfKind(track, map));
+  return fewest;
 }
 
 /// "{radius_mm}" is its first value, "{radius_mm...}" all there are.
@@ -262,11 +269,16 @@ void DropWithout(const Sought& sought, Map& map) {
 
 std::optional<Map> ReadyMapOf(const Recording& recording) {
   if (recording.tracks.empty()) return std::nullopt;
+  std::optional<Map> best;
+  std::size_t most = 0;
   for (const ReadyMap& ready : ReadyMaps()) {
     Map map = ParseMap(ready.text, ready.name);
-    if (!map.guess_by.empty() && IsOfKind(recording, map)) return map;
+    const std::size_t columns = ColumnsOfKind(recording, map);
+    if (columns <= most) continue;
+    most = columns;
+    best = std::move(map);
   }
-  return std::nullopt;
+  return best;
 }
 
 void TakeSought(Map& map, Recording& recording) {

@@ -10,7 +10,8 @@
 /// Quantities that a map seeks, by the names that people give them.
 namespace twinbench::imports {
 
-/// The ready map of whose kind a file is: one that is guessed by its columns, all with a unit that says what they are. Nothing: none.
+/// The ready map of whose kind a file is: guessed by its columns, all with a unit that says what they are; of several the one that knows
+/// most of them. Nothing: none.
 std::optional<Map> ReadyMapOf(const Recording& recording);
 
 /// Gives every track a column for each quantity that the map seeks, in the unit of its name; drops what the map makes of

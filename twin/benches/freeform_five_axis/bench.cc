@@ -1,5 +1,6 @@
 #include "twin/benches/freeform_five_axis/bench.h"
 
+#include "twin/benches/freeform_five_axis/displacement_results.h"
 #include "twin/benches/freeform_five_axis/procedure/drive.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/freeform_five_axis/twin/factory.h"
@@ -23,17 +24,32 @@ plausible::Plan PlanOf(const Scenario& s, const std::vector<Reading>&) {
           }};
 }
 
+std::unique_ptr<BenchTwin> MakeProbeTwin(const Scenario& scenario) {
+  RefuseDisplacements(scenario, "simulation");
+  return MakeTwin(scenario);
+}
+
+std::unique_ptr<MachineDevices> MakeProbeDevices(const Scenario& scenario) {
+  RefuseDisplacements(scenario, "simulation");
+  return MakeDevices(scenario);
+}
+
+std::unique_ptr<model::Follow> FollowProbe(const Scenario& scenario, const std::vector<Reading>& record) {
+  RefuseDisplacements(scenario, "prediction");
+  return FollowRecord(scenario, record);
+}
+
 }  // namespace
 
 const Bench& Whole() {
   static const Bench bench = [] {
     Bench b;
     b.format = &Format();
-    b.make_twin = MakeTwin;
+    b.make_twin = MakeProbeTwin;
     b.has_controllers = true;
-    b.make_devices = MakeDevices;
+    b.make_devices = MakeProbeDevices;
     b.drive = procedure::DriveFreeform;
-    b.follow = FollowRecord;
+    b.follow = FollowProbe;
     b.planned_readings = PlannedReadings;
     b.plan = PlanOf;
     b.evaluate = Evaluate;

@@ -4,6 +4,16 @@
 #include "twin/core/units.h"
 
 namespace twinbench::benches::freeform {
+namespace {
+
+/// Readings of displacements have none.
+ReadingColumn OfProbe(const char* name, const char* unit, const Quantity& quantity) {
+  ReadingColumn column = ShownColumn(name, 1.0, unit, quantity);
+  column.may_be_absent = true;
+  return column;
+}
+
+}  // namespace
 
 std::vector<ReadingColumn> Columns() {
   std::vector<ReadingColumn> own;
@@ -12,10 +22,13 @@ std::vector<ReadingColumn> Columns() {
                                kCommanded[axis]));
   own.push_back(NumberColumn("cell_i", 1.0, ColumnRole::kRequired, kCellI));
   own.push_back(NumberColumn("cell_j", 1.0, ColumnRole::kRequired, kCellJ));
-  own.push_back(ShownColumn("qpd_x_V", 1.0, "V", kQpdX_V));
-  own.push_back(ShownColumn("qpd_y_V", 1.0, "V", kQpdY_V));
+  own.push_back(OfProbe("qpd_x_V", "V", kQpdX_V));
+  own.push_back(OfProbe("qpd_y_V", "V", kQpdY_V));
   own.push_back(NumberColumn("qpd_sum_V", 1.0, ColumnRole::kShownToo, kQpdSum_V));
-  own.push_back(ShownColumn("ccd_px", 1.0, "px", kCcd_px));
+  own.push_back(OfProbe("ccd_px", "px", kCcd_px));
+  own.push_back(NumberColumn(kCommandedC.column, units::deg, ColumnRole::kOptional, kCommandedC));
+  for (const Quantity& shift : kShift_m)
+    own.push_back(NumberColumn(shift.column, units::um, ColumnRole::kShownToo, shift));
   own.push_back(NumberColumn(
       "temperature_degC", 1.0, ColumnRole::kOptional, [](auto& r) -> auto& { return r.temperature_degC; }));
   return Joined({CommonColumns(false), own});

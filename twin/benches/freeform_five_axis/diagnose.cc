@@ -3,6 +3,7 @@
 
 #include "twin/benches/freeform_five_axis/bench.h"
 #include "twin/benches/freeform_five_axis/columns.h"
+#include "twin/benches/freeform_five_axis/displacement_results.h"
 #include "twin/benches/freeform_five_axis/estimators/probe_model.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/freeform_five_axis/twin/factory.h"
@@ -208,10 +209,12 @@ diagnose::TwinComparison Comparison(const Scenario& scenario) {
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
+  RefuseDisplacements(scenario, "diagnosis");
   return diagnose::DiagnoseByTwin(readings, scenario, options, Comparison(scenario));
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
+  RefuseDisplacements(scenario, "prediction");
   return diagnose::CompareWithTwin(readings, scenario, Comparison(scenario));
 }
 

@@ -17,6 +17,7 @@ std::string Addition(int /*setups*/) {
 double RangeOf(const Scenario& s, const std::string& column) {
   constexpr double kReserve = 1.5;  // gains, noise
   const FreeformSettings& bench = FreeformOf(s);
+  if (bench.ReadsDisplacements()) return 0.0;  // of any machine
   for (std::size_t axis = 0; axis < kCommanded.size(); ++axis) {
     if (column == kCommanded[axis].column) return 2.0 * (std::abs(bench.machine.centre[axis]) + bench.machine.half[axis]);
   }

@@ -7,6 +7,7 @@
 
 #include "twin/benches/freeform_five_axis/bench.h"
 #include "twin/benches/freeform_five_axis/columns.h"
+#include "twin/benches/freeform_five_axis/displacement_results.h"
 #include "twin/benches/freeform_five_axis/evaluated.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/freeform_five_axis/tables.h"
@@ -252,6 +253,7 @@ std::vector<report::Misfit> MisfitsOf(const Identification& found) {
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const FreeformSettings& bench = FreeformOf(scenario);
+  if (bench.ReadsDisplacements()) return EvaluateDisplacements(scenario, readings);
   const std::vector<PoseRead> seen = SeenPoses(scenario, readings);
   const Identification found = IdentifyBy(bench, seen, estimator);
   const Unseen unseen = UnseenOf(bench, seen, found, estimator);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/freeform_five_axis/bench.h"
+#include "twin/benches/freeform_five_axis/displacement_results.h"
 #include "twin/benches/freeform_five_axis/evaluated.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/freeform_five_axis/tables.h"
@@ -163,6 +164,7 @@ report::ScoredRun ScoreOf(const FreeformSettings& bench, const std::vector<PoseR
 
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
                            const nlohmann::json& truth, Estimator estimator) {
+  RefuseDisplacements(scenario, "truth");
   const FreeformSettings& bench = FreeformOf(scenario);
   const std::vector<PoseRead> seen = SeenPoses(scenario, readings);
   return ScoreOf(bench, seen, IdentifyBy(bench, seen, estimator), truth, estimator);

@@ -76,6 +76,22 @@ void AddOptics(Keys& keys, ProbeOpticsSettings& s) {
   t.Add("plate_tilt_y", kMrad, Within(100), &s.plate_tilt_y_rad, "about the tool's y");
 }
 
+void AddDisplacement(Keys& keys, DisplacementSettings& s) {
+  Table t(keys, "displacement");
+  t.Text("topology", &s.topology, {"auto", "table_table", "table_head", "head_head"},
+         "where the rotary axes are; auto: by the commanded positions");
+  t.Text("axes", &s.axes, {},
+         "rotary axes from the bed on, those of the table, then those of the head: \"AC\"; \"A-C\": C against the right-hand rule; left out: by the commanded positions");
+  t.Text("positions", &s.positions, {"auto", "machine", "workpiece"},
+         "what x, y, z are: places of the slides, or of the ball on the workpiece; auto: of the workpiece where they stand still");
+  t.Text("seen_from", &s.seen_from, {"auto", "tool", "workpiece"},
+         "the displacement is that of the workpiece seen from the tool, or the other way round; auto: from the tool where only tables turn");
+  t.Text("frame", &s.frame, {"machine", "table", "tool"}, "along whose axes dx, dy and dz are");
+  t.Add("tool", kMm, UpTo(10000), &s.tool_m, "from the last axis of the head to the tool's point, where x, y, z are of the workpiece");
+  t.Add("highest_order", kPure, {0, 20}, &s.highest_order, "of component errors per turn of a rotary axis");
+  t.Add("noise", kUm, UpTo(1000), &s.noise_m, "of one reading, standard deviation; 0: from what is left over");
+}
+
 void AddMount(Table& t, MountSettings& s) {
   t.Add("x", kMm, Within(10000), &s.x_m, "");
   t.Add("y", kMm, Within(10000), &s.y_m, "");
@@ -85,6 +101,7 @@ void AddMount(Table& t, MountSettings& s) {
 
 void AddProcedure(Keys& keys, FreeformProcedureSettings& s) {
   Table t(keys, "freeform_procedure");
+  t.Text("instrument", &s.instrument, {"probe", "displacement"}, "what reads; displacements at poses are imported, not simulated");
   t.Records("mounts", s.mounts, AddMount, "where the artefact stands, one per mounting");
   t.Add("poses", kPure, {1, 100000}, &s.poses, "per mounting; each is read on the way forth and back");
   t.Add("angle", kDeg, UpTo(45), &s.angle_rad, "A and B go so far to either side");
@@ -104,6 +121,7 @@ void AddKeys(Keys& keys, Scenario& s) {
   AddArtefact(keys, own.artefact);
   AddProbe(keys, own.qpd, own.ccd);
   AddOptics(keys, own.optics);
+  AddDisplacement(keys, own.displacement);
   AddProcedure(keys, own.freeform_procedure);
   AddEnvironment(keys, s.environment);
 }

@@ -87,7 +87,21 @@ struct MountSettings {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0, yaw_rad = 0.0;
 };
 
+/// A ball or an artefact on the table against the tool, whose displacement is read at poses (R-test, probed sphere). How
+/// the machine is built may be left open: the commanded positions follow the ball, which tells.
+struct DisplacementSettings {        // [displacement]
+  std::string topology = "auto";     // auto | table_table | table_head | head_head
+  std::string axes;                  // rotary axes from the bed on, of the table, then of the head: "AC", "A-C"
+  std::string positions = "auto";    // auto | machine | workpiece: what X, Y and Z are coordinates of
+  std::string seen_from = "auto";    // auto | tool | workpiece: on which side the other one is displaced
+  std::string frame = "machine";     // machine | table | tool: along whose axes
+  double tool_m = 0.0;               // from the head's last axis to the tool's point, where X, Y and Z do not tell
+  int highest_order = 4;             // of the component errors of a rotary axis
+  double noise_m = 0.0;              // of one reading, standard deviation; 0: from what is left over
+};
+
 struct FreeformProcedureSettings {  // [freeform_procedure]
+  std::string instrument = "probe";  // probe | displacement: what reads; displacements are imported
   std::vector<MountSettings> mounts = {
       {}, {0.0, 0.0, 0.060, 90.0 * units::deg}, {0.0, 0.0, 0.120, 0.0}, {0.0, 0.0, 0.180, 0.0}};  // one a set-up
   int poses = 100;                                                                                // a set-up
@@ -106,7 +120,10 @@ struct FreeformSettings {
   QuadrantSettings qpd;
   CameraSettings ccd;
   ProbeOpticsSettings optics;
+  DisplacementSettings displacement;
   FreeformProcedureSettings freeform_procedure;
+
+  bool ReadsDisplacements() const { return freeform_procedure.instrument == "displacement"; }
 };
 
 /// The bench's own part of a scenario. @throws std::logic_error if it is another bench's.

@@ -1,0 +1,301 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/core/input_error.h"
+#include "twin/benches/evaluated.h"
+#include "twin/benches/freeform_five_axis/columns.h"
+#include "twin/benches/freeform_five_axis/settings.h"
+#include "twin/benches/names.h"
+#include "twin/benches/registry.h"
+#include "twin/core/estimator.h"
+#include "twin/core/stream.h"
+#include "twin/diagnose/diagnose.h"
+#include "twin/report/evaluation.h"
+
+// Displacements of balls at poses. The machines are written here as products of exact transforms; the program has
+// slopes.
+namespace twinbench::benches::freeform {
+namespace {
+
+using Eigen::Isometry3d, Eigen::Vector3d;
+using units::arcsec, units::deg, units::mm, units::um;
+
+using Errors = std::map<std::string, double>;  // "XOC" [um], "AOC" [arcsec], "EXC2c" of cos 2c
+
+double Of(const Errors& errors, const std::string& name) {
+  const auto found = errors.find(name);
+  return found == errors.end() ? 0.0 : found->second;
+}
+
+/// What the body of an axis errs in one of X, Y, Z, A, B, C with the axis at this angle.
+double ErrorOf(const Errors& errors, char what, char axis, double angle_rad) {
+  double sum = Of(errors, std::string{what, 'O', axis});
+  for (int order = 1; order <= 3; ++order) {
+    const std::string name = std::string{'E', what, axis} + std::to_string(order);
+    sum +=
+        Of(errors, name + 'c') * std::cos(order * angle_rad) + Of(errors, name + 's') * std::sin(order * angle_rad);
+  }
+  return sum;
+}
+
+struct Axis {
+  char letter;
+  double sense;
+  Vector3d to_mm;  // from what carries it
+};
+
+/// One rotary axis behind the next, with their errors.
+Isometry3d Chain(const std::vector<Axis>& axes, const std::map<char, double>& turned_rad, const Errors& errors) {
+  Isometry3d pose = Isometry3d::Identity();
+  for (const Axis& axis : axes) {
+    const double angle_rad = turned_rad.at(axis.letter);
+    const auto error = [&](char what) { return ErrorOf(errors, what, axis.letter, angle_rad); };
+    pose.translate(axis.to_mm * mm);
+    pose.translate(Vector3d(error('X'), error('Y'), error('Z')) * um);
+    const Vector3d tilt(error('A') * arcsec, error('B') * arcsec, error('C') * arcsec);
+    if (tilt.norm() > 0.0) pose.rotate(Eigen::AngleAxisd(tilt.norm(), tilt.normalized()));
+    pose.rotate(Eigen::AngleAxisd(axis.sense * angle_rad, Vector3d::Unit(axis.letter - 'A')));
+  }
+  return pose;
+}
+
+struct Machine {
+  std::vector<Axis> table, head;
+  Vector3d tool_mm = {0.0, 0.0, 0.0};
+  Errors errors;
+
+  /// Where the slides err, about the place of the table's first axis.
+  Vector3d Slides_m(const Vector3d& at_m) const {
+    const Vector3d p = table.empty() ? at_m : Vector3d(at_m - table.front().to_mm * mm);
+    return arcsec *
+           Vector3d(-Of(errors, "COY") * p.y() + Of(errors, "BOZ") * p.z(), -Of(errors, "AOZ") * p.z(), 0.0);
+  }
+};
+
+struct Ball {
+  Vector3d at_mm, off_um;
+};
+
+/// The slides go where an ideal machine has its tool at the ball.
+Reading At(const Machine& m, const Ball& ball, int setup, const std::map<char, double>& turned_rad,
+           bool seen_from_tool) {
+  const Vector3d nominal_m = Chain(m.table, turned_rad, {}) * (ball.at_mm * mm);
+  const Vector3d slides_m = nominal_m - Chain(m.head, turned_rad, {}) * (m.tool_mm * mm);
+  const Vector3d ball_m = Chain(m.table, turned_rad, m.errors) * (ball.at_mm * mm + ball.off_um * um);
+  const Vector3d tool_m = slides_m + m.Slides_m(slides_m) + Chain(m.head, turned_rad, m.errors) * (m.tool_mm * mm);
+  Reading r;
+  r.setup = setup;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto c = static_cast<Eigen::Index>(k);
+    kCommanded[k](r) = slides_m[c];
+    kShift_m[k](r) = (seen_from_tool ? 1.0 : -1.0) * (ball_m[c] - tool_m[c]);
+    const char letter = static_cast<char>('A' + k);
+    (k < 2 ? kCommanded[3 + k] : kCommandedC)(r) = turned_rad.contains(letter) ? turned_rad.at(letter) : 0.0;
+  }
+  return r;
+}
+
+/// Every ball at every pair of angles, with noise.
+std::vector<Reading> Grid(const Machine& m, const std::vector<Ball>& balls,
+                          const std::map<char, std::vector<double>>& angles_deg, bool seen_from_tool,
+                          double noise_um = 0.0, int seed = 1) {
+  Stream noise(static_cast<std::uint64_t>(seed), "displacement");
+  std::vector<Reading> readings;
+  const auto& [first, first_deg] = *angles_deg.begin();
+  const auto& [second, second_deg] = *angles_deg.rbegin();
+  for (std::size_t ball = 0; ball < balls.size(); ++ball) {
+    for (const double a_deg : first_deg) {
+      for (const double b_deg : second_deg) {
+        readings.push_back(At(m, balls[ball], static_cast<int>(ball), {{first, a_deg * deg}, {second, b_deg * deg}},
+                              seen_from_tool));
+        for (const Quantity& shift : kShift_m) shift(readings.back()) += noise_um * um * noise.Normal();
+        readings.back().reading = static_cast<int>(readings.size()) - 1;
+      }
+    }
+  }
+  return readings;
+}
+
+std::vector<double> Steps_deg(double from, double step, int count) {
+  std::vector<double> all;
+  for (int k = 0; k < count; ++k) all.push_back(from + step * k);
+  return all;
+}
+
+Scenario Displacements(const std::vector<std::string>& set = {}) {
+  std::vector<std::string> all = {"freeform_procedure.instrument=displacement"};
+  all.insert(all.end(), set.begin(), set.end());
+  return ParseScenario("bench = \"freeform_five_axis\"\n", "imported", "", all);
+}
+
+nlohmann::json ResultsOf(const std::vector<Reading>& readings, const std::vector<std::string>& set = {}) {
+  return EvaluationOf(Displacements(set), readings, Estimator::kRigorous).results;
+}
+
+Machine TrunnionTable() {
+  return {{{'A', -1.0, {250.0, -120.0, -400.0}}, {'C', 1.0, {0.0, 12.0, 0.0}}},
+          {},
+          {},
+          {{"XOC", 12.0},
+           {"YOC", -7.0},
+           {"AOC", 9.0},
+           {"BOC", -3.0},
+           {"YOA", 8.0},
+           {"ZOA", -5.0},
+           {"BOA", 4.0},
+           {"COA", -6.0},
+           {"COY", 5.0},
+           {"BOZ", -4.0},
+           {"AOZ", 3.0}}};
+}
+
+/// Two balls do not show what turns about the line through them.
+const std::vector<Ball> kBalls = {{{100.0, 0.0, 50.0}, {20.0, -15.0, 10.0}},
+                                  {{-40.0, 60.0, 120.0}, {-30.0, 5.0, 8.0}},
+                                  {{10.0, -80.0, 20.0}, {4.0, 9.0, -12.0}}};
+const std::map<char, std::vector<double>> kTilts = {{'A', Steps_deg(-90.0, 30.0, 5)},
+                                                    {'C', Steps_deg(0.0, 30.0, 12)}};
+
+/// What slopes leave out is of second order: an arcsec of a hundred of them, or of 0.1 m, is some nm.
+constexpr double kSecondOrder = 0.02;
+
+void ExpectLocations(const nlohmann::json& results, const Errors& truth) {
+  for (const auto& [name, value] : truth) {
+    if (name.front() == 'E') continue;
+    ASSERT_TRUE(results.at("errors").contains(name)) << name << results.at("not_observable").dump();
+    EXPECT_NEAR(results.at("errors").at(name).at("value").get<double>(), value, kSecondOrder) << name;
+  }
+}
+
+double AmplitudeOf(const nlohmann::json& results, const std::string& name, int order) {
+  if (!results.at("component_errors").contains(name)) return kNaN;
+  for (const auto& one : results.at("component_errors").at(name))
+    if (one.at("order") == order) return one.contains("amplitude") ? one.at("amplitude") : one.at("value");
+  return kNaN;
+}
+
+TEST(Displacements, OfATiltingTableGiveItsElevenLocations) {
+  const Machine m = TrunnionTable();
+  const nlohmann::json results = ResultsOf(Grid(m, kBalls, kTilts, true));
+  ExpectLocations(results, m.errors);
+  EXPECT_EQ(results.at("machine").at("topology"), "table_table");
+  EXPECT_EQ(results.at("machine").at("axes")[0].at("right_handed"), false)
+      << "A turns the table against the right-hand rule";
+  EXPECT_EQ(results.at("instrument"), "displacement");
+}
+
+TEST(Displacements, OfThreeBallsGiveComponentErrorsByOrder) {
+  Machine m = TrunnionTable();
+  for (const auto& [name, value] :
+       Errors{{"EXC2c", 3.0}, {"EXC2s", -4.0}, {"EZC3s", 2.0}, {"ECC1c", 4.0}, {"EAC2s", 2.5}})
+    m.errors[name] = value;
+  const nlohmann::json results = ResultsOf(Grid(m, kBalls, kTilts, true));
+  ExpectLocations(results, m.errors);
+  EXPECT_NEAR(AmplitudeOf(results, "EXC", 2), 5.0, kSecondOrder);
+  EXPECT_NEAR(AmplitudeOf(results, "EZC", 3), 2.0, kSecondOrder);
+  EXPECT_NEAR(AmplitudeOf(results, "EAC", 2), 2.5, kSecondOrder);
+  EXPECT_NEAR(AmplitudeOf(results, "ECC", 1), 4.0, kSecondOrder);
+}
+
+/// A ball alone does not say whether an axis moves, tilts or is late; it says that it does not.
+TEST(Displacements, OfOneBallNameWhatItDoesNotShow) {
+  Machine m = TrunnionTable();
+  m.errors["ECC1c"] = 4.0;  // at 0.1 m: 1.9 um, once along the circle
+  const nlohmann::json results = ResultsOf(
+      Grid(m, {kBalls[0]}, {{'A', {0.0}}, {'C', Steps_deg(0.0, 15.0, 24)}}, true), {"displacement.axes=C"});
+  EXPECT_TRUE(std::isnan(AmplitudeOf(results, "EXC", 2))) << "ECC of order 1 moves the ball alike";
+  EXPECT_TRUE(std::isnan(AmplitudeOf(results, "ECC", 1)));
+  bool is_named = false;
+  for (const auto& one : results.at("not_observable"))
+    is_named |= one.at("error") == "ECC" && one.value("order", 0) == 1 &&
+                one.at("indistinguishable_from").dump().find("EXC order 2") != std::string::npos;
+  EXPECT_TRUE(is_named) << results.at("not_observable").dump(1);
+  EXPECT_LT(results.at("rank"), results.at("unknowns"));
+}
+
+TEST(Displacements, OfATurnTableAndATiltingHeadGiveTheirLocations) {
+  const Machine m = {{{'C', 1.0, {10.0, 20.0, 0.0}}},
+                     {{'B', 1.0, {0.0, 0.0, 0.0}}},
+                     {3.0, 0.0, -180.0},
+                     {{"XOC", 6.0}, {"YOC", 9.0}, {"AOC", -8.0}, {"BOC", 5.0}, {"AOB", 7.0}, {"COY", -6.0}}};
+  const nlohmann::json results =
+      ResultsOf(Grid(m, kBalls, {{'B', Steps_deg(-60.0, 30.0, 5)}, {'C', Steps_deg(0.0, 30.0, 12)}}, false));
+  EXPECT_EQ(results.at("machine").at("topology"), "table_head");
+  ExpectLocations(results, m.errors);
+}
+
+TEST(Displacements, OfAHeadOfTwoAxesGiveHowOneStandsToTheOther) {
+  Machine m = {{},
+               {{'C', 1.0, {0.0, 0.0, 0.0}}, {'A', 1.0, {0.0, 15.0, 0.0}}},
+               {0.0, 0.0, -250.0},
+               {{"YOA", 6.0}, {"BOA", 4.0}}};
+  const nlohmann::json results =
+      ResultsOf(Grid(m, {{{400.0, 300.0, -200.0}, {5.0, 6.0, 7.0}}},
+                     {{'A', Steps_deg(-90.0, 30.0, 7)}, {'C', Steps_deg(0.0, 30.0, 12)}}, false));
+  EXPECT_EQ(results.at("machine").at("topology"), "head_head");
+  ExpectLocations(results, m.errors);
+  EXPECT_FALSE(results.at("errors").contains("XOC")) << "the ball may stand anywhere";
+}
+
+/// Without dz nothing says how high A is, and a table that leans and a slide Z that leans are one: what is left is
+/// told as before.
+TEST(Displacements, MayBeFewerThanThree) {
+  Machine m = TrunnionTable();
+  std::vector<Reading> readings = Grid(m, kBalls, kTilts, true);
+  for (Reading& r : readings) kShift_m[2](r) = kNaN;
+  const nlohmann::json results = ResultsOf(readings);
+  for (const char* not_told : {"AOC", "AOZ", "BOA", "BOZ", "ZOA"}) {
+    EXPECT_FALSE(results.at("errors").contains(not_told)) << not_told;
+    m.errors.erase(not_told);
+  }
+  ExpectLocations(results, m.errors);
+}
+
+TEST(Displacements, StateAnUncertaintyThatMatchesTheirScatter) {
+  constexpr int kRuns = 40;
+  const Machine m = TrunnionTable();
+  double squares = 0.0;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    const nlohmann::json errors = ResultsOf(Grid(m, kBalls, kTilts, true, 0.3, seed)).at("errors");
+    for (const auto& [name, value] : m.errors)
+      squares +=
+          std::pow((errors.at(name).at("value").get<double>() - value) / errors.at(name).at("u").get<double>(), 2);
+  }
+  // 440 values that go together in elevens: a standard deviation of sqrt(2 / 440) if they did not, some twice that.
+  EXPECT_NEAR(squares / (kRuns * static_cast<double>(m.errors.size())), 1.0, 0.25);
+}
+
+TEST(Displacements, AtPositionsOfNoSuchMachineAreRefused) {
+  std::vector<Reading> readings = Grid(TrunnionTable(), kBalls, kTilts, true);
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    kCommanded[0](readings[i]) += 3.0 * mm * std::sin(1.7 * static_cast<double>(i));
+  EXPECT_THROW(ResultsOf(readings), InputError);
+}
+
+/// Twice the same poses: they repeat to 0.1 um, and a fifth order of 8 um is none of the fit's.
+TEST(Displacements, ThatNoErrorOfTheMachineMakesHaveNoUncertainty) {
+  std::vector<Reading> readings = Grid(TrunnionTable(), kBalls, kTilts, true, 0.1, 1);
+  const std::vector<Reading> again = Grid(TrunnionTable(), kBalls, kTilts, true, 0.1, 2);
+  readings.insert(readings.end(), again.begin(), again.end());
+  for (Reading& r : readings)
+    kShift_m[2](r) += 8.0 * um * std::cos(5.0 * kCommandedC(r)) * std::cos(3.0 * kCommanded[3](r));
+  const report::Evaluation evaluation = EvaluationOf(Displacements(), readings, Estimator::kRigorous);
+  EXPECT_TRUE(evaluation.IsRefuted());
+  EXPECT_THAT(evaluation.summary, testing::HasSubstr("does not describe"));
+}
+
+TEST(Displacements, HaveNoDiagnosisAndNoSimulation) {
+  const Scenario scenario = Displacements();
+  const std::vector<Reading> readings = Grid(TrunnionTable(), kBalls, kTilts, true);
+  EXPECT_THROW(diagnose::Diagnose(readings, scenario, {}), InputError);
+  EXPECT_THROW(BenchOf(scenario).make_twin(scenario), InputError);
+}
+
+}  // namespace
+}  // namespace twinbench::benches::freeform

@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/import/importing.h"
+#include "twin/core/reading_column.h"
+
+// Tables of poses as R-tests and probes write them: other names, units and orders of the same readings.
+namespace twinbench::imports {
+namespace {
+
+using testing::Contains, testing::HasSubstr;
+
+struct Pose {
+  int ball;
+  double x_mm, y_mm, z_mm, a_deg, c_deg, dx_um, dy_um, dz_um;
+};
+
+std::vector<Pose> Poses() {
+  std::vector<Pose> poses;
+  for (int k = 0; k < 24; ++k) {
+    const double c_deg = 30.0 * (k % 12), a_deg = k < 12 ? 0.0 : -45.0, c = c_deg * units::deg;
+    poses.push_back({1 + k / 12, 100.0 * std::cos(c), 100.0 * std::sin(c), 0.5 * k, a_deg, c_deg, 5.0 + k,
+                     -3.0 + 0.5 * k, 0.25 * k});
+  }
+  return poses;
+}
+
+std::string Table(const std::string& header, const std::function<std::string(const Pose&)>& row) {
+  std::string text = header;
+  for (const Pose& pose : Poses()) text += row(pose);
+  return text;
+}
+
+class PoseTable : public Importing {
+ protected:
+  static void Expect(const Imported& taken, bool balls = true) {
+    EXPECT_THAT(taken.story, HasSubstr("taken as --map pose_table"));
+    EXPECT_THAT(taken.set, Contains("freeform_procedure.instrument=displacement"));
+    const std::vector<Pose> poses = Poses();
+    ASSERT_EQ(taken.readings.size(), poses.size()) << taken.story;
+    const auto value = [&taken](std::size_t i, const char* column) { return Quantity{column}(taken.readings[i]); };
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      EXPECT_NEAR(value(i, "x_mm") / units::mm, poses[i].x_mm, 1e-6);
+      EXPECT_NEAR(value(i, "z_mm") / units::mm, poses[i].z_mm, 1e-6);
+      EXPECT_NEAR(value(i, "a_deg") / units::deg, poses[i].a_deg, 1e-6);
+      EXPECT_NEAR(value(i, "c_deg") / units::deg, poses[i].c_deg, 1e-6);
+      EXPECT_NEAR(value(i, "dx_um") / units::um, poses[i].dx_um, 1e-3);
+      EXPECT_NEAR(value(i, "dy_um") / units::um, poses[i].dy_um, 1e-3);
+      EXPECT_NEAR(value(i, "dz_um") / units::um, poses[i].dz_um, 1e-3);
+      EXPECT_EQ(taken.readings[i].setup, balls ? poses[i].ball : 0);
+    }
+  }
+};
+
+TEST_F(PoseTable, IsGuessedByARotaryAxisAndDisplacements) {
+  Expect(Take(Table("Ball,X [mm],Y [mm],Z [mm],A [deg],C [deg],dX [um],dY [um],dZ [um]\n", [](const Pose& p) {
+    return fmt::format("{},{},{},{},{},{},{},{},{}\n", p.ball, p.x_mm, p.y_mm, p.z_mm, p.a_deg, p.c_deg, p.dx_um,
+                       p.dy_um, p.dz_um);
+  })));
+}
+
+TEST_F(PoseTable, MayBeGermanInAnotherOrderAndOtherUnits) {
+  std::string text = Table(
+      "R-Test\nAbweichung Z [mm];Winkel C [rad];Achse X (m);Abweichung X [mm];Winkel A [rad];Achse Z "
+      "(m);Kugel;Abweichung Y [mm];Achse Y (m)\n",
+      [](const Pose& p) {
+        return fmt::format("{:.7f};{:.9f};{:.9f};{:.7f};{:.9f};{:.9f};{};{:.7f};{:.9f}\n", p.dz_um / 1e3,
+                           p.c_deg * units::deg, p.x_mm / 1e3, p.dx_um / 1e3, p.a_deg * units::deg, p.z_mm / 1e3,
+                           p.ball, p.dy_um / 1e3, p.y_mm / 1e3);
+      });
+  std::ranges::replace(text, '.', ',');
+  Expect(Take(text));
+}
+
+/// Errors of angles and lengths are a ball bar's where nothing else is there.
+TEST_F(PoseTable, IsNoBallBarThoughItHasAnglesAndErrors) {
+  Expect(Take(Table("A angle (deg)\tC angle (deg)\terror x (micron)\terror y (micron)\terror z (micron)\tx (mm)\ty "
+                    "(mm)\tz (mm)\n",
+                    [](const Pose& p) {
+                      return fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", p.a_deg, p.c_deg, p.dx_um, p.dy_um,
+                                         p.dz_um, p.x_mm, p.y_mm, p.z_mm);
+                    })),
+         false);
+}
+
+TEST_F(PoseTable, MayHaveWhereAProbeMeasuredTheBall) {
+  Expect(
+      Take(Table("sphere,X nominal [mm],X measured [mm],Y nominal [mm],Y measured [mm],Z nominal [mm],Z measured "
+                 "[mm],A [deg],C [deg]\n",
+                 [](const Pose& p) {
+                   return fmt::format("{},{:.8f},{:.8f},{:.8f},{:.8f},{:.8f},{:.8f},{},{}\n", p.ball, p.x_mm,
+                                      p.x_mm + p.dx_um / 1e3, p.y_mm, p.y_mm + p.dy_um / 1e3, p.z_mm,
+                                      p.z_mm + p.dz_um / 1e3, p.a_deg, p.c_deg);
+                 })));
+}
+
+TEST_F(PoseTable, SaysThatItsBallIsNowhere) {
+  const Imported taken = Take(Table("C [deg],dX [um],dY [um]\n", [](const Pose& p) {
+    return fmt::format("{},{},{}\n", p.c_deg, p.dx_um, p.dy_um);
+  }));
+  EXPECT_THAT(taken.story, HasSubstr("x is not in the file"));
+  EXPECT_TRUE(std::isnan(Quantity{"dz_um"}(taken.readings[0])));
+}
+
+}  // namespace
+}  // namespace twinbench::imports

@@ -1,0 +1,317 @@
+#include "twin/benches/freeform_five_axis/estimators/displacement_fit.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
+
+namespace twinbench::benches::freeform::estimators {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+/// Displacements one below the other, with what every term makes of them.
+struct ShiftDesign {
+  MatrixXd slopes;
+  VectorXd shifts_um;
+};
+
+Eigen::Matrix3d AlongFrame(const std::string& frame, const PosePlace& place) {
+  return frame == "table"  ? place.table
+         : frame == "tool" ? place.head
+                           : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+}
+
+bool IsFromTool(const DisplacementSettings& settings, const MachineChain& chain) {
+  return settings.seen_from == "auto" ? chain.HasTable() && !chain.HasHead() : settings.seen_from == "tool";
+}
+
+ShiftDesign DesignOf(const DisplacementSettings& settings, const MachineChain& chain,
+                     const std::vector<ShiftRead>& reads, const std::vector<PosePlace>& places,
+                     const std::vector<PoseTerm>& terms) {
+  const double sign = IsFromTool(settings, chain) ? 1.0 : -1.0;
+  ShiftDesign design{MatrixXd(3 * std::ssize(reads), std::ssize(terms)), VectorXd(3 * std::ssize(reads))};
+  Index rows = 0;
+  for (std::size_t i = 0; i < reads.size(); ++i) {
+    const Eigen::Matrix3d frame = AlongFrame(settings.frame, places[i]);
+    Eigen::Matrix3Xd of_pose(3, std::ssize(terms));
+    for (std::size_t k = 0; k < terms.size(); ++k)
+      of_pose.col(static_cast<Index>(k)) = sign * (frame.transpose() * terms[k].slope_um(places[i]));
+    for (Index c = 0; c < 3; ++c) {
+      if (!std::isfinite(reads[i].shift_m[c])) continue;
+      design.slopes.row(rows) = of_pose.row(c);
+      design.shifts_um[rows++] = reads[i].shift_m[c] / units::um;
+    }
+  }
+  design.slopes.conservativeResize(rows, Eigen::NoChange);
+  design.shifts_um.conservativeResize(rows);
+  return design;
+}
+
+struct ChosenTerm {
+  Index at = 0;
+  bool is_weak = false;  // most of what it does others do as well
+};
+
+/// Terms of which at least a fiftieth is done by none before them, by Gram and Schmidt.
+std::vector<ChosenTerm> ChosenTerms(const MatrixXd& slopes, const std::vector<PoseTerm>& terms) {
+  constexpr double kMovesNothing_um = 1e-3, kOwn = 0.02, kWeak = 0.3;  // by one um or arcsec, rms; shares
+  MatrixXd basis(slopes.rows(), 0);
+  std::vector<ChosenTerm> chosen;
+  for (Index k = 0; k < slopes.cols(); ++k) {
+    const double norm = slopes.col(k).norm();
+    if (!(norm > kMovesNothing_um * std::sqrt(static_cast<double>(slopes.rows()))) ||
+        std::ssize(chosen) == slopes.rows())
+      continue;
+    VectorXd own = slopes.col(k) / norm;
+    for (int twice = 0; twice < 2; ++twice) own -= (basis * (basis.transpose() * own)).eval();
+    if (!(own.norm() > kOwn)) continue;
+    chosen.push_back({k, terms[static_cast<std::size_t>(k)].kind == TermKind::kComponent && own.norm() < kWeak});
+    basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
+    basis.col(basis.cols() - 1) = own.normalized();
+  }
+  return chosen;
+}
+
+/// Least squares over some of the terms.
+struct ShiftSolution {
+  std::vector<Index> of;
+  VectorXd values, u;  // u: of a residual of 1 um
+  double squares_um2 = 0.0;
+  Index dof = 0;
+
+  double Residual_um() const { return std::sqrt(squares_um2 / static_cast<double>(std::max<Index>(1, dof))); }
+};
+
+ShiftSolution SolvedFor(const ShiftDesign& design, const std::vector<ChosenTerm>& chosen, bool with_weak) {
+  ShiftSolution solution;
+  for (const ChosenTerm& term : chosen)
+    if (with_weak || !term.is_weak) solution.of.push_back(term.at);
+  const MatrixXd slopes = design.slopes(Eigen::all, solution.of), inverse = PseudoInverseOf(slopes);
+  solution.values = inverse * design.shifts_um;
+  solution.u = inverse.rowwise().norm();
+  solution.squares_um2 = (design.shifts_um - slopes * solution.values).squaredNorm();
+  solution.dof = design.shifts_um.size() - std::ssize(solution.of);
+  return solution;
+}
+
+/// Whether what the weak terms explain is more than chance: three standard deviations of chi-squared.
+bool ShowMore(const ShiftSolution& all, const ShiftSolution& strong) {
+  const double more = static_cast<double>(all.of.size() - strong.of.size());
+  const double explained = (strong.squares_um2 - all.squares_um2) / std::pow(std::max(all.Residual_um(), 1e-6), 2);
+  return explained > more + 3.0 * std::sqrt(2.0 * more);
+}
+
+/// A chain at its poses, and what its terms make of the readings.
+struct Tried {
+  MachineChain chain;
+  ChainAtPoses at;
+  std::vector<PoseTerm> terms;
+  ShiftDesign design;
+  std::vector<ChosenTerm> chosen;
+  ShiftSolution all;
+
+  double Residual_um() const { return all.Residual_um(); }
+};
+
+/// What of the settings and the readings decides how a chain is looked at.
+struct Looked {
+  const DisplacementSettings& settings;
+  const std::vector<ShiftRead>& reads;
+  bool on_workpiece = false, is_rigid = false;
+
+  ChainAtPoses At(const MachineChain& chain) const {
+    return on_workpiece ? ByWorkpiece(chain, reads, settings.tool_m) : BySlides(chain, reads);
+  }
+  /// @return nothing if it has too many unknowns for the readings.
+  bool Try(int highest_order, Tried& tried) const {
+    constexpr double kMostUnknowns = 0.8;  // of the values
+    tried.terms = TermsOf(tried.chain, tried.at.places, highest_order, is_rigid);
+    tried.design = DesignOf(settings, tried.chain, reads, tried.at.places, tried.terms);
+    tried.chosen = ChosenTerms(tried.design.slopes, tried.terms);
+    if (static_cast<double>(tried.chosen.size()) >
+        kMostUnknowns * static_cast<double>(tried.design.shifts_um.size()))
+      return false;
+    tried.all = SolvedFor(tried.design, tried.chosen, true);
+    return true;
+  }
+};
+
+[[noreturn]] void RefusePositions(double misfit_m) {
+  throw InputError(
+      "readings",
+      fmt::format(
+          "the commanded positions are not those of a ball that two rotary axes carry: they differ by {:.3g} mm",
+          misfit_m / units::mm),
+      "a column that says which ball it is; --set displacement.positions=workpiece where x, y, z are those of the "
+      "ball on the table, "
+      "displacement.topology and displacement.axes where the machine is built otherwise");
+}
+
+/// Chains on which the commanded positions lie.
+std::vector<Tried> PossibleChains(const Looked& looked) {
+  constexpr double kDigits_m = 20.0 * units::um;
+  std::vector<Tried> possible;
+  double least_m = INFINITY;
+  for (const MachineChain& chain : ChainsFor(looked.settings, looked.reads)) {
+    Tried tried{chain, looked.At(chain), {}, {}, {}, {}};
+    least_m = std::min(least_m, tried.at.misfit_m);
+    if (tried.at.misfit_m < kDigits_m) possible.push_back(std::move(tried));
+  }
+  if (possible.empty()) RefusePositions(least_m);
+  return possible;
+}
+
+/// The chain whose set-up, locations and squareness leave least: another than the first one only where it is
+/// clearly better.
+Tried BestChain(const Looked& looked, std::vector<std::string>& others) {
+  constexpr double kClearly = 0.8;
+  std::vector<Tried> possible = PossibleChains(looked);
+  std::erase_if(possible, [&looked](Tried& tried) { return !looked.Try(0, tried); });
+  if (possible.empty())
+    throw InputError("readings", "they are too few for the axes that turn",
+                     "three readings and more at each of several poses of every axis");
+  const double least_um = std::ranges::min(possible, {}, &Tried::Residual_um).Residual_um();
+  std::erase_if(possible, [least_um](const Tried& tried) { return !(kClearly * tried.Residual_um() <= least_um); });
+  for (std::size_t k = 1; k < possible.size(); ++k)
+    others.push_back(possible[k].chain.topology + ": " + WordsOf(possible[k].chain));
+  return std::move(possible.front());
+}
+
+/// Standard deviation of readings of one pose; NaN where there are fewer than six to spare.
+double RepeatOf_um(const std::vector<ShiftRead>& reads) {
+  constexpr int kFewest = 6;
+  std::map<std::array<double, 7>, std::vector<Eigen::Vector3d>> poses;
+  for (const ShiftRead& r : reads)
+    poses[{r.at_m.x(), r.at_m.y(), r.at_m.z(), r.turned_rad.x(), r.turned_rad.y(), r.turned_rad.z(), 1.0 * r.ball}]
+        .push_back(r.shift_m / units::um);
+  double squares = 0.0;
+  int spare = 0;
+  for (const auto& [pose, shifts] : poses) {
+    for (int c = 0; c < 3; ++c) {
+      std::vector<double> own;
+      for (const Eigen::Vector3d& shift : shifts)
+        if (std::isfinite(shift[c])) own.push_back(shift[c]);
+      const Eigen::Map<const VectorXd> all(own.data(), std::ssize(own));
+      if (own.size() < 2) continue;
+      squares += (all.array() - all.mean()).square().sum();
+      spare += static_cast<int>(own.size()) - 1;
+    }
+  }
+  return spare < kFewest ? kNaN : std::sqrt(squares / spare);
+}
+
+/// What fitted terms make of one that is not: those that count.
+std::vector<std::size_t> Alike(const MatrixXd& fitted, const VectorXd& term) {
+  constexpr double kCounts = 0.1;  // of what it does
+  if (!(term.norm() > 0.0)) return {};
+  const VectorXd by = SolveLeastSquares(fitted, term);
+  std::vector<std::size_t> alike;
+  for (Index k = 0; k < by.size(); ++k)
+    if (std::abs(by[k]) * fitted.col(k).norm() > kCounts * term.norm())
+      alike.push_back(static_cast<std::size_t>(k));
+  return alike;
+}
+
+/// Weak terms that the readings do not show are taken as none where the others are found: their own values are
+/// those beside all.
+void SetTerms(const Tried& tried, double least_u_um, DisplacementFit& fit) {
+  const ShiftSolution strong = SolvedFor(tried.design, tried.chosen, false);
+  const ShiftSolution& used = ShowMore(tried.all, strong) ? tried.all : strong;
+  fit.dof = used.dof;
+  fit.residual_um = used.Residual_um();
+  for (std::size_t k = 0; k < tried.chosen.size(); ++k) {
+    const auto own = std::ranges::find(used.of, tried.chosen[k].at);
+    const ShiftSolution& by = own == used.of.end() ? tried.all : used;
+    const Index at = own == used.of.end() ? static_cast<Index>(k) : own - used.of.begin();
+    fit.fitted.push_back({tried.terms[static_cast<std::size_t>(tried.chosen[k].at)], by.values[at],
+                          std::max(by.Residual_um(), least_u_um) * by.u[at]});
+  }
+  const MatrixXd slopes = tried.design.slopes(Eigen::all, tried.all.of);
+  for (Index k = 0; k < tried.design.slopes.cols(); ++k) {
+    if (std::ranges::binary_search(tried.all.of, k)) continue;
+    fit.untold.push_back({tried.terms[static_cast<std::size_t>(k)], Alike(slopes, tried.design.slopes.col(k))});
+    for (const std::size_t like : fit.untold.back().looks_like)
+      fit.fitted[like].looks_like.push_back(fit.untold.size() - 1);
+  }
+}
+
+void SetSpectrum(const MatrixXd& slopes, DisplacementFit& fit) {
+  constexpr double kNone = 1e-5;
+  const VectorXd norms = slopes.colwise().norm();
+  const MatrixXd white = slopes * (norms.array() > 0.0).select(norms.cwiseInverse(), 0.0).asDiagonal();
+  const VectorXd values = EigenvaluesOfSymmetric(white.transpose() * white).cwiseMax(0.0).cwiseSqrt().reverse();
+  fit.singular_values.assign(values.begin(), values.end());
+  for (double& value : fit.singular_values) value /= values[0];
+  fit.rank = std::ranges::count_if(fit.singular_values, [](double value) { return value > kNone; });
+}
+
+void RequireDisplacements(const std::vector<ShiftRead>& reads) {
+  constexpr double kFarthest_m = 10.0 * units::mm;  // sensors of displacements reach a millimetre or two
+  for (const ShiftRead& read : reads)
+    for (const double shift_m : read.shift_m)
+      if (std::abs(shift_m) > kFarthest_m)
+        throw InputError("readings", fmt::format("a displacement is {:.4g} mm", shift_m / units::mm),
+                         "displacements, in the unit that their column says");
+}
+
+}  // namespace
+
+std::string WordsOf(const MachineChain& chain) {
+  std::string words;
+  for (std::size_t k = 0; k < chain.stages.size(); ++k) {
+    const bool is_carried = k > 0 && chain.stages[k].on_table == chain.stages[k - 1].on_table;
+    words += fmt::format("{}{} of the {}",
+                         k == 0       ? ""
+                         : is_carried ? ", which carries "
+                                      : ", ",
+                         chain.stages[k].Letter(), chain.stages[k].on_table ? "table" : "head");
+  }
+  for (const RotaryStage& stage : chain.stages)
+    if (stage.sense < 0.0) words += fmt::format(", {} against the right-hand rule", stage.Letter());
+  return words.empty() ? "no rotary axis turns" : words;
+}
+
+DisplacementFit FitDisplacements(const DisplacementSettings& settings, const std::vector<Reading>& readings) {
+  constexpr Index kFewest = 12;
+  std::vector<ShiftRead> reads = ShiftsOf(readings);
+  if (std::ssize(reads) < kFewest / 3)
+    throw InputError("readings", fmt::format("{} of {} have a displacement", reads.size(), readings.size()),
+                     fmt::format("at least {} values", kFewest));
+  RequireDisplacements(reads);
+  const bool is_fixed = ChainsFor(settings, reads).front().stages.empty();  // no axis turns
+  const bool at_few_places = AreOnWorkpiece(reads);
+  Looked looked{settings, reads,
+                settings.positions == "workpiece" || is_fixed || (settings.positions == "auto" && at_few_places)};
+  looked.is_rigid = looked.on_workpiece && !at_few_places;
+  NumberBalls(looked.on_workpiece && at_few_places, reads);
+  DisplacementFit fit;
+  Tried best = BestChain(looked, fit.other_chains);
+  if (best.design.shifts_um.size() < kFewest)
+    throw InputError("readings", fmt::format("{} displacements were read", best.design.shifts_um.size()),
+                     fmt::format("at least {}", kFewest));
+  const bool has_places = std::ranges::any_of(reads, [](const ShiftRead& read) { return !read.at_m.isZero(); });
+  fit.highest_order =
+      has_places ? settings.highest_order : 0;  // without levers an axis that tilts is one that moves
+  while (!looked.Try(fit.highest_order, best)) --fit.highest_order;
+  fit.chain = best.chain;
+  fit.on_workpiece = looked.on_workpiece;
+  fit.from_tool = IsFromTool(settings, best.chain);
+  fit.readings = reads.size();
+  fit.values = static_cast<std::size_t>(best.design.shifts_um.size());
+  fit.balls = 1 + static_cast<std::size_t>(std::ranges::max(reads, {}, &ShiftRead::ball).ball);
+  fit.displaced_um = best.design.shifts_um.norm() / std::sqrt(static_cast<double>(fit.values));
+  fit.repeat_um = RepeatOf_um(reads);
+  SetTerms(best, settings.noise_m / units::um, fit);
+  SetSpectrum(best.design.slopes, fit);
+  return fit;
+}
+
+}  // namespace twinbench::benches::freeform::estimators
