@@ -7,6 +7,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/import/array.h"
+#include "twin/import/bar_export.h"
 #include "twin/import/changes.h"
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
@@ -76,6 +77,11 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
   Recording recording;
   recording.file = path;
   const std::string text = LoadText(path);
+  if (IsBarExport(FirstLines(text))) {
+    ReadTable(TableOfBarExport(text, path, recording.remarks), {}, clock, recording);
+    recording.layout = "tags and runs of a ball bar";
+    return recording;
+  }
   if ((layout.columns_are_open || layout.kind == "cycles") && AreIndexed(FirstLines(text))) {
     if (const std::string table = TableOfIndexed(text); !table.empty()) {
       ReadCycles(table, {}, recording);
@@ -108,7 +114,8 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
 Recording BeginOfTable(const std::string& path) {
   Recording recording;
   recording.file = path;
-  const std::string text = LoadText(path);
+  std::string text = LoadText(path);
+  if (std::vector<std::string> said; IsBarExport(FirstLines(text))) text = TableOfBarExport(text, path, said);
   const std::vector<std::string_view> lines = FirstLines(text);
   std::string begin;
   for (const std::string_view line : lines) begin += std::string(line) + "\n";

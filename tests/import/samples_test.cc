@@ -1,0 +1,54 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/core/input_error.h"
+#include "twin/benches/evaluated.h"
+#include "twin/core/estimator.h"
+#include "twin/import/import.h"
+#include "twin/report/evaluation.h"
+
+// The shipped samples, to what the programs beside them hid.
+namespace twinbench::imports {
+namespace {
+
+nlohmann::json ErrorsOfSample(const std::string& file) {
+  const Imported taken = Import({std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/samples/" + file}, LoadMap(""));
+  const Scenario scenario = ParseScenario("bench = \"" + taken.bench + "\"\n", file, "", taken.set);
+  return EvaluationOf(scenario, taken.readings, Estimator::kRigorous).results.at("errors");
+}
+
+/// Within four standard uncertainties, of which the largest is told.
+void ExpectHidden(const nlohmann::json& errors, const std::string& key, double value, double largest_u) {
+  ASSERT_TRUE(errors.contains(key)) << key;
+  const double u = errors.at(key).at("u");
+  EXPECT_NEAR(errors.at(key).at("value").get<double>(), value, 4.0 * u) << key;
+  EXPECT_LT(u, largest_u) << key;
+}
+
+TEST(Samples, OfAPoseTableHaveItsLocations) {
+  const nlohmann::json errors = ErrorsOfSample("pose_table.csv");
+  for (const auto& [key, value] : {std::pair{"XOC", 12.0},
+                                   {"YOC", -7.0},
+                                   {"AOC", 9.0},
+                                   {"BOC", -3.0},
+                                   {"YOA", 8.0},
+                                   {"ZOA", -5.0},
+                                   {"BOA", 4.0},
+                                   {"COA", -6.0},
+                                   {"COY", 5.0},
+                                   {"BOZ", -4.0},
+                                   {"AOZ", 3.0}})
+    ExpectHidden(errors, key, value, 0.3);
+}
+
+TEST(Samples, OfABarsExportHaveItsErrors) {
+  const nlohmann::json errors = ErrorsOfSample("ball_bar.b5r");
+  ExpectHidden(errors, "machine.squareness_arcsec", 6.19, 0.1);
+  ExpectHidden(errors, "machine.scale_mismatch_um_m", 30.0, 0.5);
+  ExpectHidden(errors, "machine.backlash_y_um", 5.0, 0.1);
+  ExpectHidden(errors, "machine.backlash_x_um", 0.0, 0.1);
+}
+
+}  // namespace
+}  // namespace twinbench::imports
