@@ -98,6 +98,31 @@ std::vector<double> Whole(std::vector<double> x, const std::string&) {
   return {middle == 0.0 ? 0.0 : step * std::round(middle / step)};
 }
 
+/// Each row's level: of those at which a twentieth of the rows stays, to a few percent, the nearest one.
+std::vector<double> Levels(std::vector<double> x, const std::string& where) {
+  constexpr double kStep = 0.05, kShare = 0.05;   // of the logarithm; of the rows
+  constexpr std::ptrdiff_t kBeside = 5;           // rows: one alone is no level
+  constexpr long kApart = 3;                      // steps
+  std::vector<double> smooth;
+  for (std::ptrdiff_t i = 0; i < std::ssize(x); ++i)
+    smooth.push_back(MedianOf({x.begin() + std::max<std::ptrdiff_t>(0, i - kBeside), x.begin() + std::min(std::ssize(x), i + kBeside + 1)}));
+  std::map<long, std::vector<double>> bins;
+  for (const double value : smooth)
+    if (value > 0.0) bins[std::lround(std::log(value) / kStep)].push_back(value);
+  const auto rows_at = [&bins](long bin) { return bins.contains(bin) ? bins.at(bin).size() : 0; };
+  std::vector<double> levels;
+  for (const auto& [bin, values] : bins) {
+    bool is_highest = true;
+    for (long k = 1; k <= kApart; ++k) is_highest &= values.size() > rows_at(bin - k) && values.size() >= rows_at(bin + k);
+    const double rows = static_cast<double>(values.size() + rows_at(bin - 1) + rows_at(bin + 1));
+    if (is_highest && rows > kShare * static_cast<double>(x.size())) levels.push_back(Whole(values, where).front());
+  }
+  if (levels.empty()) return Whole(x, where);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x[i] = *std::ranges::min_element(levels, {}, [&](double level) { return smooth[i] > 0.0 ? std::abs(std::log(smooth[i] / level)) : level; });
+  return x;
+}
+
 /// A column that stays within a turn starts again at its end; one that goes on is as it is.
 std::vector<double> Unwrapped(std::vector<double> x, const std::string&) {
   constexpr double kWithinATurn_deg = 1.02 * kTurn_deg;
@@ -284,6 +309,7 @@ OfColumn ColumnFunction(std::string_view name) {
                                               {"span", Span},
                                               {"sense", Sense},
                                               {"whole", Whole},
+                                              {"levels", Levels},
                                               {"unwrapped", Unwrapped},
                                               {"distinct", Distinct},
                                               {"seats", Seats},

@@ -1,5 +1,7 @@
 #include "twin/benches/circular_motion/analysis.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -100,9 +102,52 @@ double RadialRms_m(const CircleAnalysis& a, const CircleErrors& others) {
   return std::sqrt(squares_m2 / static_cast<double>(a.points.size()));
 }
 
+bool Lags(const CircleFit& fit) {
+  constexpr double kTimes_u = 3.0;
+  return std::ranges::any_of(std::array{"machine.lag_x_s", "machine.lag_y_s"}, [&fit](const char* key) {
+    const Eigen::Index k = IndexOf(fit, key);
+    return k >= 0 && std::abs(Fitted(fit, k)) > kTimes_u * std::sqrt(fit.shared.cov(k, k));
+  });
+}
+
+/// What both kinds of lag find differently is not found; the readings fit either.
+void HideWhatLagDecides(const CircleFit& otherwise, CircleFit& fit) {
+  std::string keys;
+  for (std::size_t k = 0; k < fit.fitted.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    const CircleUnknown& unknown = CircleUnknowns()[fit.fitted[k]];
+    const double one = Fitted(fit, at), other = Fitted(otherwise, at);
+    if (!(std::abs(one - other) > std::sqrt(fit.shared.cov(at, at))) || unknown.key.find("lag") != std::string::npos) continue;
+    fit.identified[k] = false;
+    keys += fmt::format("{} is {:.4g} or {:.4g}, ", unknown.key, one / unknown.to_SI, other / unknown.to_SI);
+  }
+  if (!keys.empty()) fit.not_separable.push_back(keys + "by whether axes lag by first order or by a fixed time: a circle at another feed decides");
+}
+
+/// A lag of first order makes circles smaller by half the square of lag times rate, a fixed delay does not: at several feeds the
+/// scales cannot take that up.
+void TakeKindOfLag(CircleAnalysis& a) {
+  constexpr double kClearly = 12.0;  // of chi-squared
+  CircleConstants otherwise = a.known;
+  otherwise.is_delay = !a.known.is_delay;
+  CircleFit other = FitCircles(a.points, otherwise);
+  const auto chi2 = [](const CircleFit& fit) { return static_cast<double>(fit.dof) * fit.chi * fit.chi; };
+  const double left_more = (chi2(a.fit) - chi2(other)) / std::pow(std::max(1.0, std::min(a.fit.chi, other.chi)), 2);
+  if (std::abs(left_more) < kClearly) {
+    a.lag_kind = "ambiguous";
+    return HideWhatLagDecides(other, a.fit);
+  }
+  if (left_more > 0.0) {
+    a.known = otherwise;
+    a.fit = std::move(other);
+  }
+  a.lag_kind = a.known.is_delay ? "fixed_delay" : "first_order";
+}
+
 void Fit(const Scenario& scenario, CircleAnalysis& a) {
   a.known = ConstantsOf(CircularOf(scenario));
   a.fit = FitCircles(a.points, a.known);
+  if (std::ranges::all_of(a.points, &CirclePoint::is_drive) && Lags(a.fit)) TakeKindOfLag(a);
   a.paths = RigorousPaths(a.points, a.fit, a.known);
   a.deviations = CircularDeviations(a.paths, a.fit.shared);
 }

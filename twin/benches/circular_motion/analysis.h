@@ -30,6 +30,8 @@ struct CircleAnalysis {
   std::vector<PathBias> method_bias;  // published: part of the uncertainty of paths and deviations, which have none
                                       // where the readings are too few for the rigorous fit
 
+  std::string lag_kind = {};          // of drives that lag: first_order | fixed_delay | ambiguous
+
   bool IsFitted() const { return fit.shared.IsKnown(); }
 };
 

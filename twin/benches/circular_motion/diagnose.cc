@@ -156,13 +156,34 @@ diagnose::TwinComparison Comparison(const Scenario& scenario, const std::vector<
   return HasAngles(readings) ? Comparison(scenario) : OfRadiiAlone(Comparison(scenario), scenario, readings);
 }
 
+/// As drives lag by their own readings.
+Scenario WithKindOfLag(Scenario scenario, const std::vector<Reading>& readings, std::vector<std::string>& notes) {
+  std::vector<CircularSetup>& setups = CircularOf(scenario).procedure.setups;
+  if (!std::ranges::all_of(setups, &CircularSetup::IsDrive)) return scenario;
+  std::string kind;
+  try {
+    kind = Analyse(scenario, readings, Estimator::kRigorous).lag_kind;
+  } catch (const InputError&) {
+    return scenario;  // too few to fit
+  }
+  if (kind == "ambiguous")
+    notes.push_back("at one feed a lag of first order and a fixed delay are indistinguishable: scales hold for " +
+                    std::string(CircularOf(scenario).machine.lag_kind == "first_order" ? "the first" : "the second") + "; measure at another feed too");
+  else if (!kind.empty())
+    CircularOf(scenario).machine.lag_kind = kind;
+  return scenario;
+}
+
 }  // namespace
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
   const std::vector<Reading> with_angles = WithAngles(readings);
-  diagnose::DiagnosisRun found = diagnose::DiagnoseByTwin(with_angles, scenario, options, Comparison(scenario, with_angles));
-  if (!HasAngles(readings)) std::ranges::move(LeftOpen(readings), std::back_inserter(found.diagnosis.notes));
+  std::vector<std::string> notes;
+  const Scenario believed = WithKindOfLag(scenario, readings, notes);
+  diagnose::DiagnosisRun found = diagnose::DiagnoseByTwin(with_angles, believed, options, Comparison(believed, with_angles));
+  std::ranges::move(notes, std::back_inserter(found.diagnosis.notes));
+  if (!HasAngles(with_angles)) std::ranges::move(LeftOpen(readings), std::back_inserter(found.diagnosis.notes));
   return found;
 }
 

@@ -1,6 +1,7 @@
 #include "twin/benches/circular_motion/ranked.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -23,14 +24,14 @@ const std::vector<std::pair<std::string, std::string>>& Kinds() {
   return kinds;  // constant
 }
 
-/// G(b), or G of the one direction there is, of what a kind shows along the radius at one feed.
-double Alone_m(const CircleAnalysis& a, const Iso230_4& of, const std::string& key) {
-  const CircleErrors others = ErrorsWithout(a.fit, {key});
+/// G(b), or G of the one direction there is, of what one error shows along the radius at one feed.
+/// @param others  All errors but that one.
+double Alone_m(const CircleAnalysis& a, const Iso230_4& of, const CircleErrors& others) {
   std::vector<CirclePath> paths;
   for (const CirclePoint& p : a.points) {
     if (p.setup != of.setup || p.feed_m_s != of.feed_m_s) continue;
     if (paths.empty() || paths.back().pass != p.pass)
-      paths.push_back({p.setup, p.pass, p.direction, p.is_bar, p.radius_m, p.feed_m_s, {}, p.has_angle});
+      paths.push_back({p.setup, p.pass, p.direction, p.is_bar, p.radius_m, p.feed_m_s, {}, p.has_angle, p.is_drive});
     const CircleMounting& mounting = a.fit.MountingOf(p.setup);
     const double radial_m = (Shown_m(p, a.fit.errors, mounting, a.known) - Shown_m(p, others, mounting, a.known)).x();
     PathPoint& point = paths.back().points.emplace_back();
@@ -40,15 +41,32 @@ double Alone_m(const CircleAnalysis& a, const Iso230_4& of, const std::string& k
   return CircularDeviation_m(paths);
 }
 
+/// Of two axes that show their lags. What they have in common turns the circle, and is no error of the radius.
+void AddMismatch(const CircleAnalysis& a, const Iso230_4& of, const std::vector<ErrorValue>& errors, std::vector<RankedError>& ranked) {
+  const auto x = std::ranges::find(errors, "machine.lag_x_s", &ErrorValue::key), y = std::ranges::find(errors, "machine.lag_y_s", &ErrorValue::key);
+  if (x == errors.end() || y == errors.end()) return;
+  const Eigen::VectorXd slope = x->slope - y->slope;
+  const double variance = a.fit.shared.Variance(slope);
+  if (!std::isfinite(variance)) return;
+  CircleErrors others = a.fit.errors;
+  others.lag_s[0] = others.lag_s[1] = 0.5 * (others.lag_s[0] + others.lag_s[1]);
+  const PartedVariance parts = a.fit.shared.Parted(slope);
+  const double steps = parts.of_steps / parts.all, machine = parts.of_machine / parts.all;
+  ranked.push_back({of.setup, of.feed_m_s, "servo mismatch (x less y)",
+                    {"machine.servo_mismatch_s", "s", x->value - y->value, std::sqrt(variance), 1.0 - steps - machine, steps, machine, slope},
+                    Alone_m(a, of, others)});
+}
+
 std::vector<RankedError> RankedAt(const CircleAnalysis& a, const Iso230_4& of, const std::vector<ErrorValue>& errors) {
   std::vector<RankedError> ranked;
   double sum_m = 0.0;
   for (const auto& [key, name] : Kinds()) {
     const auto error = std::ranges::find(errors, key, &ErrorValue::key);
     if (error == errors.end() || !std::isfinite(error->u)) continue;
-    ranked.push_back({of.setup, of.feed_m_s, name, *error, Alone_m(a, of, key)});
-    sum_m += ranked.back().alone_m;
+    ranked.push_back({of.setup, of.feed_m_s, name, *error, Alone_m(a, of, ErrorsWithout(a.fit, {key}))});
   }
+  AddMismatch(a, of, errors, ranked);
+  for (const RankedError& error : ranked) sum_m += error.alone_m;
   for (RankedError& error : ranked) error.share = sum_m > 0.0 ? error.alone_m / sum_m : 0.0;
   std::ranges::stable_sort(ranked, std::greater(), &RankedError::alone_m);
   return ranked;

@@ -32,8 +32,9 @@ json PartsOf(double quantisation, double repeatability, double model) {
 }
 
 /// As scenarios call it.
-std::string InstrumentOf(bool is_bar, bool has_angle) {
-  return !is_bar ? "grid" : has_angle ? "bar" : "radial_bar";
+template <class PointOrPath>
+std::string InstrumentOf(const PointOrPath& of) {
+  return of.is_drive ? "drive" : !of.is_bar ? "grid" : of.has_angle ? "bar" : "radial_bar";
 }
 
 const CirclePoint& FirstOf(const CircleAnalysis& a, int setup) {
@@ -57,7 +58,7 @@ void AddMounting(const CircleFit& fit, const CirclePoint& first, json& entry) {
   if (first.is_bar) {
     if (first.has_angle) entry["encoder_zero_deg"] = value(2, m.rotation_rad, units::deg);
     entry["length_error_um"] = value(3, m.length_m, um);
-  } else {
+  } else if (!first.is_drive) {
     entry["rotation_arcsec"] = value(2, m.rotation_rad, units::arcsec);
   }
 }
@@ -71,7 +72,7 @@ json SetupsJson(const CircleAnalysis& a) {
   for (const int setup : numbers) {
     const CirclePoint& first = FirstOf(a, setup);
     json entry = {
-        {"setup", setup}, {"instrument", InstrumentOf(first.is_bar, first.has_angle)}, {"radius_mm", first.radius_m / units::mm}};
+        {"setup", setup}, {"instrument", InstrumentOf(first)}, {"radius_mm", first.radius_m / units::mm}};
     if (a.IsFitted()) AddMounting(a.fit, first, entry);
     if (first.is_bar) {
       const Eigen::Vector2d& offset_m = a.published_offset_m.at(setup);
@@ -120,7 +121,7 @@ std::string FeedText(double feed_m_s) {
 
 /// What the page draws: the uncertainty is one number a pass, so that thousands of points are no results of their own.
 json RadialJson(const CirclePath& path, const SharedUncertainty& shared) {
-  json entry = {{"setup", path.setup}, {"pass", path.pass}, {"direction", path.direction}, {"instrument", InstrumentOf(path.is_bar, path.has_angle)},
+  json entry = {{"setup", path.setup}, {"pass", path.pass}, {"direction", path.direction}, {"instrument", InstrumentOf(path)},
                 {"radius_mm", path.radius_m / units::mm}, {"feed_mm_min", In(1.0, Feed_mm_min(path.feed_m_s))}};
   double squares_m2 = 0.0;
   for (const PathPoint& point : path.points) {
@@ -153,7 +154,7 @@ json PathJson(const CirclePath& path, const SharedUncertainty& shared) {
 json IsoJson(const CircleAnalysis& a, const Iso230_4& d) {
   const CirclePoint& first = FirstOf(a, d.setup);
   json entry = {{"setup", d.setup},
-                {"instrument", InstrumentOf(first.is_bar, first.has_angle)},
+                {"instrument", InstrumentOf(first)},
                 {"radius_mm", first.radius_m / units::mm},
                 {"feed_mm_min", Feed_mm_min(d.feed_m_s)},
                 {"edition", "ISO 230-4:2022; H as ISO 230-4:1996"}};
@@ -256,11 +257,16 @@ json SeparationJson(const CircleAnalysis& a) {
   return separation;
 }
 
+std::string LagInWords(const std::string& kind) {
+  return kind == "fixed_delay" ? "a fixed delay" : kind == "first_order" ? "of first order" : "of first order, or a fixed delay: ambiguous in this run";
+}
+
 std::string ErrorsText(const CircleAnalysis& a) {
   std::string text;
   for (const ErrorValue& e : ErrorsOf(a.fit))
     text += std::isfinite(e.u) ? fmt::format("{:<34} {:14.6g} ± {:.2g} {}\n", e.key, e.value, e.u, e.unit) : "";
   for (const std::string& words : a.fit.not_separable) text += "not separable: " + words + "\n";
+  if (!a.lag_kind.empty()) text += "lag: " + LagInWords(a.lag_kind) + "\n";
   return text + fmt::format("residual, in stated uncertainties: {:.3f} rms\n", a.fit.chi);
 }
 
@@ -288,7 +294,7 @@ std::string PolarOf(const std::vector<CirclePath>& all, const Iso230_4& of) {
       s.value.push_back(point.Radial_m() / um);
     }
     title = fmt::format("mounting {}, {}, R = {:.3f} mm, {}: radial deviation, + counter-clockwise, o clockwise\n",
-                        path.setup, InstrumentOf(path.is_bar, path.has_angle), path.radius_m / units::mm, FeedText(of.feed_m_s));
+                        path.setup, InstrumentOf(path), path.radius_m / units::mm, FeedText(of.feed_m_s));
   }
   return title + report::PolarText(series, "um") + "\n";
 }
@@ -311,6 +317,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
                         {"setups", evaluation.separation["setups"]},
                         {"errors", evaluation.separation["errors"]},
                         {"iso230_4", evaluation.separation["iso230_4"]}};
+  if (!a.lag_kind.empty()) evaluation.results["lag_kind"] = a.lag_kind;
   if (evaluation.separation.contains("comparison")) evaluation.results["comparison"] = evaluation.separation["comparison"];
   for (const CirclePath& path : a.paths) evaluation.results["radial"].push_back(RadialJson(path, a.fit.shared));
   for (const RadialPart& part : RadialPartsOf(a)) evaluation.results["radial_parts"].push_back({{"errors", part.keys}, {"rms_um", In(um, part.rms_m)}});

@@ -40,6 +40,7 @@ void AddErrors(Table& t, CircularMachineSettings& s) {
 void AddMachine(Keys& keys, CircularMachineSettings& s) {
   Table t(keys, "machine");
   AddPair(t, "lag", kSecond, Within(1), s.lag_s, "of the servo; of bodies it follows from [drives]");
+  t.Text("lag_kind", &s.lag_kind, {"first_order", "fixed_delay"}, "an axis answers 1 / (1 + lag s), or comes so much later");
   t.Add("span", kMm, Positive(10000), &s.span_m, "half the travel over which straightness is stated");
   t.Add("cyclic_pitch", kMm, Positive(1000), &s.cyclic_pitch_m, "of the screw or scale");
   t.Add("spike_time", kSecond, Positive(100), &s.spike_time_s, "from a reversal to the largest excursion");
@@ -146,7 +147,8 @@ void AddMounting(Keys& keys, CircularMountingSettings& s) {
 }
 
 void AddSetup(Table& t, CircularSetup& s) {
-  t.Text("instrument", &s.instrument, {"bar", "radial_bar", "grid"}, "what measures: a bar on an encoder, a bar alone, a grid plate");
+  t.Text("instrument", &s.instrument, {"bar", "radial_bar", "grid", "drive"},
+         "what measures: a bar on an encoder, a bar alone, a grid plate, the controller's own scales");
   t.Add("radius", kMm, Positive(10000), &s.radius_m, "of the commanded circle");
 }
 

@@ -13,7 +13,8 @@ using AxisPair = std::array<double, 2>;
 
 /// The linear axes; errors are actual minus commanded.
 struct CircularMachineSettings {      // [machine]
-  AxisPair lag_s = {1e-3, 1e-3};      // of the servo: an axis answers 1 / (1 + lag s)
+  AxisPair lag_s = {1e-3, 1e-3};      // of the servo: an axis answers 1 / (1 + lag s) ...
+  std::string lag_kind = "first_order";  // ... or is late by that time: first_order | fixed_delay
   AxisPair scale = {};                // positioning error per length
   double squareness_rad = 0.0;        // the angle from +X to +Y is 90 deg + this
   AxisPair bow_m = {};                // [machine] straightness: P2 along the other axis ...
@@ -110,10 +111,11 @@ struct CircularMountingSettings {  // [mounting]
 };
 
 struct CircularSetup {
-  std::string instrument = "bar";  // bar | radial_bar | grid
+  std::string instrument = "bar";  // bar | radial_bar | grid | drive
   double radius_m = 110.230 * units::mm;
 
-  bool IsBar() const { return instrument != "grid"; }
+  bool IsDrive() const { return instrument == "drive"; }  // the controller's own scales: nothing is mounted
+  bool IsBar() const { return instrument != "grid" && !IsDrive(); }
   bool ShowsAngle() const { return instrument != "radial_bar"; }  // else the radius alone
 };
 

@@ -12,8 +12,8 @@ using Eigen::Vector2d;
 /// @param quarters  0: x goes with the cosine, 1: y with the sine.
 AxisMotion MotionOf(const CirclePoint& p, const CircleConstants& known, double lag_s, double commanded_rad, int quarters) {
   const double lag = p.rate_rad_s * lag_s;
-  const double amplitude_m = p.radius_m / std::sqrt(1.0 + lag * lag);
-  const double angle_rad = commanded_rad - std::atan(lag) - quarters * 0.5 * units::kPi;
+  const double amplitude_m = known.is_delay ? p.radius_m : p.radius_m / std::sqrt(1.0 + lag * lag);
+  const double angle_rad = commanded_rad - (known.is_delay ? lag : std::atan(lag)) - quarters * 0.5 * units::kPi;
   // Counted along the motion the axis turns at 0, pi, 2 pi; in the first half turn it goes down.
   const double along_rad = std::remainder(p.direction * angle_rad, units::turn);
   const bool down = along_rad >= 0.0;
@@ -179,6 +179,12 @@ void SetNoise(const CircularSettings& s, CirclePoint& p) {
   p.of_steps = (steps / u).square();
 }
 
+bool IsReadByDrive(const Reading& r, const Scenario& scenario) {
+  const std::vector<CircularSetup>& setups = CircularOf(scenario).procedure.setups;
+  const auto setup = static_cast<std::size_t>(r.setup);
+  return setup < setups.size() && setups[setup].IsDrive();
+}
+
 }  // namespace
 
 std::vector<CirclePoint> PointsOf(const std::vector<Reading>& readings, const Scenario& scenario) {
@@ -193,6 +199,7 @@ std::vector<CirclePoint> PointsOf(const std::vector<Reading>& readings, const Sc
     p.direction = r.direction;
     p.is_bar = IsOfBar(r);
     p.has_angle = ShowsAngle(r);
+    p.is_drive = !p.is_bar && IsReadByDrive(r, scenario);
     p.commanded_rad = r.target_rad;
     p.radius_m = Radius_m(r);
     p.rate_rad_s = r.velocity_rad_s;
@@ -226,7 +233,7 @@ CircleErrors BarOf(const BarSettings& bar) {
 CircleConstants ConstantsOf(const CircularSettings& s) {
   return {s.machine.span_m, s.machine.cyclic_pitch_m, s.machine.spike_time_s, s.bar.height_m,
           s.bar.latency_s,  s.encoder.tilt_rad,       s.grid.scale,           s.grid.shear_rad,
-          s.grid.sde_m,     s.grid.period_m,          BarOf(s.bar)};
+          s.grid.sde_m,     s.grid.period_m,          BarOf(s.bar),           s.machine.lag_kind == "fixed_delay"};
 }
 
 Vector2d Shown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,

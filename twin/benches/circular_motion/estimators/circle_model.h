@@ -17,6 +17,7 @@ namespace twinbench::separate::circular {
 struct CirclePoint {
   int setup = 0, pass = 0, direction = 1;
   bool is_bar = true, has_angle = true;  // of a bar without an encoder the radius is all
+  bool is_drive = false;                 // read as a grid is, but nothing is mounted that could be turned
   double commanded_rad = kNaN, radius_m = kNaN;
   double rate_rad_s = 0.0;  // of the commanded angle; 0: at rest
   double feed_m_s = 0.0;
@@ -55,6 +56,7 @@ struct CircleConstants {
   AxisPair grid_scale{};  // shows too much in proportion
   double grid_shear_rad = 0.0, grid_sde_m = 0.0, grid_period_m = 1.0;
   CircleErrors bar = {};  // gain and form of its balls: a radius alone would take them for the machine's
+  bool is_delay = false;  // an axis is late by a fixed time, and does not answer 1 / (1 + lag s)
 };
 CircleConstants ConstantsOf(const CircularSettings& settings);
 

@@ -15,7 +15,7 @@ std::vector<CirclePath> Paths(const std::vector<CirclePoint>& points,
   std::vector<CirclePath> paths;
   for (const CirclePoint& p : points) {
     if (paths.empty() || paths.back().setup != p.setup || paths.back().pass != p.pass)
-      paths.push_back({p.setup, p.pass, p.direction, p.is_bar, p.radius_m, p.feed_m_s, {}, p.has_angle});
+      paths.push_back({p.setup, p.pass, p.direction, p.is_bar, p.radius_m, p.feed_m_s, {}, p.has_angle, p.is_drive});
     paths.back().points.push_back(path_point(p));
   }
   return paths;

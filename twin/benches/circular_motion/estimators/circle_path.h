@@ -26,6 +26,7 @@ struct CirclePath {
   double radius_m = kNaN, feed_m_s = kNaN;
   std::vector<PathPoint> points;
   bool has_angle = true;  // false: of the radius alone
+  bool is_drive = false;
 };
 
 /// By the vector form: set-up and instrument taken out as they were fitted.

@@ -129,7 +129,8 @@ Eigen::Matrix2Xd SlopeOf(const Function& of, const CirclePoint& p, const CircleF
     CircleMounting above = mounting, below = mounting;
     MountingUnknown(above, k) += kMountingStep;
     MountingUnknown(below, k) -= kMountingStep;
-    slope.col(first + k) = (of(fit.errors, above) - of(fit.errors, below)) / (2.0 * kMountingStep);
+    const bool is_mounted = !p.is_drive || k < 2;  // a controller's zeros may stand off, its axes are those that it commands
+    if (is_mounted) slope.col(first + k) = (of(fit.errors, above) - of(fit.errors, below)) / (2.0 * kMountingStep);
   }
   return slope;
 }

@@ -37,7 +37,7 @@ std::vector<Pass> PassesOf(const std::vector<Reading>& plan) {
 
 std::string InWords(const CircularSetup& setup) {
   const char* const bar = setup.ShowsAngle() ? "ball bar with its encoder" : "ball bar";
-  return fmt::format("{}, radius {:.6g} mm", setup.IsBar() ? bar : "grid plate", setup.radius_m / units::mm);
+  return fmt::format("{}, radius {:.6g} mm", setup.IsBar() ? bar : setup.IsDrive() ? "scales of the drives" : "grid plate", setup.radius_m / units::mm);
 }
 
 /// The counter goes on from pass to pass; readings are told in the turn of the commanded angle.

@@ -46,9 +46,10 @@ std::vector<CircleExtra> MountedOf(const Scenario& scenario) {
   std::vector<CircleExtra> mounted;
   for (const CircularSetup& setup : s.procedure.setups) {
     CircleExtra& m = mounted.emplace_back();
-    m.offset_x_m = draw(s.mounting.offset_m);
-    m.offset_y_m = draw(s.mounting.offset_m);
-    m.rotation_rad = draw(setup.IsBar() ? s.mounting.zero_rad : s.mounting.grid_rotation_rad);
+    const double offset_m = setup.IsDrive() ? 0.0 : s.mounting.offset_m;
+    m.offset_x_m = draw(offset_m);
+    m.offset_y_m = draw(offset_m);
+    m.rotation_rad = draw(setup.IsBar() ? s.mounting.zero_rad : setup.IsDrive() ? 0.0 : s.mounting.grid_rotation_rad);
     m.length_m = draw(setup.ShowsAngle() ? s.mounting.length_m : 0.0);
   }
   return mounted;

@@ -28,6 +28,7 @@ struct LaggedAxis {
 LaggedAxis AxisOf(const CircularMachineSettings& m, const CircleInstant& at, std::size_t axis) {
   const double rate_rad_s = at.Rate_rad_s(), lag = rate_rad_s * m.lag_s[axis];
   const double quarter_rad = axis == 0 ? 0.0 : 0.5 * units::kPi;
+  if (m.lag_kind == "fixed_delay") return {at.radius_m, at.commanded_rad - quarter_rad - lag, at.direction, rate_rad_s};
   return {at.radius_m / std::hypot(1.0, lag), at.commanded_rad - quarter_rad - std::atan(lag), at.direction,
           rate_rad_s};
 }
