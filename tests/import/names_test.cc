@@ -107,7 +107,9 @@ TEST_F(Importing, TakesCountsOfAScaleThatErrsAndOfAMotorBehindAGear) {
 TEST_F(Importing, FindsCountsPerTurnInNamesAndInSentences) {
   for (const char* head : {"reference [deg],encoder [4000 counts/rev]\n", "reference [deg],encoder_4000cpr\n",
                            "# an encoder of 4000 counts per revolution, on the shaft\nreference [deg],encoder [counts]\n",
-                           "% 4000 ticks/turn\nreference [deg],encoder ticks\n"}) {
+                           "% 4000 ticks/turn\nreference [deg],encoder ticks\n",
+                           "# graph of an actuator, counts of 4000 a turn\nreference [deg],encoder [count]\n",
+                           "# resolution: 4000 per rev\nreference [deg],encoder [counts]\n"}) {
     std::string text = head;
     for (int i = 0; i < 72; ++i) text += fmt::format("{},{}\n", 5 * i, std::lround(4000.0 * i / 72.0));
     EXPECT_LT(Worst_deg(Take(text).readings), 360.0 / 4000.0) << head;

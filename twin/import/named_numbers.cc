@@ -9,14 +9,27 @@
 namespace twinbench::imports {
 namespace {
 
-/// "encoder of 4096 counts/rev", "1440 counts per revolution", "4000cpr": a number that says what it is behind it.
+/// Up to the number, within its clause.
+std::string_view ClauseBefore(std::string_view line, std::size_t at) {
+  const std::size_t mark = line.substr(0, at).find_last_of(",;=\t");
+  return line.substr(mark == std::string_view::npos ? 0 : mark + 1, mark == std::string_view::npos ? at : at - mark - 1);
+}
+
+/// "a turn", "per rev", "/U": of what stands behind "counts: 4096".
+bool BeginsPerTurn(const std::string& behind) {
+  return std::ranges::any_of(std::array{"a turn", "a rev", "per ", "/", "each "}, [&behind](const char* word) { return behind.starts_with(word); });
+}
+
+/// "encoder of 4096 counts/rev", "1440 counts per revolution", "4000cpr", "counts of 4096 a turn": a number that says what it
+/// is behind it, or before and behind it.
 void AddNumbersPerTurn(std::string_view line, Track& track) {
   constexpr std::string_view kDigits = "0123456789";
   for (std::size_t at = 0; (at = line.find_first_of(kDigits, at)) != std::string_view::npos;) {
     const std::size_t end = std::min(line.find_first_not_of(kDigits, at), line.size());
     const std::string_view digits = line.substr(at, end - at), behind = Trimmed(line.substr(end)).substr(0, 40);
     const std::string what = SmallLetters(behind.substr(0, behind.find_first_of(",;=\t")));
-    if (const auto number = FieldNumber(digits, false); number && SaysPerTurn(what)) track.numbers[what] = *number;
+    const bool says = SaysPerTurn(what) || (BeginsPerTurn(what) && SaysPerTurn(SmallLetters(ClauseBefore(line, at)) + what));
+    if (const auto number = FieldNumber(digits, false); number && says) track.numbers[SaysPerTurn(what) ? what : "counts " + what] = *number;
     at = end;
   }
 }
