@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <complex>
 
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/candidates.h"
@@ -37,6 +39,23 @@ void AddBehindReversals(Collector& collect, const Eigen::VectorXd& held) {
       words("offset, function of direction that is reached over {:.3g} deg behind each reversal, odd in direction"));
 }
 
+/// What alternates from stop to stop has exactly two of them a period: stops that are evenly spaced show one phase of
+/// it and none of the other, and of their sum any size.
+void AddAlternating(Collector& collect, const Angle& angle, const Eigen::VectorXd& sense, bool has_signal) {
+  constexpr double kOnePhase = 1e-4;  // mean square of the sine about it
+  const int order = angle.last_order + 1;
+  if (angle.last_order < 1 || order > tuning::kDirectionOrders) return;
+  const Eigen::ArrayXd phase_rad = order * angle.rad.array();
+  const double zero_rad = 0.5 * std::arg((2.0 * std::complex<double>(0.0, 1.0) * phase_rad.cast<std::complex<double>>()).exp().sum());
+  if ((phase_rad - zero_rad).sin().square().mean() > kOnePhase) return;
+  const Eigen::VectorXd alternating = (phase_rad - zero_rad).cos();
+  collect.Add("direction harmonic", alternating.cwiseProduct(sense).cwiseProduct(collect.design().moved),
+              fmt::format("direction times order {} synchronous with {}, odd in direction", order, angle.name));
+  if (!has_signal || angle.by.empty()) return;
+  collect.Are([signal = Following(SignalOf("harmonic", angle.by, {{"order", order}, {"phase", -zero_rad}}), "direction")](
+                  const Eigen::VectorXd&, int) { return ColumnOf(signal); });
+}
+
 }  // namespace
 
 void AddByDirection(Collector& collect) {
@@ -47,13 +66,12 @@ void AddByDirection(Collector& collect) {
   collect.Are([](const Eigen::VectorXd&, int) { return ColumnOf(Following(SignalOf("constant"), "direction")); });
   for (const Angle& angle : d.angles) {
     if (!angle.is_turned_by_motion) continue;
-    // What alternates from stop to stop has exactly two of them a period.
-    Angle to_alternating = angle;
-    if (angle.last_order > 0) ++to_alternating.last_order;
     for (const Eigen::VectorXd& sense : d.senses) {
-      collect.AddModulated("direction harmonic", to_alternating, tuning::kDirectionOrders, sense,
+      const bool has_signal = &sense == &d.senses.front();
+      collect.AddModulated("direction harmonic", angle, tuning::kDirectionOrders, sense,
                            "direction times order {} synchronous with " + angle.name + ", odd in direction");
-      if (&sense == &d.senses.front()) collect.AreHarmonics(angle, Following({}, "direction"));
+      if (has_signal) collect.AreHarmonics(angle, Following({}, "direction"));
+      AddAlternating(collect, angle, sense, has_signal);
     }
   }
   AddBehindReversals(collect, held);
