@@ -133,17 +133,17 @@ Nuisance EncoderRun::SetUpsAlone() const {
   return nuisance;
 }
 
-ErrorOfTwin FollowTwin(const EncoderRun& encoder, const Scenario& scenario, const model::FollowMaker& follow) {
-  constexpr double kSame_rad = 1e-10;
+ErrorOfTwin FollowTwin(const EncoderRun& encoder, const Scenario& scenario, const model::FollowMaker& follow,
+                       const Eigen::VectorXd& offset_rad, double same_rad) {
   // What is locked to the device's angle turns with it: each step leaves a tenth of what is wrong, or less.
   constexpr int kSteps = 6;
   const Schedule& s = encoder.run.schedule;
-  ErrorOfTwin followed{{}, encoder.offset_rad};
+  ErrorOfTwin followed{{}, offset_rad};
   for (int step = 0; step < kSteps; ++step) {
     followed.error_rad =
         follow(AsMounted(scenario, s, followed.offset_rad), encoder.used)->Predict().col(0) - s.reference_rad;
     const Eigen::VectorXd mean_rad = SetUpMeans(encoder.setups, encoder.error_rad - followed.error_rad);
-    if (mean_rad.cwiseAbs().maxCoeff() < kSame_rad) break;
+    if (mean_rad.cwiseAbs().maxCoeff() < same_rad) break;
     if (step + 1 < kSteps) followed.offset_rad += mean_rad;
   }
   return followed;
@@ -176,7 +176,7 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   Bridge(encoder.glitches, run.observed);
   encoder.used = AsFollowed(used, run.schedule);
   encoder.offset_rad = SetUpMeans(encoder.setups, encoder.error_rad);
-  const ErrorOfTwin followed = FollowTwin(encoder, scenario, follow);
+  const ErrorOfTwin followed = FollowTwin(encoder, scenario, follow, encoder.offset_rad);
   encoder.offset_rad = followed.offset_rad;
   run.residual = encoder.error_rad - followed.error_rad;
   run.residual -= SetUpMeans(encoder.setups, run.residual);

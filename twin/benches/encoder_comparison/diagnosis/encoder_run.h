@@ -42,8 +42,12 @@ struct ErrorOfTwin {
   Eigen::VectorXd offset_rad;  // where the device then stands on the shaft, by reading
 };
 
+inline constexpr double kSameOffset_rad = 1e-10;
+
 /// The device is set up where the readings say: the mean of what it shows in a set-up, less the mean of the errors
 /// that the scenario has (those of a quadrature error are not zero).
-ErrorOfTwin FollowTwin(const EncoderRun& encoder, const Scenario& scenario, const model::FollowMaker& follow);
+/// @param offset_rad  Where it may stand: it is moved until it is there to `same_rad`.
+ErrorOfTwin FollowTwin(const EncoderRun& encoder, const Scenario& scenario, const model::FollowMaker& follow,
+                       const Eigen::VectorXd& offset_rad, double same_rad = kSameOffset_rad);
 
 }  // namespace twinbench::diagnose::encoder

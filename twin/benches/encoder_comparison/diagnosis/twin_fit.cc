@@ -1,6 +1,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/twin_fit.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "twin/benches/encoder_comparison/diagnosis/memory.h"
 #include "twin/benches/encoder_comparison/format.h"
@@ -23,7 +24,9 @@ TwinFit::TwinFit(const LargeCauses& large, const Scenario& scenario, const model
   const LinearRun& plain = Run().run;
   const NoiseModel noise{plain.sigma, {}};
   projector_ = std::make_unique<Projector>(noise.Whiten(plain, plain.nuisance.jacobian), plain.nuisance);
-  nothing_ = FollowTwin(Run(), scenario_, follow_).error_rad;
+  const ErrorOfTwin nothing = FollowTwin(Run(), scenario_, follow_, Run().offset_rad);
+  nothing_ = nothing.error_rad;
+  offset_rad_ = nothing.offset_rad;
 }
 
 Scenario TwinFit::With(const std::vector<EffectSettings>& effects) const {
@@ -33,7 +36,11 @@ Scenario TwinFit::With(const std::vector<EffectSettings>& effects) const {
 }
 
 Eigen::VectorXd TwinFit::Shown(const std::vector<EffectSettings>& effects) const {
-  return FollowTwin(Run(), With(effects), follow_).error_rad - nothing_;
+  constexpr double kSame = 1e-4;  // of the noise of a reading
+  const double same_rad = std::max(kSameOffset_rad, kSame * Run().run.sigma.minCoeff());
+  ErrorOfTwin followed = FollowTwin(Run(), With(effects), follow_, offset_rad_, same_rad);
+  offset_rad_ = std::move(followed.offset_rad);
+  return followed.error_rad - nothing_;
 }
 
 Eigen::VectorXd TwinFit::WhiteOf(const Eigen::VectorXd& rows) const {

@@ -61,6 +61,7 @@ class TwinFit {
   const model::FollowMaker& follow_;
   std::unique_ptr<Projector> projector_;  // with no more than the noise of the readings
   Eigen::VectorXd nothing_;
+  mutable Eigen::VectorXd offset_rad_;  // where the device stood when it was last asked: the next time it stands nearly there
 };
 
 }  // namespace twinbench::diagnose::encoder

@@ -139,7 +139,11 @@ double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad) {
       MomentOf(reading, run_up_rad_, reading.temperature_degC - scenario_.environment.reference_degC);
   // A reference that errs by arcseconds an arcminute: each step leaves a hundredth of what is wrong, or less.
   constexpr int kSteps = 5;
-  for (int k = 0; k < kSteps; ++k) moment.shaft_rad = reading.reference_rad - ReferenceError_rad(moment);
+  for (int k = 0; k < kSteps; ++k) {
+    const double stands_rad = reading.reference_rad - ReferenceError_rad(moment);
+    if (stands_rad == moment.shaft_rad) break;
+    moment.shaft_rad = stands_rad;
+  }
   moment.shaft_rad += shaft_rad;
   Advance(moment);
   return Shown_rad(moment);
