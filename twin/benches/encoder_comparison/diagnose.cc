@@ -11,6 +11,8 @@
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 #include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
+#include "twin/benches/encoder_comparison/diagnosis/pieces_of_curve.h"
+#include "twin/benches/encoder_comparison/diagnosis/pushed_both_ways.h"
 #include "twin/benches/encoder_comparison/diagnosis/speed_limit.h"
 #include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
 #include "twin/benches/encoder_comparison/diagnosis/wander.h"
@@ -38,7 +40,7 @@ std::vector<Reading> AnglesOf(const std::vector<Reading>& readings) {
 }
 
 std::vector<Reading> LookedAt(const std::vector<Reading>& recorded) {
-  return diagnose::encoder::PartOf(AnglesOf(recorded));
+  return diagnose::encoder::PartOf(diagnose::encoder::WithSides(AnglesOf(recorded)));
 }
 
 void TellPart(std::size_t looked_at, std::size_t recorded, diagnose::Diagnosis& diagnosis) {
@@ -75,7 +77,8 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
   TellNextMeasurements(result.diagnosis.causes);
   diagnose::encoder::AddErrorsOfTargets(large, result);
   diagnose::encoder::TellEqualSteps(result);
-  diagnose::encoder::TellWander(result);
+  diagnose::encoder::TellCurveInPieces(result);
+  diagnose::encoder::TellWander(large.bent, result);
   diagnose::encoder::TellGlitches(large.first->encoder.glitches, result);
   if (limit) diagnose::encoder::TellSpeedLimit(*limit, result);
   TellPart(looked_at, AnglesOf(recorded).size(), result.diagnosis);

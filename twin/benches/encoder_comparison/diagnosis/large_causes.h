@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "twin/benches/encoder_comparison/diagnosis/large_cause.h"
+#include "twin/benches/encoder_comparison/diagnosis/second_order.h"
 
 /// Causes so large that a search to first order does not do: each is given to the twin, all of them are fitted
 /// together by asking it, and what is left is searched again.
@@ -17,6 +18,7 @@ struct LargeCauses {
   double left = 0.0;                // power that they leave, in units of the first noise
   double named_left = 0.0;          // that all that has a name leaves
   double memory = 1.0;              // of that (memory.h)
+  SecondOrder bent;                 // of the large causes, and of those that a diagnosis has found before
 
   const Searched& Last() const { return last ? *last : *first; }
 };

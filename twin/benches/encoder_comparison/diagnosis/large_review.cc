@@ -1,14 +1,26 @@
 #include "twin/benches/encoder_comparison/diagnosis/large_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 
 #include "twin/benches/encoder_comparison/diagnosis/memory.h"
 #include "twin/benches/encoder_comparison/diagnosis/ties.h"
+#include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/diagnose/engine/answer.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose::encoder {
+namespace {
+
+/// A function of the angle, whichever way it goes.
+bool IsOfAngle(const EffectSettings& effect) {
+  constexpr std::array kOfTurn = {"eccentricity", "ellipticity", "signal_offset", "amplitude_mismatch", "quadrature_error"};
+  return WaveOrderOf(effect) || std::ranges::count(kOfTurn, effect.name) > 0;
+}
+
+}  // namespace
 
 void LargeSearch::EndTies() {
   if (large_.causes.empty()) return;
@@ -21,20 +33,37 @@ void LargeSearch::EndTies() {
 }
 
 /// A wave of an order that a large cause has is what that lacks beside the others that the last search found; what is
-/// less than a device is as exact as its formula is no cause, nor is what the memory of the rest makes by chance.
+/// less than a device is as exact as its formula is no cause, nor is what the memory of the rest makes by chance, nor what
+/// large causes are not exactly.
 void LargeSearch::LeaveToLarge() {
-  if (!large_.last || large_.last->analysis.found.terms.empty()) return;
+  Searched& last = large_.last ? *large_.last : *large_.first;
+  std::vector<Term>& terms = last.analysis.found.terms;
+  const SecondOrder bent = Bent();
+  if (std::erase_if(terms, [&](const Term& term) { return bent.MayBe(term.columns * term.amplitudes); }) > 0 && terms.empty())
+    last.analysis.found.first_statistic = last.analysis.found.last_statistic;  // as if it were not there
+  if (!large_.last || terms.empty()) return;
   const double least = LeastExplained();
   const Eigen::VectorXd left = Left();
-  const auto is_of_large = [this](const Term& term) {
-    const Family& family = large_.last->families[static_cast<std::size_t>(term.family)];
+  const auto is_of_large = [&](const Term& term) {
+    const Family& family = last.families[static_cast<std::size_t>(term.family)];
     return std::ranges::any_of(large_.causes, [&](const LargeCause& cause) {
       return cause.effect.name == family.effect && term.shape.size() == 1 && WaveOrderOf(cause.effect) == term.shape[0];
     });
   };
-  std::erase_if(large_.last->analysis.found.terms, [&](const Term& term) {
-    return term.explained < least || is_of_large(term) || IsChance(term, left);
+  double least_odd = 0.0;  // passes of both directions tell it from what is the same in them
+  for (const LargeCause& cause : large_.causes) least_odd += IsOfAngle(cause.effect) ? 0.0 : kAsExact * cause.explained;
+  std::erase_if(terms, [&](const Term& term) {
+    const bool is_odd = last.families[static_cast<std::size_t>(term.family)].effect.starts_with("direction");
+    return term.explained < (is_odd ? least_odd : least) || is_of_large(term) || IsChance(term, left);
   });
+}
+
+/// Of what was found before, too: a file that was written has no more than the first order.
+SecondOrder LargeSearch::Bent() const {
+  std::vector<EffectSettings> effects = EffectsOf(large_.causes);
+  std::ranges::copy_if(scenario_.effects, std::back_inserter(effects),
+                       [](const EffectSettings& e) { return !e.finding.provenance.empty(); });
+  return {effects, large_.first->encoder};
 }
 
 /// What all large causes explain together is exact to this.
@@ -62,8 +91,10 @@ void LargeSearch::DropNeedless() {
     const std::vector<double> strength = Strengths();
     const auto weakest = std::ranges::min_element(strength);
     if (*weakest > tuning::kHeadline) return;
-    std::vector<LargeCause> kept = large_.causes;
-    kept.erase(kept.begin() + (weakest - strength.begin()));
+    std::vector<LargeCause> kept;
+    for (std::size_t k = 0; k < strength.size(); ++k) {
+      if (strength[k] > *weakest) kept.push_back(large_.causes[k]);  // those that are none at all go together
+    }
     if (kept.empty()) return SearchPlain();
     const AskedAgain asked = fit_->Ask(kept);
     Accept(asked, std::move(kept), kMostCauses);
@@ -137,10 +168,14 @@ void LargeSearch::MoveBesideTheRest() {
   TakeOver(asked, large_.causes);
 }
 
-/// What is left for the large causes once the last search has explained the rest.
+/// What is left for the large causes once the last search has explained the rest. A random walk is noise beside them: its many
+/// shapes would follow whatever they miss.
 Eigen::VectorXd LargeSearch::Beside() const {
   Eigen::VectorXd rows = large_.first->encoder.run.residual;
-  for (const Term& term : large_.Last().analysis.found.terms) rows -= term.columns * term.amplitudes;
+  const Searched& last = large_.Last();
+  for (const Term& term : last.analysis.found.terms) {
+    if (!FollowsWalk(last.families[static_cast<std::size_t>(term.family)], term.columns)) rows -= term.columns * term.amplitudes;
+  }
   return rows;
 }
 

@@ -81,6 +81,7 @@ std::optional<LargeCauses> LargeSearch::Go(double most_left) {
   JudgeUnsure();
   TellWhatEachShows();
   TellWhatNamesLeave();
+  large_.bent = Bent();
   return std::move(large_);
 }
 
@@ -186,6 +187,8 @@ bool LargeSearch::Take(const LargeCause& next) {
   if (MovableOf({next}).empty()) return false;
   const AskedAgain asked = fit_->Ask(causes);
   const double power = fit_->PowerOf(asked.left);
+  constexpr double kNeedless = 0.5;  // of what would be dropped in the end
+  if (power_ - power < kNeedless * LeastExplained()) return false;
   if (!(power < power_) || !IsHeld(asked.effects.back())) return false;
   causes.back().explained = power_ - power;
   Accept(asked, std::move(causes), kFewCauses);

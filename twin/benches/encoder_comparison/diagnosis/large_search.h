@@ -44,6 +44,7 @@ class LargeSearch {
   double LeastExplained() const;
   Eigen::VectorXd Left() const;
   bool IsChance(const Term& term, const Eigen::VectorXd& left) const;
+  SecondOrder Bent() const;
   void DropNeedless();
   std::vector<double> Strengths() const;
   void SearchPlain();

@@ -1,6 +1,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/ties.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "twin/diagnose/tuning.h"
@@ -35,6 +36,15 @@ std::optional<FittedCauses> LedByOther(const TwinFit& fit, std::size_t k, std::s
   return fit.Fit(std::move(causes));
 }
 
+/// Sine and cosine that err are not exactly waves, and a wave is; whoever has one such fault has others, which take away
+/// what it is more than a wave.
+bool DifferInSecondOrder(const TwinFit& fit, const FittedCauses& wave, const FittedCauses& signals, std::size_t k) {
+  constexpr std::array kWaves = {"eccentricity", "ellipticity"};
+  if (std::ranges::count(kWaves, wave.causes[k].effect.name) == 0) return false;
+  const SecondOrder bent(EffectsOf(wave.causes), fit.Run());
+  return bent.MayBe(fit.Shown(signals.asked.effects) - fit.Shown(wave.asked.effects));
+}
+
 /// @param ties  By cause, the members that explain as much as the one that leads it now.
 /// @return the first that is clearly better led by another one.
 std::optional<FittedCauses> BetterLed(const TwinFit& fit, const FittedCauses& now,
@@ -50,7 +60,7 @@ std::optional<FittedCauses> BetterLed(const TwinFit& fit, const FittedCauses& no
       const double noise = std::max(memory * of_rest, kAsExact * now.causes[k].explained / kBetter);
       const double more = other->Costs(noise) - now.Costs(noise);
       if (more < -0.5 * kBetter) return other;
-      if (more <= kBetter) ties.back().push_back(now.causes[k].causes[j]);
+      if (more <= kBetter || DifferInSecondOrder(fit, now, *other, k)) ties.back().push_back(now.causes[k].causes[j]);
     }
   }
   return {};

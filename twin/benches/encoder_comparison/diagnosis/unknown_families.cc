@@ -5,8 +5,11 @@
 #include <iterator>
 
 #include "twin/benches/encoder_comparison/diagnosis/family_parts.h"
+#include "twin/core/linear_algebra.h"
+#include "twin/diagnose/tuning.h"
 #include "twin/diagnose/unknown/collector.h"
 #include "twin/diagnose/unknown/design.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::encoder {
 
@@ -36,6 +39,39 @@ std::vector<Family> ReversalsByTarget(const Eigen::MatrixXd& targets, const unkn
   return collect.Take();
 }
 
+/// Whether the means of passes that all go one way lie on two sides of a parabola over the passes, by their direction: one pass
+/// that is off does not make them.
+bool ShowsReversal(const std::vector<int>& pass, const Eigen::VectorXd& sense, const Eigen::VectorXd& error_rad) {
+  constexpr Eigen::Index kFewest = 6;
+  constexpr double kClearly = 5.0;  // of its uncertainty
+  const Eigen::MatrixXd passes = model::Indicators(pass);
+  const Eigen::VectorXd readings = passes.colwise().sum(), way = (passes.transpose() * sense).cwiseQuotient(readings);
+  const Eigen::Index count = passes.cols();
+  if (count < kFewest || way.cwiseAbs().minCoeff() < 1.0 || way.minCoeff() == way.maxCoeff()) return false;
+  const Eigen::VectorXd mean_rad = (passes.transpose() * error_rad).cwiseQuotient(readings);
+  const Eigen::ArrayXd number = Eigen::ArrayXd::LinSpaced(count, -1.0, 1.0);
+  Eigen::MatrixXd columns(count, 4);
+  columns << Eigen::VectorXd::Ones(count), number.matrix(), number.square().matrix(), way;
+  const Eigen::VectorXd sizes = SolveShortest(columns, mean_rad);
+  const double left = (mean_rad - columns * sizes).squaredNorm() / static_cast<double>(count - columns.cols());
+  const double u = std::sqrt(left * GeneralInverseOf(columns.transpose() * columns)(3, 3));
+  return std::abs(sizes[3]) > kClearly * u;
+}
+
+/// Passes that all go one way have what a reversal leaves in their offsets, and a course in time goes to and fro with them; it
+/// has a name of its own, and is none of each.
+void LeaveReversalsToNamed(const Eigen::VectorXd& sense, std::vector<Family>& families) {
+  for (Family& family : families) {
+    if (!family.base || (family.effect != "pass" && family.effect != "wander")) continue;
+    auto beside = std::make_shared<Base>(*family.base);
+    beside->series = [series = family.base->series, sense](int g) -> Eigen::MatrixXd {
+      const Eigen::MatrixXd all = series(g);
+      return all - sense * (sense.transpose() * all) / sense.squaredNorm();
+    };
+    family.base = beside;
+  }
+}
+
 }  // namespace
 
 std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries& series, double plausible_rad) {
@@ -62,7 +98,14 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   // Of one pass in each direction, what differs from pass to pass is what a reversal leaves.
   const bool is_turned_once = std::ranges::max(c.pass) - std::ranges::min(c.pass) == 1;
   if (is_turned_once && design.senses.front().maxCoeff() > design.senses.front().minCoeff()) design.named.emplace("pass", "");
+  const bool is_one_place = FinestSpacing_rad(c) == 0.0 && !c.Moves();
+  if (is_one_place) design.named["direction offset"] = "backlash";  // which is then nothing else
   std::vector<Family> families = unknown::Families(design);
+  // Waves of less than half a period are the offset of each pass.
+  if (LeastOrder(c) > tuning::kPassOrders)
+    std::erase_if(families, [](const Family& family) { return family.effect == "pass harmonic"; });
+  if (is_one_place)
+    std::erase_if(families, [](const Family& family) { return family.effect == "transition" || family.effect == "reversal"; });
   // Without a clock nothing has a frequency or a time constant.
   if (!c.has_clock)
     std::erase_if(families, [](const Family& family) { return family.effect == "tone" || family.effect == "restart"; });
@@ -70,6 +113,7 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
     std::erase_if(families, [](const Family& family) { return family.effect == "direction harmonic"; });
     std::ranges::move(ReversalsByTarget(encoder.targets, design), std::back_inserter(families));
   }
+  if (ShowsReversal(c.pass, design.senses.front(), encoder.run.residual)) LeaveReversalsToNamed(design.senses.front(), families);
   std::ranges::move(GrowingSpeeds(c, design), std::back_inserter(families));
   std::ranges::move(LostCountFamilies(c, design), std::back_inserter(families));
   return families;

@@ -46,10 +46,18 @@ struct Walk {
   double Change(Eigen::Index over) const { return MeanSquare(Changes(left, setup, over, 1)); }
 };
 
-Walk WalkOf(const DiagnosisRun& result) {
+/// Then a walk is in none of what is left.
+bool IsFollowed(const Accepted& accepted) {
+  return FollowsWalk(accepted.family, accepted.columns);
+}
+
+Walk WalkOf(const DiagnosisRun& result, const SecondOrder& bent) {
   constexpr Eigen::Index kTimes = 16;
   Walk walk{result.run.residual, result.run.schedule.setup, result.run.Rows() / kTimes};
-  for (const Accepted& accepted : result.accepted) walk.left -= accepted.columns * accepted.amplitudes;
+  for (const Accepted& accepted : result.accepted) {
+    if (!IsFollowed(accepted)) walk.left -= accepted.columns * accepted.amplitudes;
+  }
+  walk.left = bent.Beside(walk.left);
   return walk;
 }
 
@@ -136,6 +144,24 @@ void TakeSizes(const Accepted& accepted, const Eigen::MatrixXd& cov, const Eigen
     cause->parameters = accepted.family.parameters(accepted.shape, accepted.amplitudes, cov);
 }
 
+/// What was fitted beside a shape in time that follows nearly anything has to be as large without it: else the two cancel.
+void DropCancelled(const Eigen::MatrixXd& free, DiagnosisRun& result) {
+  constexpr double kSame = 0.5;
+  Eigen::MatrixXd all = free;
+  for (const Accepted& accepted : result.accepted) all = HStack(all, Eigen::MatrixXd(accepted.columns * accepted.amplitudes));
+  const Eigen::VectorXd strength = SolveShortest(all, result.run.residual).tail(std::ssize(result.accepted));
+  std::vector<Accepted> kept;
+  for (std::size_t k = 0; k < result.accepted.size(); ++k) {
+    const Accepted& accepted = result.accepted[k];
+    if (std::abs(strength[static_cast<Eigen::Index>(k)] - 1.0) < kSame) {
+      kept.push_back(accepted);
+      continue;
+    }
+    std::erase_if(result.diagnosis.causes, [&](const Cause& c) { return c.effect == accepted.family.effect && c.where == accepted.family.where; });
+  }
+  result.accepted = std::move(kept);
+}
+
 /// Beside a walk, noise that remembers some readings tells the size of a slow wave badly: from differences of
 /// neighbours, in which it hardly shows. Least squares of the readings as they are tell it as well as the walk lets
 /// them. A shape in time without a name is a piece of the walk.
@@ -145,6 +171,7 @@ void FitBesideWalk(DiagnosisRun& result) {
     return accepted.family.kind == Kind::kUnknown && accepted.family.goes_by_time;
   });
   const Eigen::MatrixXd free = run.nuisance.jacobian.toDense();
+  if (!result.accepted.empty()) DropCancelled(free, result);
   Eigen::MatrixXd all = free;
   Eigen::VectorXd rows = run.residual;
   for (const Accepted& accepted : result.accepted) {
@@ -202,13 +229,18 @@ double GiveToWander(DiagnosisRun& result, const Walk& walk, Eigen::VectorXd& wan
 
 }  // namespace
 
-void TellWander(DiagnosisRun& result) {
+bool FollowsWalk(const Family& family, const Eigen::MatrixXd& columns) {
+  return family.takes_any_course && columns.cols() > tuning::kWanderTogether;
+}
+
+void TellWander(const SecondOrder& bent, DiagnosisRun& result) {
   const LinearRun& run = result.run;
   if (run.Channels() != 1 || run.Rows() < kFewest) return;
-  if (!IsWalk(WalkOf(result), run.sigma.minCoeff())) return;
-  FitBesideWalk(result);
-  const Walk walk = WalkOf(result);
+  if (!IsWalk(WalkOf(result, bent), run.sigma.minCoeff())) return;
   Diagnosis& d = result.diagnosis;
+  if (std::ranges::any_of(result.accepted, IsFollowed)) d.unknown.signature.clear();  // which is told below
+  FitBesideWalk(result);
+  const Walk walk = WalkOf(result, bent);
   Eigen::VectorXd wander = walk.left;
   const double named = GiveToWander(result, walk, wander);
   const double amplitude = std::sqrt(2.0 * SquaresAboutMean(wander) / static_cast<double>(run.Rows()));

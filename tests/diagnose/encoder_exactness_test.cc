@@ -1,0 +1,179 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/diagnose/encoder_record.h"
+#include "twin/core/reading_clock.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+using namespace lab;
+
+// How far a formula, a walk or a sum of waves may be believed. Closed forms.
+
+/// A list without a clock: `stops` from `from_deg` over `travel_deg`, and back, `passes` in all.
+Record ListedBothWays(double from_deg, double travel_deg, int stops, int passes,
+                      const std::function<double(double angle_deg, int stop, int pass)>& error_deg) {
+  Record record;
+  record.kind = "stops";
+  for (int k = 0; k < passes * stops; ++k) {
+    const int pass = k / stops, stop = pass % 2 == 0 ? k % stops : stops - 1 - k % stops;
+    const double angle_deg = from_deg + travel_deg * stop / stops;
+    record.Add(k, angle_deg, angle_deg + error_deg(angle_deg, stop, pass), pass % 2 == 0 ? 1 : -1, pass);
+    record.readings.back().extra[kClockColumn] = kNoClock;
+  }
+  return record;
+}
+
+/// Of what has no name; NaN if these words are not there.
+double AmplitudeBehind(const std::string& words, const Answer& answer) {
+  const std::string& signature = answer.run.diagnosis.unknown.signature;
+  const std::size_t at = signature.find(words);
+  return at == std::string::npos ? kNaN : std::stod(signature.substr(at + words.size()));
+}
+
+TEST(EncoderExactness, AFollowerThatIsLateToFirstOrderHasNoWrongScale) {
+  // r - tau v of a swing: a delay of tau, less its second order, which is like a scale.
+  const Swing swing{100.0, 6.0};
+  const double late_s = 0.03, w = 2.0 * units::kPi / swing.period_s;
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const Answer answer = Ask(Swung(swing, 0.0, 12.0, 0.02, 0.04, seed, [&](double t_s) {
+      return swing.At(t_s) - late_s * 0.5 * swing.range_deg * w * std::sin(w * t_s);
+    }));
+    SCOPED_TRACE(answer.Words());
+    EXPECT_EQ(answer.run.diagnosis.causes.size(), 1u);
+    EXPECT_NEAR(answer.Value("latency", "delay"), late_s, 4.0 * answer.Uncertainty("latency", "delay"));
+    EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
+  }
+}
+
+TEST(EncoderExactness, AWaveIsNoLessAnOffsetOfTheSignalsForBeingOne) {
+  for (const double size_deg : {1.2, 2.4}) {
+    std::mt19937_64 random(4);
+    std::normal_distribution<double> noise_deg(0.0, 0.01);
+    const Answer answer = Ask(ListedBothWays(0.9, 360.0, 200, 2, [&](double a, int, int) {
+      return size_deg * std::cos((a + 40.0) * units::deg) + noise_deg(random);
+    }));
+    SCOPED_TRACE(answer.Words());
+    EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kTie);
+    EXPECT_EQ(answer.run.diagnosis.causes.size(), 2u) << "one mounting tells no eccentricity from an offset";
+    EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
+  }
+}
+
+TEST(EncoderExactness, ACurveByTheAngleThatIsShownIsNoWalk) {
+  // Of orders 1 and 2 by the shown angle, orders 1 to 4 by the shaft's.
+  const Answer answer = Ask(ListedBothWays(0.0, 360.0, 200, 1, [](double a, int, int) {
+    double error_deg = 0.0;
+    for (int step = 0; step < 20; ++step) {
+      const double shown = (a + error_deg) * units::deg;
+      error_deg = 0.55 * std::cos(shown + 3.7) + 0.42 * std::cos(2.0 * shown + 3.3);
+    }
+    return std::round(error_deg * 65536.0 / 360.0) * 360.0 / 65536.0;
+  }));
+  SCOPED_TRACE(answer.Words());
+  EXPECT_EQ(answer.run.diagnosis.unknown.signature.find("walk"), std::string::npos);
+  EXPECT_NEAR(answer.Value("eccentricity", "amplitude"), 0.55, 0.01);
+  EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
+}
+
+TEST(EncoderExactness, WhatAlternatesWithTheDirectionHasTheSizeThatItShows) {
+  for (const unsigned seed : {6u, 7u}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise_deg(0.0, 0.01);
+    const Answer answer = Ask(ListedBothWays(1.8, 360.0, 200, 2, [&](double a, int stop, int pass) {
+      return 0.9 * std::cos(a * units::deg) + (stop % 2 == pass % 2 ? 0.1 : -0.1) + noise_deg(random);
+    }));
+    SCOPED_TRACE(answer.Words());
+    EXPECT_NE(answer.run.diagnosis.unknown.signature.find("direction times order 100"), std::string::npos);
+    EXPECT_NEAR(AmplitudeBehind("angle, amplitude ", answer), 0.1, 0.003);
+    EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
+  }
+}
+
+TEST(EncoderExactness, AWalkHasTheSizeThatTheReadingsShowAndNoOtherName) {
+  for (const unsigned seed : {8u, 9u}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    std::vector<double> walk_deg;
+    const Record record = Swung({360.0, 40.0}, 0.0, 15.0, 0.01, 0.005, seed, [&](double t_s) {
+      walk_deg.push_back((walk_deg.empty() ? 0.0 : walk_deg.back()) + 0.004 * normal(random));
+      return Swing{360.0, 40.0}.At(t_s) + walk_deg.back();
+    });
+    double mean = 0.0, squares = 0.0;
+    for (const double w : walk_deg) mean += w / static_cast<double>(walk_deg.size());
+    for (const double w : walk_deg) squares += std::pow(w - mean, 2) / static_cast<double>(walk_deg.size());
+    const Answer answer = Ask(record);
+    SCOPED_TRACE(answer.Words());
+    EXPECT_NEAR(AmplitudeBehind("random walk, function of time, on angle, amplitude ", answer),
+                std::sqrt(2.0 * squares), 0.25 * std::sqrt(2.0 * squares))
+        << "some of it may be like a cause";
+    for (const Cause& cause : answer.run.diagnosis.causes) EXPECT_LT(cause.probability, 0.5) << cause.effect;
+  }
+}
+
+/// 9 targets of a stage, five times there and back, while its zero goes on from pass to pass.
+TEST(EncoderExactness, OffsetsOfPassesHideNoReversal) {
+  for (const unsigned seed : {11u, 12u, 13u}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    std::vector<double> curve_deg(9), pass_deg(10);
+    for (double& c : curve_deg) c = 0.02 * normal(random);
+    for (int k = 0; k < 10; ++k)
+      pass_deg[static_cast<std::size_t>(k)] = 0.01 * (1.0 - 0.1 * k) + 0.0006 * normal(random);
+    const Answer answer = Ask(ListedBothWays(-20.0, 45.0, 9, 10, [&](double, int stop, int pass) {
+      return curve_deg[static_cast<std::size_t>(stop)] + pass_deg[static_cast<std::size_t>(pass)] +
+             (pass % 2 == 0 ? -0.0065 : 0.0065) + 0.0015 * normal(random);
+    }));
+    SCOPED_TRACE(answer.Words());
+    EXPECT_TRUE(answer.Names("backlash", 0.5) || answer.Names("hysteresis", 0.5));
+    EXPECT_NEAR(answer.Value("backlash", "width"), 0.013, 0.002) << "offsets of ten passes are a little like it";
+  }
+}
+
+TEST(EncoderExactness, WhatIsPushedToAndFroAtOnePlaceShowsItsPlay) {
+  for (const double width_deg : {1.0, 0.3}) {
+    std::mt19937_64 random(14);
+    std::normal_distribution<double> noise_deg(0.0, 0.06 * width_deg);
+    std::uniform_int_distribution<int> stay(4, 30);
+    Record record;
+    record.kind = "stops";
+    double side = 1.0;
+    for (int k = 0, until = 20; k < 600; ++k) {
+      if (k == until) side = -side, until += stay(random);
+      record.Add(0.03 * k, 40.0, 40.0 + 0.5 * width_deg * side + noise_deg(random), 0, 0);
+    }
+    const Answer answer = Ask(record);
+    SCOPED_TRACE(answer.Words());
+    EXPECT_TRUE(answer.Names("backlash", 0.8));
+    EXPECT_NEAR(answer.Value("backlash", "width"), width_deg, 0.02 * width_deg);
+    EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
+  }
+}
+
+TEST(EncoderExactness, ACurveOverAPartOfATurnIsNoSumOfOrders) {
+  for (const unsigned seed : {15u, 16u}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    std::vector<double> knots_deg(30);
+    for (double& k : knots_deg) k = 0.05 * normal(random);
+    const Answer answer = Ask(ListedBothWays(12.0, 45.0, 450, 1, [&](double, int stop, int) {
+      const double at = stop / 16.0, share = 0.5 * (1.0 - std::cos(units::kPi * (at - std::floor(at))));
+      const auto k = static_cast<std::size_t>(at);
+      return std::lerp(knots_deg[k], knots_deg[k + 1], share) + 0.001 * normal(random);
+    }));
+    SCOPED_TRACE(answer.Words());
+    EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kUnknown);
+    EXPECT_EQ(answer.Find("periodic"), nullptr);
+    EXPECT_NE(answer.run.diagnosis.unknown.signature.find("error curve over a part of a turn"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose::encoder
