@@ -271,6 +271,19 @@ TEST(Displacements, StateAnUncertaintyThatMatchesTheirScatter) {
   EXPECT_NEAR(squares / (kRuns * static_cast<double>(m.errors.size())), 1.0, 0.25);
 }
 
+/// A ball whose place on the table is stated does not say which way the table turns, and a lean of its axis has
+/// either sign.
+TEST(Displacements, OfATableThatMayTurnEitherWayTellWhatDoesNotHangOnIt) {
+  Machine m = TrunnionTable();
+  std::vector<Reading> readings = Grid(m, {kBalls[0]}, {{'A', {0.0}}, {'C', Steps_deg(0.0, 15.0, 24)}}, true);
+  for (Reading& r : readings)
+    for (std::size_t k = 0; k < 3; ++k) kCommanded[k](r) = kBalls[0].at_mm[static_cast<Eigen::Index>(k)] * mm;
+  const nlohmann::json either = ResultsOf(readings), said = ResultsOf(readings, {"displacement.axes=C"});
+  EXPECT_FALSE(either.at("errors").contains("AOC"));
+  EXPECT_FALSE(either.at("machine").at("also_possible").empty());
+  EXPECT_NEAR(said.at("errors").at("AOC").at("value").get<double>(), 9.0, 0.1);
+}
+
 TEST(Displacements, AtPositionsOfNoSuchMachineAreRefused) {
   std::vector<Reading> readings = Grid(TrunnionTable(), kBalls, kTilts, true);
   for (std::size_t i = 0; i < readings.size(); ++i)

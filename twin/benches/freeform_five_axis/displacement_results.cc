@@ -55,8 +55,9 @@ std::vector<std::string> WordsOfFitted(const DisplacementFit& fit, const std::ve
 /// What moves the ball as another location does is no figure of its own. Components that do so belong to a location
 /// by its definition: it is of the average line.
 bool IsTold(const DisplacementFit& fit, const FittedTerm& location) {
-  return std::ranges::none_of(location.looks_like,
-                              [&fit](std::size_t k) { return fit.untold[k].term.IsLocation(); });
+  return !location.hangs_on_chain && std::ranges::none_of(location.looks_like, [&fit](std::size_t k) {
+    return fit.untold[k].term.IsLocation();
+  });
 }
 
 /// An error at one order: its cosine and sine, or the one number that it is.
@@ -77,8 +78,9 @@ std::map<std::pair<std::string, int>, Component> ComponentsOf(const Displacement
 }
 
 bool IsTold(const DisplacementFit& fit, const Component& component) {
-  return component.untold.empty() &&
-         std::ranges::all_of(component.fitted, [&fit](std::size_t k) { return fit.fitted[k].looks_like.empty(); });
+  return component.untold.empty() && std::ranges::all_of(component.fitted, [&fit](std::size_t k) {
+           return fit.fitted[k].looks_like.empty() && !fit.fitted[k].hangs_on_chain;
+         });
 }
 
 /// Cosine and sine with their amplitude and the angle at which it is largest, or the one number.
@@ -138,6 +140,8 @@ Json NotObservableJson(const DisplacementFit& fit) {
     const std::string own = component.fitted.empty() ? fit.untold[component.untold.front()].term.Words()
                                                      : fit.fitted[component.fitted.front()].term.Words();
     std::erase(alike, own);
+    if (std::ranges::any_of(component.fitted, [&fit](std::size_t k) { return fit.fitted[k].hangs_on_chain; }))
+      alike.push_back("other values on another machine (machine.also_possible)");
     one["indistinguishable_from"] = alike;
     if (component.untold.empty()) one["if_alone"] = PartsOf(fit, component);
     all.push_back(std::move(one));
@@ -196,7 +200,8 @@ std::string MachineText(const DisplacementFit& fit) {
                       fit.on_workpiece ? "the ball on the workpiece" : "the slides",
                       fit.from_tool ? "workpiece" : "tool", fit.from_tool ? "tool" : "workpiece");
   for (const std::string& other : fit.other_chains)
-    text += "note: the readings allow as well " + other + " (displacement.topology, displacement.axes)\n";
+    text += "note: the readings allow as well " + other +
+            "; what differs there has no figure until displacement.topology and axes say which\n";
   return text;
 }
 

@@ -169,9 +169,9 @@ std::vector<Tried> PossibleChains(const Looked& looked) {
   return possible;
 }
 
-/// The chain whose set-up, locations and squareness leave least: another than the first one only where it is
-/// clearly better.
-Tried BestChain(const Looked& looked, std::vector<std::string>& others) {
+/// Chains whose set-up, locations and squareness leave least: the usual one first, and all that are not clearly
+/// worse than the best.
+std::vector<Tried> BestChains(const Looked& looked) {
   constexpr double kClearly = 0.8;
   std::vector<Tried> possible = PossibleChains(looked);
   std::erase_if(possible, [&looked](Tried& tried) { return !looked.Try(0, tried); });
@@ -180,9 +180,7 @@ Tried BestChain(const Looked& looked, std::vector<std::string>& others) {
                      "three readings and more at each of several poses of every axis");
   const double least_um = std::ranges::min(possible, {}, &Tried::Residual_um).Residual_um();
   std::erase_if(possible, [least_um](const Tried& tried) { return !(kClearly * tried.Residual_um() <= least_um); });
-  for (std::size_t k = 1; k < possible.size(); ++k)
-    others.push_back(possible[k].chain.topology + ": " + WordsOf(possible[k].chain));
-  return std::move(possible.front());
+  return possible;
 }
 
 /// Standard deviation of readings of one pose; NaN where there are fewer than six to spare.
@@ -253,6 +251,39 @@ void SetSpectrum(const MatrixXd& slopes, DisplacementFit& fit) {
   fit.rank = std::ranges::count_if(fit.singular_values, [](double value) { return value > kNone; });
 }
 
+DisplacementFit FitOf(const Looked& looked, Tried& tried) {
+  const std::vector<ShiftRead>& reads = looked.reads;
+  const bool has_places = std::ranges::any_of(reads, [](const ShiftRead& read) { return !read.at_m.isZero(); });
+  DisplacementFit fit;
+  // Without levers an axis that tilts is one that moves.
+  fit.highest_order = has_places ? looked.settings.highest_order : 0;
+  while (!looked.Try(fit.highest_order, tried)) --fit.highest_order;
+  fit.chain = tried.chain;
+  fit.on_workpiece = looked.on_workpiece;
+  fit.from_tool = IsFromTool(looked.settings, tried.chain);
+  fit.readings = reads.size();
+  fit.values = static_cast<std::size_t>(tried.design.shifts_um.size());
+  fit.balls = 1 + static_cast<std::size_t>(std::ranges::max(reads, {}, &ShiftRead::ball).ball);
+  fit.displaced_um = tried.design.shifts_um.norm() / std::sqrt(static_cast<double>(fit.values));
+  fit.repeat_um = RepeatOf_um(reads);
+  SetTerms(tried, looked.settings.noise_m / units::um, fit);
+  SetSpectrum(tried.design.slopes, fit);
+  return fit;
+}
+
+/// What hangs on which of two chains it is.
+void CompareWith(const DisplacementFit& other, DisplacementFit& fit) {
+  constexpr double kSame_u = 3.0;
+  fit.other_chains.push_back(other.chain.topology + ": " + WordsOf(other.chain));
+  for (FittedTerm& own : fit.fitted) {
+    const auto same = std::ranges::find_if(other.fitted, [&own](const FittedTerm& theirs) {
+      return theirs.term.name == own.term.name && theirs.term.order == own.term.order &&
+             theirs.term.is_sine == own.term.is_sine;
+    });
+    own.hangs_on_chain |= same == other.fitted.end() || !(std::abs(same->value - own.value) <= kSame_u * own.u);
+  }
+}
+
 void RequireDisplacements(const std::vector<ShiftRead>& reads) {
   constexpr double kFarthest_m = 10.0 * units::mm;  // sensors of displacements reach a millimetre or two
   for (const ShiftRead& read : reads)
@@ -292,25 +323,13 @@ DisplacementFit FitDisplacements(const DisplacementSettings& settings, const std
                 settings.positions == "workpiece" || is_fixed || (settings.positions == "auto" && at_few_places)};
   looked.is_rigid = looked.on_workpiece && !at_few_places;
   NumberBalls(looked.on_workpiece && at_few_places, reads);
-  DisplacementFit fit;
-  Tried best = BestChain(looked, fit.other_chains);
-  if (best.design.shifts_um.size() < kFewest)
-    throw InputError("readings", fmt::format("{} displacements were read", best.design.shifts_um.size()),
+  std::vector<Tried> chains = BestChains(looked);
+  const Index values = chains.front().design.shifts_um.size();
+  if (values < kFewest)
+    throw InputError("readings", fmt::format("{} displacements were read", values),
                      fmt::format("at least {}", kFewest));
-  const bool has_places = std::ranges::any_of(reads, [](const ShiftRead& read) { return !read.at_m.isZero(); });
-  fit.highest_order =
-      has_places ? settings.highest_order : 0;  // without levers an axis that tilts is one that moves
-  while (!looked.Try(fit.highest_order, best)) --fit.highest_order;
-  fit.chain = best.chain;
-  fit.on_workpiece = looked.on_workpiece;
-  fit.from_tool = IsFromTool(settings, best.chain);
-  fit.readings = reads.size();
-  fit.values = static_cast<std::size_t>(best.design.shifts_um.size());
-  fit.balls = 1 + static_cast<std::size_t>(std::ranges::max(reads, {}, &ShiftRead::ball).ball);
-  fit.displaced_um = best.design.shifts_um.norm() / std::sqrt(static_cast<double>(fit.values));
-  fit.repeat_um = RepeatOf_um(reads);
-  SetTerms(best, settings.noise_m / units::um, fit);
-  SetSpectrum(best.design.slopes, fit);
+  DisplacementFit fit = FitOf(looked, chains.front());
+  for (std::size_t k = 1; k < chains.size(); ++k) CompareWith(FitOf(looked, chains[k]), fit);
   return fit;
 }
 

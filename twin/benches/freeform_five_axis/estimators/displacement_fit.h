@@ -12,8 +12,9 @@ namespace twinbench::benches::freeform::estimators {
 struct FittedTerm {
   PoseTerm term;
   double value = 0.0, u = 0.0;  // in its unit
-  std::vector<std::size_t>
-      looks_like{};  // of `untold`: what moves the ball alike, so that the value is theirs as well
+  /// Of `untold`: what moves the ball alike, so that the value is theirs as well.
+  std::vector<std::size_t> looks_like{};
+  bool hangs_on_chain = false;  // another chain that the readings allow finds another value, or none
 };
 
 /// One that moves the ball as others do, and is taken as none; or that moves nothing at these poses.
