@@ -60,9 +60,11 @@ struct ChosenTerm {
   bool is_weak = false;  // most of what it does others do as well
 };
 
-/// Terms of which at least a fiftieth is done by none before them, by Gram and Schmidt.
+/// Terms of which enough is done by none before them, by Gram and Schmidt: a fiftieth of a component, less of a
+/// location, for what is left of it would be taken by the others.
 std::vector<ChosenTerm> ChosenTerms(const MatrixXd& slopes, const std::vector<PoseTerm>& terms) {
-  constexpr double kMovesNothing_um = 1e-3, kOwn = 0.02, kWeak = 0.3;  // by one um or arcsec, rms; shares
+  constexpr double kMovesNothing_um = 1e-3, kOwn = 0.02, kOwnOfLocation = 2e-3,
+                   kWeak = 0.3;  // by one um or arcsec, rms; shares
   MatrixXd basis(slopes.rows(), 0);
   std::vector<ChosenTerm> chosen;
   for (Index k = 0; k < slopes.cols(); ++k) {
@@ -72,8 +74,9 @@ std::vector<ChosenTerm> ChosenTerms(const MatrixXd& slopes, const std::vector<Po
       continue;
     VectorXd own = slopes.col(k) / norm;
     for (int twice = 0; twice < 2; ++twice) own -= (basis * (basis.transpose() * own)).eval();
-    if (!(own.norm() > kOwn)) continue;
-    chosen.push_back({k, terms[static_cast<std::size_t>(k)].kind == TermKind::kComponent && own.norm() < kWeak});
+    const bool is_component = terms[static_cast<std::size_t>(k)].kind == TermKind::kComponent;
+    if (!(own.norm() > (is_component ? kOwn : kOwnOfLocation))) continue;
+    chosen.push_back({k, is_component && own.norm() < kWeak});
     basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
     basis.col(basis.cols() - 1) = own.normalized();
   }
@@ -208,7 +211,7 @@ double RepeatOf_um(const std::vector<ShiftRead>& reads) {
 
 /// What fitted terms make of one that is not: those that count.
 std::vector<std::size_t> Alike(const MatrixXd& fitted, const VectorXd& term) {
-  constexpr double kCounts = 0.1;  // of what it does
+  constexpr double kCounts = 0.02;  // of what it does
   if (!(term.norm() > 0.0)) return {};
   const VectorXd by = SolveLeastSquares(fitted, term);
   std::vector<std::size_t> alike;
