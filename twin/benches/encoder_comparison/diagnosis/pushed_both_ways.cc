@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
-
-#include "twin/core/units.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -14,6 +11,7 @@ namespace {
 struct Sides {
   double low = 0.0, high = 0.0;  // means
   double within = 0.0;           // mean square about the own one
+  double share = 0.0;            // of values on the high one
 
   double Middle() const { return 0.5 * (low + high); }
 };
@@ -28,7 +26,8 @@ Sides SidesAbout(const std::vector<double>& values, double middle) {
   }
   const double low = sum[0] / std::max(1.0, count[0]), high = sum[1] / std::max(1.0, count[1]);
   const double within = squares[0] - count[0] * low * low + squares[1] - count[1] * high * high;
-  return {low, high, within / static_cast<double>(values.size())};
+  const auto all = static_cast<double>(values.size());
+  return {low, high, within / all, count[1] / all};
 }
 
 /// Where values lie on two sides: what is left about their means is a small part of their variance, which it is of
@@ -39,7 +38,7 @@ std::optional<Sides> TwoSides(const std::vector<double>& values) {
   const auto [least, most] = std::ranges::minmax(values);
   Sides sides = SidesAbout(values, 0.5 * (least + most));
   for (int round = 0; round < kRounds; ++round) sides = SidesAbout(values, sides.Middle());
-  const double between = std::pow(0.5 * (sides.high - sides.low), 2);
+  const double between = sides.share * (1.0 - sides.share) * std::pow(sides.high - sides.low, 2);
   return sides.within < kLeft * (sides.within + between) ? std::optional(sides) : std::nullopt;
 }
 
