@@ -2,17 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "twin/core/errors.h"
-#include "twin/core/reading.h"
 #include "twin/core/units.h"
 #include "twin/import/common.h"
+#include "twin/import/two_shafts.h"
 
 namespace twinbench::imports {
 namespace {
@@ -123,17 +121,6 @@ std::vector<double> Levels(std::vector<double> x, const std::string& where) {
   return x;
 }
 
-/// A column that stays within a turn starts again at its end; one that goes on is as it is.
-std::vector<double> Unwrapped(std::vector<double> x, const std::string&) {
-  constexpr double kWithinATurn_deg = 1.02 * kTurn_deg;
-  const auto [low, high] = std::ranges::minmax(x);
-  if (high - low > kWithinATurn_deg) return x;
-  for (std::size_t i = 1; i < x.size(); ++i) {
-    if (std::isfinite(x[i]) && std::isfinite(x[i - 1])) x[i] = x[i - 1] + std::remainder(x[i] - x[i - 1], kTurn_deg);
-  }
-  return x;
-}
-
 std::vector<double> Distinct(std::vector<double> x, const std::string&) {
   constexpr double kSame = 1e-9;
   std::erase_if(x, [](double value) { return !std::isfinite(value); });
@@ -176,113 +163,6 @@ std::vector<double> Places(std::vector<double> x, const std::string&) {
   for (auto& [where, own] : number) own = next++;
   for (double& angle_deg : x) angle_deg = number[at(angle_deg)];
   return x;
-}
-
-/// What errors of the first orders of both shafts, and a line, make of an angle of two that go together.
-Eigen::RowVectorXd TermsOf(double a_rad, double b_rad) {
-  constexpr int kOrders = 3;
-  Eigen::RowVectorXd terms(2 + 4 * kOrders);
-  terms.head<2>() << 1.0, b_rad;
-  for (int k = 1; k <= kOrders; ++k)
-    terms.segment<4>(4 * k - 2) << std::cos(k * a_rad), std::sin(k * a_rad), std::cos(k * b_rad), std::sin(k * b_rad);
-  return terms;
-}
-
-/// How far a goes with b, by least squares beside the errors of the first orders, and how much of its way it goes otherwise.
-struct Proportion {
-  double ratio = kNaN, loose = kNaN;
-};
-
-/// Angles of two shafts from their first row on [rad], where both are known.
-struct TwoShafts {
-  Eigen::VectorXd a_rad, b_rad;
-};
-
-TwoShafts ShaftsOf(const std::vector<double>& wrapped_a, const std::vector<double>& wrapped_b) {
-  const std::vector<double> a = Unwrapped(wrapped_a, ""), b = Unwrapped(wrapped_b, "");
-  std::vector<double> a_rad, b_rad;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    if (!std::isfinite(a[i] + b[i])) continue;
-    a_rad.push_back(a[i] * units::deg);
-    b_rad.push_back(b[i] * units::deg);
-  }
-  const auto from_first = [](const std::vector<double>& x) -> Eigen::VectorXd {
-    const auto all = Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
-    return x.empty() ? Eigen::VectorXd() : Eigen::VectorXd(all.array() - x.front());
-  };
-  return {from_first(a_rad), from_first(b_rad)};
-}
-
-double SlopeOf(const TwoShafts& shafts) {
-  constexpr double kTurnsToTell = 1.5;  // fewer do not tell an order from a line
-  const auto& [a_rad, b_rad] = shafts;
-  const Eigen::Index terms = TermsOf(0.0, 0.0).size();
-  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(terms, terms);
-  Eigen::VectorXd products = Eigen::VectorXd::Zero(terms);
-  for (Eigen::Index i = 0; i < a_rad.size(); ++i) {
-    const Eigen::RowVectorXd row = TermsOf(a_rad[i], b_rad[i]);
-    squares += row.transpose() * row;
-    products += row.transpose() * a_rad[i];
-  }
-  const double slower_rad = a_rad.cwiseAbs().cwiseMin(b_rad.cwiseAbs()).maxCoeff();
-  const Eigen::Index used = slower_rad > kTurnsToTell * units::turn ? terms : 2;
-  return squares.topLeftCorner(used, used).ldlt().solve(products.head(used))[1];
-}
-
-/// A jump from one row to the next that hardly any others have - a tooth that slipped, a reversal - tells nothing of a
-/// ratio.
-void TakeJumpsOut(TwoShafts& shafts, double slope) {
-  constexpr double kOfUsual = 12.0, kOfStep = 0.25;
-  constexpr int kMost = 3;  // more of them, or smaller ones, may be the rounding of counts
-  const Eigen::Index steps = shafts.a_rad.size() - 1;
-  const Eigen::VectorXd otherwise = shafts.a_rad - slope * shafts.b_rad;
-  const Eigen::VectorXd gained = otherwise.tail(steps) - otherwise.head(steps);
-  const double usual = MedianOf({gained.begin(), gained.end()});
-  const Eigen::VectorXd off = (gained.array() - usual).abs();
-  const Eigen::VectorXd step = (shafts.a_rad.tail(steps) - shafts.a_rad.head(steps)).cwiseAbs();
-  const double most =
-      std::max(kOfUsual * MedianOf({off.begin(), off.end()}), kOfStep * MedianOf({step.begin(), step.end()}));
-  if ((off.array() > most).count() > kMost) return;
-  for (Eigen::Index i = 0; i < steps; ++i)
-    if (off[i] > most) shafts.a_rad.tail(steps - i).array() -= gained[i] - usual;
-}
-
-Proportion ProportionOf(const std::vector<double>& a, const std::vector<double>& b) {
-  constexpr Eigen::Index kFewest = 8;
-  TwoShafts shafts = ShaftsOf(a, b);
-  if (shafts.a_rad.size() < 2) return {};
-  const Eigen::VectorXd way_rad = shafts.a_rad;
-  double slope = SlopeOf(shafts);
-  if (shafts.a_rad.size() >= kFewest) {
-    TakeJumpsOut(shafts, slope);
-    slope = SlopeOf(shafts);
-  }
-  const Eigen::VectorXd otherwise = way_rad - slope * shafts.b_rad;
-  return {slope, (otherwise.maxCoeff() - otherwise.minCoeff()) / way_rad.cwiseAbs().maxCoeff()};
-}
-
-std::vector<double> Ratio(const std::vector<double>& a, const std::vector<double>& b, const std::string&) {
-  return {ProportionOf(a, b).ratio};
-}
-
-/// The smallest number of turns of a that is one of b as well, as near as their errors let it be told.
-std::vector<double> WholeTurns(const std::vector<double>& a, const std::vector<double>& b, const std::string& where) {
-  constexpr int kMostTurns = 1000;       // of the slower one
-  constexpr double kLeastLoose = 1e-8;   // a file has no more digits
-  constexpr double kOfLoose = 0.25;      // of the ratio, that is a standard deviation
-  const bool a_is_slower = std::abs(ProportionOf(a, b).ratio) < 1.0;
-  const Proportion found = a_is_slower ? ProportionOf(b, a) : ProportionOf(a, b);
-  const double ratio = std::abs(found.ratio), sd = std::max(kLeastLoose, kOfLoose * found.loose);
-  double best = kNaN, least = std::numeric_limits<double>::infinity();
-  for (int slower = 1; slower <= kMostTurns; ++slower) {
-    const double faster = std::round(ratio * slower), off = (faster / (ratio * slower) - 1.0) / sd;
-    const double cost = off * off + 2.0 * std::log(slower);  // small numbers are more likely
-    if (!(cost < least)) continue;
-    least = cost;
-    best = a_is_slower ? slower : faster;
-  }
-  if (!std::isfinite(best)) throw InputError(where, "the two angles do not go together", "the angles of two shafts of one train");
-  return {best};
 }
 
 template <class Function>
