@@ -284,6 +284,17 @@ TEST(Mangled, OneValueThatIsUnlikeAllOthersOfItsPlaceIsDoubted) {
   }
 }
 
+/// Rows so near to each other that a recording has one position of several lie on their way: a reversal is no speck of dust.
+TEST(Mangled, WhatJumpsFromOneRowOfAPositionToTheNextIsNotDoubted) {
+  std::vector<Reading> readings = Readings();
+  for (Reading& r : readings) {
+    r.measured_rad = r.reference_rad + 1e-5 * std::sin(17.0 * r.reading) + (r.reading > 31 && r.pass == 0 ? 4e-3 : 0.0);
+    if (r.reading == 31) r.measured_rad += 2.5e-3;
+    r.position /= 3;
+  }
+  EXPECT_THAT(Lines(readings), Not(HasSubstr("of its place")));
+}
+
 /// Nobody plans a recording: neither a scenario that was made up for it, nor one that knows the device only.
 TEST(Mangled, AComparisonAtOtherAnglesThanPlannedMayHaveAnyNumberOfReadings) {
   const Scenario& planned = Benches()[2];

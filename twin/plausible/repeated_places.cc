@@ -29,24 +29,39 @@ std::vector<RowsOfPass> Passes(const Channel& channel) {
   return all;
 }
 
-/// Each value less the middle of the others of its place; NaN: there are fewer than two others, and nobody knows
-/// which is wrong. A position of passes of another length is another place.
+/// A row, and which visit of its place it belongs to: rows of one visit may lie beside each other on their way.
+struct Visitor {
+  std::size_t row = 0;
+  int visit = 0;
+};
+
+int VisitsOf(const std::vector<Visitor>& visitors) {
+  int visits = 1;
+  for (std::size_t i = 1; i < visitors.size(); ++i) visits += visitors[i].visit != visitors[i - 1].visit ? 1 : 0;
+  return visits;
+}
+
+/// Each value less the middle of those of other visits of its place; NaN: there are fewer than two visits, and nobody
+/// knows which is wrong. A position of passes of another length is another place.
 std::vector<double> BesideOthers(const Channel& channel, const std::vector<RowsOfPass>& passes,
                                  const std::vector<double>& left, bool is_angle) {
-  std::map<std::tuple<Phase, int, int, std::size_t>, RowsOfPass> places;
+  std::map<std::tuple<Phase, int, int, std::size_t>, std::vector<Visitor>> places;
+  int visit = 0;
   for (const RowsOfPass& pass : passes) {
-    for (const std::size_t i : pass) {
-      const Reading& r = *channel.reading[i];
-      places[{r.phase, r.setup, r.position, pass.size()}].push_back(i);
+    ++visit;
+    for (std::size_t k = 0; k < pass.size(); ++k) {
+      const Reading& r = *channel.reading[pass[k]];
+      if (k > 0 && r.position != channel.reading[pass[k - 1]]->position) ++visit;
+      places[{r.phase, r.setup, r.position, pass.size()}].push_back({pass[k], visit});
     }
   }
   std::vector<double> beside(channel.size(), kNaN);
-  for (const auto& [place, rows] : places) {
-    if (rows.size() < 3) continue;
-    for (const std::size_t i : rows) {
+  for (const auto& [place, visitors] : places) {
+    if (VisitsOf(visitors) < 3) continue;
+    for (const auto& [i, own] : visitors) {
       std::vector<double> off;
-      for (const std::size_t k : rows)
-        if (k != i) off.push_back(is_angle ? std::remainder(left[i] - left[k], units::turn) : left[i] - left[k]);
+      for (const auto& [k, other] : visitors)
+        if (other != own) off.push_back(is_angle ? std::remainder(left[i] - left[k], units::turn) : left[i] - left[k]);
       beside[i] = MiddleOf(std::move(off));
     }
   }
