@@ -11,12 +11,12 @@ namespace {
 using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
 
 /// A hob of 16 starts at 1.9375 revolutions a second that cuts a gear of 31 teeth: the table turns once a second.
-Scenario Train() {
+Scenario TrainOfOneSpeed() {
   return LoadScenario(twinbench::test::ScenarioPath("hob_transmission.toml"),
                       {"transmission.gear_teeth=31", "transmission.hob_starts=16"});
 }
 
-std::vector<Reading> Samples(const std::vector<double>& hob_Hz) {
+std::vector<Reading> SamplesAt(const std::vector<double>& hob_Hz) {
   std::vector<Reading> readings;
   for (std::size_t pass = 0; pass < hob_Hz.size(); ++pass) {
     for (int k = 0; k < 880; ++k) {
@@ -39,11 +39,11 @@ Diagnosis AfterTone(double frequency_Hz, const std::vector<double>& hob_Hz) {
   tone.rho = 3000.0;
   tone.parameters = {{.name = "amplitude", .unit = "arcsec", .value = 90.0 * units::arcsec, .u = units::arcsec},
                      {.name = "frequency", .unit = "Hz", .value = frequency_Hz, .u = 1e-4}};
-  benches::hob::TellOrdersOfTones(Samples(hob_Hz), Train(), diagnosis);
+  benches::hob::TellOrdersOfTones(SamplesAt(hob_Hz), TrainOfOneSpeed(), diagnosis);
   return diagnosis;
 }
 
-std::vector<std::string> NamesIn(const Diagnosis& diagnosis) {
+std::vector<std::string> NamesInOrder(const Diagnosis& diagnosis) {
   std::vector<std::string> names;
   for (const Cause& cause : diagnosis.causes) names.push_back(cause.effect + (cause.where.empty() ? "" : " ") + cause.where);
   return names;
@@ -52,7 +52,7 @@ std::vector<std::string> NamesIn(const Diagnosis& diagnosis) {
 TEST(HobAtOneSpeed, ToneAndWhatErrsWithTheMeshAreOneThingWithSeveralNames) {
   const Diagnosis d = AfterTone(31.00005, {1.9375});
   EXPECT_EQ(d.verdict, Verdict::kTie);
-  ASSERT_THAT(NamesIn(d), ElementsAre("tone", "gear_mesh", "periodic table", "periodic hob"));
+  ASSERT_THAT(NamesInOrder(d), ElementsAre("tone", "gear_mesh", "periodic table", "periodic hob"));
   EXPECT_THAT(d.causes.front().indistinguishable_from, testing::SizeIs(3));
   EXPECT_THAT(d.causes.front().next_measurement, HasSubstr("twice the speed"));
   const ParameterEstimate& at_hob = d.causes.back().parameters.back();  // seen on the table smaller by the ratio
@@ -63,14 +63,14 @@ TEST(HobAtOneSpeed, ToneAndWhatErrsWithTheMeshAreOneThingWithSeveralNames) {
 TEST(HobAtOneSpeed, AToneBetweenTheOrdersIsNotedWithThem) {
   const Diagnosis d = AfterTone(5.1, {-1.9375});
   EXPECT_EQ(d.verdict, Verdict::kNamed);
-  EXPECT_THAT(NamesIn(d), ElementsAre("tone"));
+  EXPECT_THAT(NamesInOrder(d), ElementsAre("tone"));
   EXPECT_THAT(d.notes, ElementsAre(HasSubstr("order 5.1 of the table's turn or 2.632 of the hob's")));
 }
 
 TEST(HobAtOneSpeed, TwoSpeedsTellAToneFromAnOrder) {
   const Diagnosis d = AfterTone(31.0, {1.9375, 1.2});
   EXPECT_EQ(d.verdict, Verdict::kNamed);
-  EXPECT_THAT(NamesIn(d), ElementsAre("tone"));
+  EXPECT_THAT(NamesInOrder(d), ElementsAre("tone"));
   EXPECT_THAT(d.notes, IsEmpty());
 }
 

@@ -177,8 +177,10 @@ Reading& Maker::Append(const Session& session, const Course& course, const Block
   reading.phase = PhaseOf(map_.course.phase).value_or(reading.phase);
   reading.pass = first_pass_ + course.pass[at];
   reading.direction = course.direction[at];
-  if (reading.pass != last_pass_) position_ = 0;
-  last_pass_ = reading.pass;
+  const auto stated = session.value.find("pass");  // a circle's passes are not those of one of its axes
+  const int pass = stated == session.value.end() ? reading.pass : static_cast<int>(std::lround(stated->second[block.begin]));
+  if (pass != last_pass_) position_ = 0;
+  last_pass_ = pass;
   reading.position = position_++;
   if (block.end - block.begin > 1) reading.n_samples = static_cast<int>(block.end - block.begin);
   for (const auto& [name, values] : session.value) Fill(name, values, block, reading);
