@@ -178,7 +178,8 @@ Reading& Maker::Append(const Session& session, const Course& course, const Block
   reading.pass = first_pass_ + course.pass[at];
   reading.direction = course.direction[at];
   const auto stated = session.value.find("pass");  // a circle's passes are not those of one of its axes
-  const int pass = stated == session.value.end() ? reading.pass : static_cast<int>(std::lround(stated->second[block.begin]));
+  const double own = stated == session.value.end() ? kNaN : stated->second[block.begin];
+  const int pass = std::isfinite(own) ? static_cast<int>(std::lround(own)) : reading.pass;
   if (pass != last_pass_) position_ = 0;
   last_pass_ = pass;
   reading.position = position_++;
