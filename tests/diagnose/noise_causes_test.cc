@@ -7,6 +7,7 @@
 #include "tests/diagnose/ring_run.h"
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/stream.h"
+#include "twin/diagnose/at_jumps.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/autoregression.h"
 #include "twin/diagnose/engine/noise_causes.h"
@@ -188,6 +189,18 @@ TEST(StatedOutliers, ThatAreMoreOrLargerOrWithoutAStatementAreStillOne) {
     EXPECT_EQ(run.diagnosis.alarm_p, 1e-9);
     EXPECT_EQ(run.diagnosis.verdict, Verdict::kNamed);
   }
+}
+
+// A step of 100 u in a wave of 20: a reading within it is on its way, one beyond it or away from it is far from all.
+TEST(AwayFromJumps, LeavesOutWhatLiesBetweenBothSidesOfAStepAndNothingElse) {
+  LinearRun run = SyntheticSweep(400);
+  const double u = run.sigma[0];
+  Eigen::VectorXd found(run.Rows()), left = Eigen::VectorXd::Zero(run.Rows());
+  for (int row = 0; row < run.Rows(); ++row) found[row] = 20.0 * u * std::sin(0.06 * row) + (row >= 30 ? 100.0 * u : 0.0);
+  left[29] = 60.0 * u, left[30] = -90.0 * u, left[31] = -30.0 * u;  // on their way
+  left[28] = -60.0 * u, left[33] = -60.0 * u, left[60] = 1.0 * u;   // away from the step, the other way, too late
+  left[32] = 140.0 * u;
+  EXPECT_EQ(AwayFromJumps({28, 29, 30, 31, 32, 33, 60}, run, found, left), (std::vector<int>{28, 32, 33, 60}));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/diagnose/accepted_columns.h"
+#include "twin/diagnose/at_jumps.h"
 #include "twin/diagnose/engine/alone.h"
 #include "twin/diagnose/engine/posterior.h"
 #include "twin/diagnose/isolability.h"
@@ -91,6 +92,20 @@ void TellOutliers(const NoiseCause& repair, const LinearRun& run, std::vector<Ca
   diagnosis.alarm_p = std::min(diagnosis.alarm_p, std::exp(-repair.log_bayes));
 }
 
+/// Without far values that are on their way where a cause jumps.
+std::vector<NoiseCause> RepairsOf(const LinearRun& run, const Analysis& analysis) {
+  std::vector<NoiseCause> repairs = analysis.repairs;
+  const auto are_outliers = [](const NoiseCause& repair) { return repair.kind == NoiseCause::Kind::kOutliers; };
+  if (std::ranges::none_of(repairs, are_outliers) || analysis.found.terms.empty()) return repairs;
+  const Eigen::VectorXd left = FitAll(run, analysis.noise, AcceptedOf(analysis)).after;
+  Eigen::VectorXd found = Eigen::VectorXd::Zero(run.Rows());
+  for (const Term& term : analysis.found.terms) found += term.columns * term.amplitudes;
+  for (NoiseCause& repair : repairs)
+    if (are_outliers(repair)) repair.outliers = AwayFromJumps(repair.outliers, run, found, left);
+  std::erase_if(repairs, [&](const NoiseCause& repair) { return are_outliers(repair) && repair.outliers.empty(); });
+  return repairs;
+}
+
 /// Names what the analysis found.
 /// @param first  What was decided without it.
 Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, std::vector<Cause> first) {
@@ -100,7 +115,7 @@ Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, std::vecto
   diagnosis.causes = std::move(naming.causes);
   diagnosis.unknown = std::move(naming.unknown);
   diagnosis.alarm_p = analysis.null.PValue(analysis.found.first_statistic);
-  for (const NoiseCause& repair : analysis.repairs) {
+  for (const NoiseCause& repair : RepairsOf(run, analysis)) {
     diagnosis.noise.push_back(repair.words);
     if (repair.kind == NoiseCause::Kind::kOutliers) TellOutliers(repair, run, first, diagnosis);
   }
