@@ -1,9 +1,9 @@
 #include "twin/diagnose/at_jumps.h"
 
 #include <cmath>
-#include <cstdlib>
 
 #include "twin/core/distributions.h"
+#include "twin/diagnose/same_pass.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -13,9 +13,7 @@ namespace {
 double GainTo(const LinearRun& run, const Eigen::VectorXd& found, int row, int behind) {
   const int other = row + behind * run.Channels();
   if (other < 0 || other >= run.Rows()) return kNaN;
-  const Schedule& s = run.schedule;
-  const auto here = static_cast<std::size_t>(run.ReadingOf(row)), there = static_cast<std::size_t>(run.ReadingOf(other));
-  const bool is_same = s.setup[here] == s.setup[there] && s.pass[here] == s.pass[there] && s.phase[here] == s.phase[there];
+  const bool is_same = SamePass(run.schedule, run.ReadingOf(row), run.ReadingOf(other));
   return is_same ? found[other] - found[row] : kNaN;
 }
 

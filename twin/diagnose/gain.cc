@@ -12,6 +12,7 @@
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/folds.h"
 #include "twin/diagnose/held_out.h"
+#include "twin/diagnose/same_pass.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -63,12 +64,6 @@ struct Model {
 /// What the file would show, had it these amplitudes.
 Eigen::VectorXd ShownWith(const Model& model, const Eigen::VectorXd& amplitudes) {
   return model.written + model.columns.S * (amplitudes - model.amplitudes);
-}
-
-/// True if the next reading follows in the same pass.
-bool HasNext(const Schedule& s, int i) {
-  const std::size_t a = At(i), b = a + 1;
-  return i + 1 < s.Readings() && s.setup[a] == s.setup[b] && s.pass[a] == s.pass[b] && s.phase[a] == s.phase[b];
 }
 
 /// Neighbours that are predicted from readings of their own differ by the noise of these, too: by simulation.

@@ -9,6 +9,7 @@
 #include "twin/core/distributions.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/at.h"
+#include "twin/diagnose/same_pass.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -34,10 +35,6 @@ double BinomialTail(int count, int trials, double p) {
     tail += std::exp(LogGamma(trials + 1.0) - LogGamma(k + 1.0) - LogGamma(trials - k + 1.0) +
                      k * std::log(p) + (trials - k) * std::log1p(-p));
   return tail;
-}
-
-bool SamePass(const Schedule& s, int a, int b) {
-  return s.setup[At(a)] == s.setup[At(b)] && s.pass[At(a)] == s.pass[At(b)] && s.phase[At(a)] == s.phase[At(b)];
 }
 
 bool StandInARow(const std::set<int>& far, const Schedule& s) {

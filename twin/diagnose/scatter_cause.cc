@@ -8,6 +8,7 @@
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/candidates.h"
 #include "twin/diagnose/engine/estimate.h"
+#include "twin/diagnose/same_pass.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
@@ -31,15 +32,10 @@ NoiseModel Undisturbed(const LinearRun& run, const Analysis& analysis) {
   return noise;
 }
 
-bool IsNext(const Schedule& s, int i) {
-  const auto a = static_cast<std::size_t>(i), b = a + 1;
-  return i + 1 < s.Readings() && s.setup[a] == s.setup[b] && s.pass[a] == s.pass[b] && s.phase[a] == s.phase[b];
-}
-
 double NeighboursScore(const LinearRun& run, const Eigen::ArrayX<bool>& shows, const Eigen::VectorXd& left) {
   double products = 0.0, squares = 0.0;
   for (int row = 0; row < run.Rows(); ++row) {
-    if (!shows[row] || !IsNext(run.schedule, run.ReadingOf(row))) continue;
+    if (!shows[row] || !HasNext(run.schedule, run.ReadingOf(row))) continue;
     const double product = left[row] * left[row + run.Channels()];
     products += product;
     squares += product * product;

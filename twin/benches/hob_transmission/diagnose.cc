@@ -253,7 +253,10 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
                                 const diagnose::DiagnoseOptions& options) {
   RequireHeads(readings);
   diagnose::DiagnosisRun result = diagnose::DiagnoseByTwin(readings, scenario, options, Comparison(readings, scenario));
-  if (HasClock(readings)) TellOrdersOfTones(readings, scenario, result.diagnosis);
+  if (!HasClock(readings)) return result;
+  std::vector<Reading> samples;
+  std::ranges::copy_if(readings, std::back_inserter(samples), IsSample);
+  TellOrdersOfTones(samples, scenario, result.diagnosis);
   return result;
 }
 

@@ -18,6 +18,8 @@ namespace {
 
 using diagnose::Cause, diagnose::ParameterEstimate;
 
+constexpr double kAlike = 0.02;  // of its size: two waves are one, whatever the noise
+
 const ParameterEstimate* Found(const Cause& cause, const std::string& name) {
   const auto found = std::ranges::find(cause.parameters, name, &ParameterEstimate::name);
   return found == cause.parameters.end() ? nullptr : &*found;
@@ -79,7 +81,7 @@ bool IsListed(const std::vector<Cause>& causes, const Cause& one) {
 /// All that errs like the tone; empty: nothing does, or the run tells them.
 std::vector<Cause> AlikeInAngle(const Cause& tone, const model::Course& course, const TransmissionSettings& train,
                                 double frequency_Hz) {
-  constexpr double kAlike = 0.02, kClearly = 0.2;  // of its size, whatever the noise
+  constexpr double kClearly = 0.2;  // of its size, whatever the noise
   const double seen = std::isfinite(tone.rho) && tone.rho > 0.0 ? diagnose::tuning::kBaarda / tone.rho : kClearly;
   std::vector<Cause> alike;
   for (const double whole : WholeNear(PeriodsPerTurn(course, frequency_Hz), train)) {
@@ -106,9 +108,7 @@ void NameTogether(std::vector<Cause>& group) {
 
 }  // namespace
 
-void TellOrdersOfTones(const std::vector<Reading>& readings, const Scenario& scenario, diagnose::Diagnosis& diagnosis) {
-  std::vector<Reading> samples = readings;
-  std::erase_if(samples, [](const Reading& r) { return r.velocity_rad_s == 0.0 || !std::isfinite(r.reference_rad); });
+void TellOrdersOfTones(const std::vector<Reading>& samples, const Scenario& scenario, diagnose::Diagnosis& diagnosis) {
   if (samples.size() < 3) return;
   const model::Course course = model::CourseOf(samples);
   const TransmissionSettings& train = HobOf(scenario).transmission;
@@ -123,7 +123,7 @@ void TellOrdersOfTones(const std::vector<Reading>& readings, const Scenario& sce
       if (group.size() > 1) {
         NameTogether(group);
         if (diagnosis.verdict == diagnose::Verdict::kNamed) diagnosis.verdict = diagnose::Verdict::kTie;
-      } else if (Unlikeness(course, of_hob, frequency->value) < 0.02) {
+      } else if (Unlikeness(course, of_hob, frequency->value) < kAlike) {
         diagnosis.notes.push_back(
             fmt::format("all readings are of one speed, where a tone of {:.5g} Hz may as well be an error of order {:.4g} of "
                         "the table's turn or {:.4g} of the hob's",

@@ -11,6 +11,7 @@ namespace twinbench::benches::hob {
 /// Where all readings are of one speed and direction, an error that repeats with the angle of a shaft is a vibration of a
 /// frequency: a tone that meets a whole number of periods per turn of the table or of the hob is named together with what
 /// errs so, and the verdict is a tie; of one that meets none its orders are a note.
-void TellOrdersOfTones(const std::vector<Reading>& readings, const Scenario& scenario, diagnose::Diagnosis& diagnosis);
+/// @param samples  Of the shafts in motion.
+void TellOrdersOfTones(const std::vector<Reading>& samples, const Scenario& scenario, diagnose::Diagnosis& diagnosis);
 
 }  // namespace twinbench::benches::hob

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/encoder_comparison/diagnosis/target_curve.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/diagnose/unknown/collector.h"
@@ -37,13 +38,7 @@ std::vector<Product> WavesOf(const std::vector<Cause>& causes) {
 }
 
 Accepted CurveOf(const std::vector<Accepted>& accepted, const std::vector<Cause>& causes, Eigen::Index rows) {
-  Accepted curve;
-  curve.family.kind = Kind::kUnknown;
-  curve.family.effect = "error curve";
-  curve.family.where = "angle";
-  curve.family.amplitudes = {{"strength", "1", 1.0, 1.0}};
-  curve.amplitudes = Eigen::VectorXd::Ones(1);
-  curve.columns = Eigen::MatrixXd::Zero(rows, 1);
+  Accepted curve = ErrorCurve(Eigen::VectorXd::Zero(rows));
   for (const Accepted& a : accepted) {
     if (IsPieceOfCurve(a)) curve.columns += a.columns * a.amplitudes;
   }

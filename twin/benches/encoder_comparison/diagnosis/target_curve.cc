@@ -43,8 +43,7 @@ Eigen::VectorXd AtTargets(const Eigen::MatrixXd& targets, const Eigen::VectorXd&
   return (targets.transpose() * values).cwiseQuotient(targets.colwise().sum().transpose());
 }
 
-Accepted CurveThrough(const SignalContext& context, const Eigen::MatrixXd& targets, const Eigen::VectorXd& error_rad) {
-  constexpr Eigen::Index kMostWaves = 100;  // of a file that somebody may still read
+Accepted ErrorCurve(const Eigen::VectorXd& error_rad) {
   Accepted curve;
   curve.family.kind = Kind::kUnknown;
   curve.family.effect = "error curve";
@@ -52,6 +51,12 @@ Accepted CurveThrough(const SignalContext& context, const Eigen::MatrixXd& targe
   curve.family.amplitudes = {{"strength", "1", 1.0, 1.0}};
   curve.amplitudes = Eigen::VectorXd::Ones(1);
   curve.columns = error_rad;
+  return curve;
+}
+
+Accepted CurveThrough(const SignalContext& context, const Eigen::MatrixXd& targets, const Eigen::VectorXd& error_rad) {
+  constexpr Eigen::Index kMostWaves = 100;  // of a file that somebody may still read
+  Accepted curve = ErrorCurve(error_rad);
   if (targets.cols() > kMostWaves) return curve;
   const Eigen::VectorXd target_rad = AtTargets(targets, context.device_rad);
   const HalfPeriods modes = Between(target_rad);

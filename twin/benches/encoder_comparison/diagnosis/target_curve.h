@@ -9,6 +9,9 @@ namespace twinbench::diagnose::encoder {
 /// @param targets  Readings x targets: 1 where a reading is at one.
 Eigen::VectorXd AtTargets(const Eigen::MatrixXd& targets, const Eigen::VectorXd& values);
 
+/// A structure without a name that is no more than its values, one a reading.
+Accepted ErrorCurve(const Eigen::VectorXd& error_rad);
+
 /// Errors of targets as a structure without a name, and as waves of the device's angle that a twin can carry out:
 /// cosines of half periods over the travel, one a target, which pass through all of them.
 /// @param error_rad  One a reading, the same at every visit.

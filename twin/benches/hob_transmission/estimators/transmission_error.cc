@@ -78,17 +78,13 @@ void FillFromOneTurn(const TurnFit& fit, PositionError& position) {
 }
 
 /// Where the hob was at the samples, as the table turns meanwhile: what the fit says, which no count rounds.
-Eigen::VectorXd HobPlaces_rad(const std::vector<Pass>& passes, const HarmonicSeries& series) {
-  std::vector<double> places_rad;
-  for (const Pass& pass : passes) {
-    for (const double th_rad : pass.th_rad) {
-      double error_rad = 0.0;
-      for (int k = 1; k <= series.Highest(); ++k)
-        error_rad += (series.At(k).value * std::polar(1.0, k * th_rad)).real();
-      places_rad.push_back(th_rad - error_rad);
-    }
-  }
-  return Eigen::Map<Eigen::VectorXd>(places_rad.data(), std::ssize(places_rad));
+Eigen::VectorXd HobPlaces_rad(const Eigen::VectorXd& th_rad, const HarmonicSeries& series) {
+  return th_rad.unaryExpr([&series](double at_rad) {
+    double error_rad = 0.0;
+    for (int k = 1; k <= series.Highest(); ++k)
+      error_rad += (series.At(k).value * std::polar(1.0, k * at_rad)).real();
+    return at_rad - error_rad;
+  });
 }
 
 /// What counting repeats in every turn is no scatter between them; where it would not be seen beside that, it is left out.
@@ -104,7 +100,7 @@ void AddCounting(const std::vector<Pass>& passes, const TransmissionOptions& opt
     th_rad.conservativeResize(th_rad.size() + std::ssize(pass.th_rad));
     th_rad.tail(std::ssize(pass.th_rad)) = Eigen::Map<const Eigen::VectorXd>(pass.th_rad.data(), std::ssize(pass.th_rad));
   }
-  const Eigen::MatrixXd waves = RoundingWaves(HobPlaces_rad(passes, series), options.hob_step_rad, 0.0);
+  const Eigen::MatrixXd waves = RoundingWaves(HobPlaces_rad(th_rad, series), options.hob_step_rad, 0.0);
   position.of_rounding_rad2 = AddRounding(th_rad, waves, series);
 }
 
