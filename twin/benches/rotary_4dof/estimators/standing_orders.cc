@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "twin/core/units.h"
+#include "twin/separate/fourier.h"
 
 namespace twinbench::separate::rotary {
 namespace {
@@ -21,16 +22,6 @@ Eigen::VectorXd LagsOf(const Eigen::MatrixXd& cov) {
   return lags;
 }
 
-/// A sum over the angles of a turn.
-std::complex<double> OrderIn(const Eigen::VectorXd& values, Eigen::Index order) {
-  const Eigen::Index n = values.size();
-  std::complex<double> sum = 0.0;
-  for (Eigen::Index k = 0; k < n; ++k)
-    sum +=
-        values[k] * std::polar(1.0, -units::turn * static_cast<double>((order * k) % n) / static_cast<double>(n));
-  return sum / static_cast<double>(n);
-}
-
 struct Order {
   std::complex<double> size;
   double variance = 0.0;  // of `size`, both parts together
@@ -40,10 +31,12 @@ struct Order {
 };
 
 std::vector<Order> OrdersOf(const ErrorMotion& motion) {
-  const Eigen::VectorXd lags = LagsOf(motion.cov);
+  const Eigen::Index n = motion.contour.size();
+  const Fourier fourier(static_cast<int>(n));
+  const Eigen::VectorXcd sizes = fourier.Forward(motion.contour.cast<std::complex<double>>()) / static_cast<double>(n),
+                         variances = fourier.Forward(LagsOf(motion.cov).cast<std::complex<double>>()) / static_cast<double>(n);
   std::vector<Order> orders;
-  for (Eigen::Index k = 0; 2 * k < motion.contour.size(); ++k)
-    orders.push_back({OrderIn(motion.contour, k), std::max(0.0, OrderIn(lags, k).real()), k < 2});
+  for (Eigen::Index k = 0; 2 * k < n; ++k) orders.push_back({sizes[k], std::max(0.0, variances[k].real()), k < 2});
   const double clear = std::log(static_cast<double>(orders.size()) / kByChanceInAll);
   std::size_t clearest = 2;
   for (std::size_t k = 2; k < orders.size(); ++k) {
