@@ -56,14 +56,16 @@ Row RowOf(const Plan& plan) {
   return row;
 }
 
-Rows Scored(const Plans& plans, int threads) {
-  Rows rows(plans.size());
+/// Rows are written as they come, too: a run that is stopped keeps those that it has.
+Rows Scored(const Plans& plans, const Options& options) {
+  Rows rows(plans.size()), done;
   std::mutex reporting;
-  int done = 0;
-  hidden::InParallel(plans.size(), threads, [&](std::size_t k) {
+  hidden::InParallel(plans.size(), options.threads, [&](std::size_t k) {
     rows[k] = RowOf(plans[k]);
     const std::scoped_lock lock(reporting);
-    fmt::print(stderr, "{}/{} {} {} {} [{}] {}: {} {:.1f} s\n", ++done, plans.size(), rows[k].set, rows[k].bench,
+    done.push_back(rows[k]);
+    if (!options.out.empty()) WriteWhole(options.out, Csv(done));
+    fmt::print(stderr, "{}/{} {} {} {} [{}] {}: {} {:.1f} s\n", done.size(), plans.size(), rows[k].set, rows[k].bench,
                rows[k].name, rows[k].hidden, rows[k].marks[kRight].value_or(false) ? "right" : "WRONG",
                rows[k].answer.substr(0, 100), rows[k].seconds);
   });
@@ -90,7 +92,7 @@ void CheckFolderOf(const std::string& path) {
 int Score(const Options& options) {
   for (const std::string& path : {options.out, options.page}) CheckFolderOf(path);
   const Rows before = options.since.empty() ? Rows{} : ReadRows(options.since);
-  const Rows rows = options.read.empty() ? Scored(PlansOf(options), options.threads) : ReadRows(options.read);
+  const Rows rows = options.read.empty() ? Scored(PlansOf(options), options) : ReadRows(options.read);
   const std::string summary = Summary(rows);
   if (!options.out.empty()) WriteWhole(options.out, Csv(rows));
   if (!options.page.empty()) WriteWhole(options.page, PageOf(options, summary));

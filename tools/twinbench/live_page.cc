@@ -12,7 +12,6 @@
 #include "tools/twinbench/live_judge.h"
 #include "tools/twinbench/stop_signal.h"
 #include "tools/web/bundle.h"
-#include "twin/core/another_instrument.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
 #include "twin/report/page/named_numbers.h"
@@ -31,7 +30,7 @@ std::string OneLine(const nlohmann::json& json) {
 std::vector<const ReadingColumn*> Shown(const BenchFormat& format) {
   std::vector<const ReadingColumn*> columns;
   for (const ReadingColumn& column : format.columns) {
-    if (column.number && !IsOfAnotherInstrument(column)) columns.push_back(&column);
+    if (column.number && !column.IsOfAnotherInstrument()) columns.push_back(&column);
   }
   return columns;
 }

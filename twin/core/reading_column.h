@@ -34,6 +34,9 @@ struct ReadingColumn {
   bool MayBeEmpty() const { return role != ColumnRole::kRequired; }
   /// Of a reading that has no numbers these are not kept.
   bool IsShown() const { return role == ColumnRole::kShown || role == ColumnRole::kShownToo; }
+  /// What another instrument shows in the place of the bench's own: few runs have it, and those that do have nothing
+  /// else. It is written only where it was read.
+  bool IsOfAnotherInstrument() const { return may_be_absent && role == ColumnRole::kShownToo; }
 };
 
 /// The place of a quantity that has no field of its own in a reading.

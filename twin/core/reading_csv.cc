@@ -6,7 +6,6 @@
 #include <set>
 #include <sstream>
 
-#include "twin/core/another_instrument.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/csv.h"
 #include "twin/core/errors.h"
@@ -71,7 +70,7 @@ std::vector<ReadingColumn> NeededIn(const CsvTable& table, std::vector<ReadingCo
   };
   const bool is_of_another =
       std::ranges::any_of(columns,
-                          [&](const ReadingColumn& c) { return IsOfAnotherInstrument(c) && !has_none(c); }) &&
+                          [&](const ReadingColumn& c) { return c.IsOfAnotherInstrument() && !has_none(c); }) &&
       std::ranges::all_of(columns,
                           [&](const ReadingColumn& c) { return c.role != ColumnRole::kShown || has_none(c); });
   std::erase_if(columns, [&](const ReadingColumn& column) {
@@ -110,7 +109,7 @@ std::vector<ReadingColumn> ColumnsFor(const std::vector<Reading>& readings, cons
   std::vector<ReadingColumn> columns = bench.columns;
   if (all_ok) std::erase_if(columns, [](const ReadingColumn& column) { return column.name == kStatusColumn; });
   std::erase_if(columns, [&readings](const ReadingColumn& column) {
-    return IsOfAnotherInstrument(column) &&
+    return column.IsOfAnotherInstrument() &&
            std::ranges::all_of(readings, [&column](const Reading& r) { return column.print(r).empty(); });
   });
   return columns;

@@ -117,7 +117,7 @@ inline constexpr double kWarmUps = 3.0;
 // --- effects that the twin is asked about ---
 
 /// Grid points over all shapes of an effect, and of onsets.
-inline constexpr double kAskedPoints = 64.0;
+inline constexpr double kAskedPoints = 16.0;
 inline constexpr std::size_t kAskedOnsets = 200;
 /// About the plausible value: a factor either way of a shape with a fixed sign, multiples of one that may change
 /// it.

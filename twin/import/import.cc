@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "twin/core/another_instrument.h"
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/import/guess.h"
@@ -29,7 +28,7 @@ void RequireColumns(const BenchFormat& bench, const Map& map, const std::vector<
     return std::ranges::any_of(map.columns, [&column](const MappedColumn& c) { return c.column == column.name; });
   };
   const bool is_of_another = std::ranges::any_of(
-      bench.columns, [&](const ReadingColumn& c) { return IsOfAnotherInstrument(c) && is_given(c); });
+      bench.columns, [&](const ReadingColumn& c) { return c.IsOfAnotherInstrument() && is_given(c); });
   std::string missing;
   for (const ReadingColumn& column : bench.columns) {
     if (!column.MustBeThere() || !column.number || (is_of_another && column.role == ColumnRole::kShown)) continue;

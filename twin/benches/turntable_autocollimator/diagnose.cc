@@ -237,7 +237,6 @@ TwinComparison Comparison(const std::vector<Reading>& readings, const Scenario& 
   comparison.to_SI = arcsec;
   comparison.plausible = 0.5 * arcsec;
   comparison.sizes_by_trace = comparison.alike_by_trace = true;
-  comparison.asked_points = 16.0;
   if (own.HasPolygon()) comparison.nulled = {"x"};
   comparison.is_used = HasBoth;
   comparison.noise_of = [](const Scenario& s, const Reading&) -> Eigen::VectorXd {

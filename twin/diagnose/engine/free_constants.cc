@@ -170,7 +170,6 @@ FreeConstants FitFree(const Followed& twin, std::vector<FreePoint> points, const
     }
     // New slopes would tell nothing where the old ones said what is left.
     const bool is_linear =
-        by_place &&
         how.weights.cwiseProduct(left_before - free.columns * (free.values - before) - residual).norm() < kLinear;
     const bool has_settled = is_linear || (k > 0 && least - now < kSettled * now);
     least = now;
