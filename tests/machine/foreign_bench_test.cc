@@ -166,6 +166,15 @@ TEST_F(ForeignTurntable, AControllerThatFreezesWhileTheTableTurnsIsToldSo) {
   EXPECT_LT(Kept(), 8u) << "what was kept are ends of moves 1 to 8 at most, one of which was the run-up";
 }
 
+/// Its faces are nulled, some of them beyond the places of the plan.
+TEST_F(ForeignTurntable, WithAPolygonIsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
+  Write("foreign.toml", Data("polygon.toml"));
+  BeSet("polygon");
+  const auto faults = {"autocollimator.late@14", "controller.mute@20", "controller.unsettled@30"};
+  ExpectKept(MeasureWith({faults.begin(), faults.end()}), 36, {{"timeout", 1}, {"not_in_position", 1}});
+  ExpectRecovered(Separated(), "turntable");
+}
+
 // --- the same turntable, as axis C of a machine that LinuxCNC runs ---
 
 class ForeignTurntableOnLinuxCnc : public ForeignTurntable {
@@ -357,6 +366,24 @@ TEST_F(ForeignHob, IsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
 TEST_F(ForeignHob, AControllerThatFreezesWhileTheHobTurnsOnIsToldSo) {
   ExpectStateUnknown(MeasureWith({"controller.freeze@3"}, 1));
   EXPECT_EQ(Kept(), 150u) << "the first pass; event 3 begins the second";
+}
+
+// --- a machine that goes round ---
+
+class ForeignCircle : public ForeignBenchProgram {
+ protected:
+  ForeignCircle() : ForeignBenchProgram("circle", Data("circle_bench.toml")) {}
+};
+
+TEST_F(ForeignCircle, IsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
+  ExpectKept(MeasureWith({"bar.lost@1", "controller.mute@3"}), 72, {{"gap", 1}, {"timeout", 1}});
+  const nlohmann::json errors = Separated().at("errors");
+  for (const char* what : {"scale_mismatch_um_m", "squareness_arcsec"}) {
+    const auto& error = errors.at(std::string("machine.") + what);
+    EXPECT_NEAR(error.at("value").get<double>(), hidden().at(what).get<double>(),
+                kCoverage * error.at("u").get<double>())
+        << what;
+  }
 }
 
 // --- two rotary tables ---

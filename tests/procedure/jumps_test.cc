@@ -9,6 +9,7 @@
 #include "twin/core/device_fault.h"
 #include "twin/procedure/doubted_instruments.h"
 #include "twin/procedure/plausible.h"
+#include "twin/procedure/step_proof.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -67,13 +68,21 @@ TEST(RequireNoJump, WhatPassesDifferByIsTheSameBeforeAndBehindEachReading) {
   EXPECT_EQ(PassUntilNoticed(10, kJump), 11);
   EXPECT_EQ(PassUntilNoticed(10, -kJump), 11);
   EXPECT_EQ(PassUntilNoticed(4, 1e-6), 16);  // 10 times the noise
+  const auto there_and_back = [](int from, int to) {
+    return PassUntilNoticed(
+        [=](Reading& r) { r.autocollimator_yaw_rad += r.reading >= from && r.reading < to ? kJump : 0.0; },
+        [](const Reading& r, const auto& kept) { RequireNoJump({X()}, r, kept); });
+  };
+  EXPECT_EQ(there_and_back(9, 15), 15);  // all but the first and the last of the second
+  EXPECT_EQ(there_and_back(9, 14), 14);
+  EXPECT_EQ(there_and_back(2, 6), 11);
 }
 
 using ShownLater = std::function<double(double k)>;  // by how much x is another at the k-th reading
 
 /// Four passes. Numbers of the readings behind which the axes come again, and of that which ended it.
 std::string Closed(const ShownLater& later) {
-  Closing closing({X()});
+  Closing closing({X()}, {});
   std::string came;
   for (int k = 0; k < 4 * kPlaces; ++k) {
     Reading r = NumberOf(k);
@@ -118,16 +127,33 @@ int PassUntilExchangeIsNoticed(int n, double curve_V) {
     r.mean_V = {0.1 * r.position + apart_V, 0.0, 0.1 * r.position, 0.0};
     if (r.reading >= n) std::swap(r.mean_V[0], r.mean_V[2]);
   };
-  return PassUntilNoticed(exchange, [&](const Reading& r, const auto& kept) { RequireNotExchanged(a, b, r, kept); });
+  return PassUntilNoticed(exchange,
+                          [&](const Reading& r, const auto& kept) { RequireNotReversed(a, &b, r, kept); });
 }
 
-TEST(RequireNotExchanged, SpotsDifferAgainstEachOtherAsInThePassBefore) {
+TEST(Closing, OfARunThatIsGoneOnWithAsksForWhatWasKeptBefore) {
+  std::vector<Reading> kept;
+  for (int k = 0; k < 2 * kPlaces - 1; ++k) kept.push_back(NumberOf(k));
+  Closing closing({X()}, kept);
+  closing.Took(NumberOf(2 * kPlaces - 1));
+  ASSERT_NE(closing.Asks(), nullptr);
+  EXPECT_EQ(closing.Asks()->reading, 0);
+}
+
+TEST(RequireNotReversed, SpotsDifferAgainstEachOtherAsInThePassBefore) {
   EXPECT_EQ(PassUntilExchangeIsNoticed(100, 1e-4), 16);
   EXPECT_EQ(PassUntilExchangeIsNoticed(0, 1e-4), 16);  // from the begin on nothing tells it
   EXPECT_EQ(PassUntilExchangeIsNoticed(8, 1e-4), 13);
   EXPECT_EQ(PassUntilExchangeIsNoticed(10, 1e-4), 15);
   EXPECT_EQ(PassUntilExchangeIsNoticed(4, 1e-4), 16);  // four places are too few
   EXPECT_EQ(PassUntilExchangeIsNoticed(8, 1e-6), 16);  // less than ten times the noise
+}
+
+TEST(RequireNotReversed, AColumnHasTheSignThatItHadInThePassBefore) {
+  const auto negate = [](Reading& r) { r.autocollimator_yaw_rad *= r.reading >= kPlaces ? -1.0 : 1.0; };
+  const auto require = [](const Reading& r, const auto& kept) { RequireNotReversed(X(), nullptr, r, kept); };
+  EXPECT_EQ(PassUntilNoticed([](Reading&) {}, require), 16);
+  EXPECT_EQ(PassUntilNoticed(negate, require), 13);
 }
 
 /// Shows a place and noise of about kNoiseOfOne, or what a fault makes of that.
@@ -194,6 +220,30 @@ TEST(DoubtedInstruments, KeepNothingOfDeadStuckLateAndRangelessOnesAndAllOfGoodO
   for (const auto& [fault, noise] : cases) EXPECT_KEPT(Measured(fault, noise));
 }
 
+/// Sixteen readings: of how many the steps are proved.
+int Steady(double x_from_the_tenth, double y_from_the_tenth) {
+  StepProof proof(false);
+  for (int k = 0; k < 16; ++k) {
+    const double chance = 0.01 * std::sin(17.0 * k);
+    const double x = k < 10 ? 0.95 : x_from_the_tenth, y = k < 10 ? 0.005 : y_from_the_tenth;
+    try {
+      const double step = k % 3 == 0 ? -1e-4 : 1e-4;
+      proof.Require({{"x", step, step * (x + chance), 1e-7}, {"y", 0.0, step * (y + 0.1 * chance), 1e-7}});
+    } catch (const DeviceFault& fault) {
+      EXPECT_EQ(fault.kind(), FaultKind::kImplausible) << fault.what();
+      return k;
+    }
+  }
+  return 16;
+}
+
+TEST(StepProof, GainAndRollAreWhatTheyWereBesideTheReadingsBefore) {
+  EXPECT_EQ(Steady(0.95, 0.005), 16);
+  EXPECT_EQ(Steady(0.92, 0.005), 16);  // a stage that goes its step less well
+  EXPECT_EQ(Steady(0.80, 0.005), 11);
+  EXPECT_EQ(Steady(0.95, 0.03), 11);
+}
+
 /// The hob's encoder at an angle of the table's, and 20 times that.
 Reading OfHob(double table_deg, double hob_deg) {
   Reading r;
@@ -219,6 +269,19 @@ TEST(RequireGoesAlong, WhatFollowsGoesTheWayThatItShouldWithinHalfOfItAndARanged
 TEST(RequireAnother, ASampleAtTheLineOfTheOneBeforeIsNoneOfItsOwnWhateverElseItShows) {
   EXPECT_NO_THROW(RequireAnother(OfHob(12.0, 200.0), OfHob(10.0, 200.0), "hob_transmission"));
   EXPECT_THROW(RequireAnother(OfHob(10.0, 200.001), OfHob(10.0, 200.0), "hob_transmission"), DeviceFault);
+}
+
+TEST(RequireNextLine, SamplesAreAsManyLinesApartAsTheFirstTwo) {
+  constexpr int kLines = 100;
+  double step_rad = kNaN;
+  const auto next = [&](double from_deg, double to_deg) {
+    RequireNextLine(OfHob(to_deg, 0.0), OfHob(from_deg, 0.0), "hob_transmission", kLines, step_rad);
+  };
+  next(350.0, 352.0);
+  EXPECT_NO_THROW(next(352.0, 354.009));
+  EXPECT_NO_THROW(next(359.0, 1.0));  // of a counter that begins anew every turn
+  for (const double to_deg : {353.98, 354.02, 356.0, 350.0, 352.0})
+    EXPECT_THROW(next(352.0, to_deg), DeviceFault) << to_deg;
 }
 
 TEST(RequireTogether, AReferenceGoesWhereTheEncoderOfItsAxisGoes) {

@@ -66,7 +66,7 @@ TEST(Recovery, ARunThatIsTakenUpByAnotherProgramIsTheUndisturbedOne) {
       stopped.options.stop_requested = [&] { return log.readings.size() >= kept; };
       EXPECT_NE(EndOnTwin(log, stopped, scenario), "none");
       ASSERT_EQ(log.readings.size(), kept);
-      taken_up.options.readings_done = static_cast<int>(kept);
+      taken_up.options.kept = log.readings;
       taken_up.options.calls_done = log.calls;
       EXPECT_EQ(EndOnTwin(log, taken_up, scenario), "none");
       EXPECT_EQ(TextOf(log.readings), TextOf(undisturbed)) << fidelity << ", taken up behind " << kept;
@@ -100,7 +100,7 @@ int MovesUntilTheNextBlock(const std::function<void(RotaryBench&)>& elsewhere) {
     is_next = is_next || request.starts_with("acquire");
     moves += !is_next && device == "target" && request.starts_with("move");
   };
-  taken_up.options.readings_done = static_cast<int>(log.readings.size());
+  taken_up.options.kept = log.readings;
   taken_up.options.calls_done = log.calls;
   EXPECT_EQ(EndOn(real, scenario, log, taken_up), "none");
   return moves;
@@ -158,7 +158,7 @@ TEST(Recovery, ARecordOfAnotherSeedIsNotContinued) {
   EndOnTwin(log, {}, scenario);
   scenario.seed = 12;
   Course taken_up;
-  taken_up.options.readings_done = 5;
+  taken_up.options.kept = {log.readings.begin(), log.readings.begin() + 5};
   taken_up.options.calls_done = log.calls;
   EXPECT_THROW(EndOnTwin(log, taken_up, scenario), InputError);
 }

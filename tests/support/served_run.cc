@@ -52,7 +52,7 @@ procedure::Options CarefulOptions(const hw::BenchFile& file, ServedRun& run, con
   options.log = &run.log;
   if (!before) return options;
   run.log = before->log;
-  options.readings_done = static_cast<int>(before->log.readings.size());
+  options.kept = before->log.readings;
   options.calls_done = before->log.calls;
   return options;
 }

@@ -135,7 +135,7 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
       OpenedAgain(resumed ? file.attempts : 1, [&] { return OpenAnyBench(file, scenario, since_begin); });
   if (resumed) {
     TakeUp(begun, bench->Identity());
-    options.readings_done = static_cast<int>(begun.readings.size());
+    options.kept = begun.readings;
     options.calls_done = begun.record->Calls();
   }
   const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench->Identity());

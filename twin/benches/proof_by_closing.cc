@@ -66,7 +66,7 @@ std::function<void(const Reading&)> ProofByClosing(MachineBench& bench, const Sc
   const bool is_table = scenario.bench == kTurntableBench;
   const std::vector<ClaimedColumn> claims = ClaimsOfMachine(scenario);
   return [&bench, &options, run_up_rad, is_table, claims,
-          closing = procedure::Closing(claims)](Reading reading) mutable {
+          closing = procedure::Closing(claims, options.kept)](Reading reading) mutable {
     if (is_table) reading.target_rad = bench.machine.State()[0].commanded;  // a face is nulled
     closing.Took(reading);
     const Reading* const then = closing.Asks();
@@ -85,10 +85,11 @@ std::function<void(const Reading&)> ProofByClosing(RotaryBench& bench, const Sce
       RotaryOf(scenario).procedure.run_up_steps * units::turn / RotaryOf(scenario).procedure.positions;
   const std::vector<ClaimedColumn> claims = ClaimsOfTables(scenario);
   return [&bench, &options, run_up_rad, claims, show,
-          closing = procedure::Closing(claims)](const Reading& reading) mutable {
+          closing = procedure::Closing(claims, options.kept)](const Reading& reading) mutable {
     closing.Took(reading);
-    for (const auto& [a, b] : {std::pair(0, 2), std::pair(1, 3)})
-      procedure::RequireNotExchanged(claims[a], claims[b], reading, closing.taken());
+    for (const std::size_t a : {0, 1})
+      procedure::RequireNotReversed(claims[a], &claims[a + 2], reading, closing.taken());
+    for (const std::size_t y : {1, 3}) procedure::RequireNotReversed(claims[y], nullptr, reading, closing.taken());
     const Reading* const then = closing.Asks();
     if (!then || !(run_up_rad > 0.0)) return;
     procedure::ComeAgain(bench, -then->direction * run_up_rad, DwellOf(reading), options);

@@ -144,9 +144,10 @@ std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scen
 
 std::function<void(const Reading&)> ProofBySteps(RotaryBench& bench, const Scenario& scenario,
                                                  const procedure::Options& options) {
-  const auto wires = std::make_shared<procedure::StepProof>(true),
-             angles = std::make_shared<procedure::StepProof>(false);
   const RotarySettings& own = RotaryOf(scenario);
+  const bool is_calibrated = std::ranges::count(own.procedure.phases, "calibration") > 0;
+  const auto wires = std::make_shared<procedure::StepProof>(is_calibrated),
+             angles = std::make_shared<procedure::StepProof>(false);
   const auto show = [&bench, &own](const Reading& at) { return ShownNow(bench, at, own.adc.samples); };
   return [&bench, &options, &own, wires, angles, show, columns = MovedByAxes(scenario),
           close = ProofByClosing(bench, scenario, options, show)](const Reading& reading) {

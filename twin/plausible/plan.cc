@@ -13,6 +13,9 @@ namespace {
 
 constexpr int kOneOf = 10;  // readings that are left out in good faith are fewer
 constexpr double kMostTimes = 300.0, kLeastTimes = 0.2;
+/// Latched samples may have the time at which they were fetched, many together, which says nothing of how fast they
+/// came.
+constexpr double kFetchedTogether = 1e-4;
 
 /// Positions from the first to the last of the longest pass of the full circle.
 int LongestPass(const std::vector<Reading>& readings) {
@@ -48,7 +51,8 @@ double Slower(const std::vector<Reading>& readings, const Plan& plan, double Int
     const Reading &before = readings[i - 1], &here = readings[i];
     if (before.phase != here.phase || before.setup != here.setup || before.pass != here.pass) continue;
     const double should_s = plan.interval(before, here).*planned_s;
-    if (should_s > 0.0) times.push_back(ToSeconds(here.time - before.time) / should_s);
+    const double slower = ToSeconds(here.time - before.time) / should_s;
+    if (should_s > 0.0 && (planned_s == &Interval::usual_s || slower > kFetchedTogether)) times.push_back(slower);
   }
   return times.size() < kFewestToJudge ? 1.0 : MiddleOf(std::move(times));
 }

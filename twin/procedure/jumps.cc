@@ -44,11 +44,15 @@ struct Level {
   double mean = 0.0, squares = 0.0;  // about the mean
 };
 
-Level LevelOf(const std::vector<Repeat>& repeats, std::size_t first, std::size_t end) {
-  Level level;
-  for (std::size_t k = first; k < end; ++k) level.mean += repeats[k].Differs() / static_cast<double>(end - first);
-  for (std::size_t k = first; k < end; ++k) level.squares += std::pow(repeats[k].Differs() - level.mean, 2);
-  return level;
+/// Of those from first to before end, or of all others.
+Level LevelOf(const std::vector<Repeat>& repeats, std::size_t first, std::size_t end, bool others) {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < repeats.size(); ++k) {
+    if ((k >= first && k < end) == others) continue;
+    const double differs = repeats[k].Differs() - repeats[0].Differs();  // small, so that squares keep their digits
+    sum += differs, squares += differs * differs, count += 1.0;
+  }
+  return {sum / count, std::max(0.0, squares - sum * sum / count)};
 }
 
 /// Median size about the median, in which a few that have jumped count for nothing; nor does the last, which is
@@ -74,34 +78,40 @@ double Left(const ClaimedColumn& claim, const Reading& reading) {
 
 void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& reading,
                    const std::vector<Reading>& kept) {
-  constexpr std::size_t kFewest = 2;  // on either side
+  constexpr std::size_t kFewest = 2;                   // of those that show it otherwise, and of the others
+  constexpr std::size_t kFewestAboutThatCameBack = 6;  // by fewer chance says too often that it has
   constexpr double kTimesScatter = 8.0;
   for (const ClaimedColumn& claim : claims) {
     if (!claim.is_of_place || !(claim.noise > 0.0)) continue;
     const std::vector<Repeat> repeats =
         RepeatsOf([&](const Reading& r) { return ValueOf(claim, r); }, reading, kept);
-    for (std::size_t k = kFewest; k + kFewest <= repeats.size(); ++k) {
-      const Level one = LevelOf(repeats, 0, k), other = LevelOf(repeats, k, repeats.size());
+    const std::size_t all = repeats.size();
+    const auto require = [&](std::size_t first, std::size_t end) {
+      const Level one = LevelOf(repeats, first, end, false), other = LevelOf(repeats, first, end, true);
       const double jump = std::abs(other.mean - one.mean);
-      const double scatter = std::sqrt((one.squares + other.squares) / static_cast<double>(repeats.size() - 2));
-      if (!(jump > std::max(AllowedAtPlace(claim), kTimesScatter * scatter))) continue;
+      const double scatter = std::sqrt((one.squares + other.squares) / static_cast<double>(all - 2));
+      if (!(jump > std::max(AllowedAtPlace(claim), kTimesScatter * scatter))) return;
       throw DeviceFault(
           FaultKind::kImplausible, "instruments",
           fmt::format(
-              "show {} by {:.4g} (SI) otherwise against the pass before at places up to that of reading {} "
-              "than at those from reading {} on: a zero, a mirror or the mounting jumped, in this pass or the one "
-              "before; measure mounting {} again",
-              claim.column.name, jump, repeats[k - 1].reading, repeats[k].reading, reading.setup));
-    }
+              "show {} by {:.4g} (SI) otherwise against the pass before at the places of readings {} to {} than at "
+              "the others: a zero, a mirror or the mounting jumped, in this pass or the one before; measure "
+              "mounting "
+              "{} again, in another run",
+              claim.column.name, jump, repeats[first].reading, repeats[end - 1].reading, reading.setup));
+    };
+    for (std::size_t first = kFewest; first + kFewest <= all; ++first) require(first, all);
+    if (all < kFewestAboutThatCameBack) continue;
+    for (std::size_t first = 1; first + kFewest < all; ++first) require(first, all - 1);
   }
 }
 
-void RequireNotExchanged(const ClaimedColumn& a, const ClaimedColumn& b, const Reading& reading,
-                         const std::vector<Reading>& kept) {
+void RequireNotReversed(const ClaimedColumn& a, const ClaimedColumn* less, const Reading& reading,
+                        const std::vector<Reading>& kept) {
   constexpr std::size_t kPlaces = 6;  // what repeats nowhere is by chance the other way round once in 30 000 times
   constexpr double kTimes = 8.0, kTimesNoise = 10.0;  // root mean squares
-  std::vector<Repeat> last =
-      RepeatsOf([&](const Reading& r) { return ValueOf(a, r) - ValueOf(b, r); }, reading, kept);
+  const auto value = [&](const Reading& r) { return ValueOf(a, r) - (less ? ValueOf(*less, r) : 0.0); };
+  std::vector<Repeat> last = RepeatsOf(value, reading, kept);
   if (last.size() < kPlaces) return;
   last.erase(last.begin(), last.end() - kPlaces);
   double differs = 0.0, adds = 0.0, mean_differs = 0.0, mean_adds = 0.0;
@@ -111,14 +121,14 @@ void RequireNotExchanged(const ClaimedColumn& a, const ClaimedColumn& b, const R
     differs += std::pow(one.Differs() - mean_differs, 2);
     adds += std::pow(one.again + one.before - mean_adds, 2);
   }
-  const double noise = std::sqrt(2.0 * kPlaces) * std::hypot(a.noise, b.noise);
+  const double noise = std::sqrt(2.0 * kPlaces) * std::hypot(a.noise, less ? less->noise : 0.0);
   if (!(std::sqrt(differs) > std::max(kTimes * std::sqrt(adds), kTimesNoise * noise))) return;
   throw DeviceFault(
       FaultKind::kImplausible, "instruments",
       fmt::format(
-          "show at the places of the last {} readings that {} and {} differ the other way "
-          "round than in the pass before: were they exchanged, in this pass or that one? Measure mounting {} again",
-          kPlaces, a.column.name, b.column.name, reading.setup));
+          "show {} at the places of the last {} readings the other way round than in the pass before: was a wire "
+          "exchanged or its sign, in this pass or that one? Measure mounting {} again, in another run",
+          less ? a.column.name + " less " + less->column.name : a.column.name, kPlaces, reading.setup));
 }
 
 void Closing::Took(const Reading& reading) {
@@ -160,7 +170,7 @@ void Closing::Require(const Reading& again) const {
         FaultKind::kImplausible, "instruments",
         fmt::format("showed {} = {} at reading {} and show {} at its place, come to from the same side, behind the "
                     "passes: a zero, a mirror or the mounting jumped, or it had not come to rest; measure mounting "
-                    "{} again",
+                    "{} again, in another run",
                     claim.column.name, claim.column.print(then), then.reading, claim.column.print(again),
                     then.setup));
   }

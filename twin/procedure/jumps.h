@@ -10,26 +10,28 @@ namespace twinbench::procedure {
 
 /// Of a reading at a place where the pass before in its set-up has one, too, and all between them.
 /// @param kept  All before it.
-/// @throws DeviceFault kImplausible where what a column shows at places that were come to behind some reading, in
-/// either pass, differs
-///         from pass to pass by another amount than at those before it: a zero, a mirror or a mounting has jumped.
-///         What differs by the same everywhere may be the reversal of what is measured.
+/// @throws DeviceFault kImplausible where what a column shows at places that were come to one behind the other
+/// differs
+///         from pass to pass by another amount than at the others: a zero, a mirror or a mounting has jumped,
+///         perhaps there and back. What differs by the same everywhere may be the reversal of what is measured.
 void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& reading,
                    const std::vector<Reading>& kept);
 
-/// Of the same readings and two columns that show nearly the same: two spots of one grating.
-/// @throws DeviceFault kImplausible where at the last six places both differ against each other as they did in the
-/// pass before, but the
-///         other way round, by ten times the noise: one was plugged in where the other was. What is the same
-///         everywhere counts for nothing.
-void RequireNotExchanged(const ClaimedColumn& a, const ClaimedColumn& b, const Reading& reading,
-                         const std::vector<Reading>& kept);
+/// Of the same readings and a column, or one less another that shows nearly the same: two spots of one grating.
+/// @throws DeviceFault kImplausible where at the last six places it is what it was in the pass before, but the
+///         other way round, by ten times the noise: a sign is another, or one was plugged in where the other was.
+///         What is the same everywhere counts for nothing.
+void RequireNotReversed(const ClaimedColumn& a, const ClaimedColumn* less, const Reading& reading,
+                        const std::vector<Reading>& kept);
 
 /// Closes the passes of a mounting: where one has come back to the place where those the other way before it began,
 /// the axes come to it once more as they came then, and what is shown must be what was shown then.
 class Closing {
  public:
-  explicit Closing(std::vector<ClaimedColumn> claims) : claims_(std::move(claims)) {}
+  /// @param kept  Of a run that is gone on with.
+  Closing(std::vector<ClaimedColumn> claims, const std::vector<Reading>& kept) : claims_(std::move(claims)) {
+    for (const Reading& reading : kept) Took(reading);
+  }
   /// A reading that was proved, or another in the place of that of its number.
   void Took(const Reading& reading);
   /// All of the mounting and the phase so far, in the order of taking.

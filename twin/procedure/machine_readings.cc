@@ -43,7 +43,11 @@ void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
   if (options_.log) options_.log->RequireRoom();
   Arm(end - first, lines);
   Duration in_vain{0};
-  std::optional<Reading> before;
+  const bool goes_on = first > 0 && !state_.kept.empty() &&
+                       plan()[static_cast<std::size_t>(first)].pass == state_.kept.back().pass &&
+                       plan()[static_cast<std::size_t>(first)].setup == state_.kept.back().setup;
+  std::optional<Reading> before = goes_on ? std::optional(state_.kept.back()) : std::nullopt;
+  double step_rad = kNaN;  // from the first sample to the second
   // From before a fault to behind it whole turns may be lost, so that a wrong sample passes alone: those of one
   // look come together.
   const auto require_go_along = [&](const std::vector<Reading>& samples, int from) {
@@ -59,6 +63,7 @@ void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
     if (options_.require_goes_along) require_go_along(latched.samples, next);
     for (const Reading& sample : latched.samples) {
       if (before && !IsSimulated()) RequireAnother(sample, *before, plan_.bench);
+      if (next > first && !IsSimulated()) RequireNextLine(sample, *before, plan_.bench, lines, step_rad);
       before = sample;
       if (next == end)
         throw DeviceFault(FaultKind::kProtocol, "instruments", "more samples came than they were armed for");

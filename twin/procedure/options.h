@@ -39,7 +39,7 @@ struct Options {
   std::function<void(const DeviceFault&)> hear_fault = {};  // before anything is done about it
   std::function<void(const Reading&)> prove = {};  // as MachineOptions::prove; in a stability test before its first and about its last
 
-  int readings_done = 0;                    // a resumed run begins behind these ...
+  std::vector<Reading> kept = {};           // of a resumed run, which goes on behind these ...
   std::vector<DeviceCall> calls_done = {};  // ... on a simulated bench by doing these again
 };
 

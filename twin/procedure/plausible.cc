@@ -26,6 +26,11 @@ std::optional<double> EncoderOf(const Reading& reading) {
   return std::nullopt;
 }
 
+/// Whose lines say when a sample is taken.
+const ReadingColumn& CountedColumn(const std::string& bench) {
+  return *std::ranges::find(FormatOf(bench).columns, ColumnRole::kShown, &ReadingColumn::role);
+}
+
 }  // namespace
 
 void RequirePlausible(const Reading& reading, const Reading& before, const Options& options) {
@@ -56,9 +61,21 @@ void RequireShown(const Reading& reading, const std::string& bench) {
 }
 
 void RequireAnother(const Reading& sample, const Reading& before, const std::string& bench) {
-  const ReadingColumn& counted = *std::ranges::find(FormatOf(bench).columns, ColumnRole::kShown, &ReadingColumn::role);
+  const ReadingColumn& counted = CountedColumn(bench);
   if (counted.print(sample) != counted.print(before)) return;
   throw DeviceFault(FaultKind::kProtocol, "instruments", "say one sample twice: lines of an encoder that turns are others");
+}
+
+void RequireNextLine(Reading sample, Reading before, const std::string& bench, int lines, double& step_rad) {
+  const ReadingColumn& counted = CountedColumn(bench);
+  const double way_rad = std::remainder(counted.number(sample) - counted.number(before), units::turn);
+  if (std::isnan(step_rad)) step_rad = way_rad;
+  if (std::abs(std::remainder(way_rad - step_rad, units::turn)) <= 0.5 * std::abs(step_rad) / lines) return;
+  throw DeviceFault(
+      FaultKind::kGap, "instruments",
+      fmt::format(
+          "{} went {:.6f} deg from one sample to the next and {:.6f} deg between the first two: were lines lost?",
+          counted.name, way_rad / units::deg, step_rad / units::deg));
 }
 
 void RequireTogether(const Reading& reading, const Reading& before, const std::string& bench) {

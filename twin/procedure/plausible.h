@@ -20,6 +20,12 @@ void RequireShown(const Reading& reading, const std::string& bench);
 /// @throws DeviceFault kProtocol of one at whose line - what the bench shows first - that sample was taken, too.
 void RequireAnother(const Reading& sample, const Reading& before, const std::string& bench);
 
+/// @param lines     From one sample to the next.
+/// @param step_rad  Of the first two samples, which is made if it is NaN.
+/// @throws DeviceFault kGap of a sample that is half a line or more nearer to that before, or further away, than
+/// the second to the first.
+void RequireNextLine(Reading sample, Reading before, const std::string& bench, int lines, double& step_rad);
+
 /// @param before  The reading before, of a bench whose reference is read and not commanded. The encoder of its axis was looked at
 ///                about both.
 /// @throws DeviceFault kMoved if from one to the next the reference did not go the way that the encoder went.

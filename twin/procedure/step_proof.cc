@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -81,6 +82,35 @@ void StepProof::Require(std::vector<ColumnInStep> columns) {
                                   "sign, a unit or a channel another, or does anything stand?",
                                   column.name, column.did, column.should));
   }
+  RequireSteady(columns, LargestStep(columns));
+}
+
+/// A gain or a roll that changed by less than shows in one step.
+void StepProof::RequireSteady(const std::vector<ColumnInStep>& columns, double step) {
+  constexpr std::size_t kLast = 4, kFewestBefore = 8;
+  constexpr double kMuchWhereItGoes = 0.05, kMuchWhereItStands = 0.01, kTimesScatter = 6.0;
+  for (const ColumnInStep& column : columns) {
+    const bool stands = column.should == 0.0;
+    if (!column.is_of_size || step == 0.0 || (!stands && std::abs(column.should) < 0.5 * std::abs(step))) continue;
+    const double of = stands ? step : column.should;
+    std::vector<double>& went = went_[column.name];
+    went.push_back(column.did / of);
+    if (went.size() < kLast + kFewestBefore) continue;
+    const Eigen::Map<const Eigen::ArrayXd> all(went.data(), std::ssize(went));
+    const auto before = all.head(all.size() - kLast);
+    const auto n = static_cast<double>(before.size());
+    const double scatter = std::sqrt((before - before.mean()).square().sum() / (n - 1.0));
+    const double noise = std::numbers::sqrt2 * column.noise / std::abs(of);
+    const double allowed = kTimesScatter * std::max(scatter, noise) * std::sqrt(1.0 / kLast + 1.0 / n);
+    const double last = all.tail(kLast).mean(), off = std::abs(last - before.mean());
+    if (!(off > std::max(allowed, stands ? kMuchWhereItStands : kMuchWhereItGoes))) continue;
+    throw DeviceFault(
+        FaultKind::kImplausible, "instruments",
+        fmt::format("beside the last {} readings {} went {:.4g} of a short step, and {:.4g} beside those "
+                    "before: has a gain or a roll changed? What was measured since is to be measured "
+                    "again, in another run",
+                    kLast, column.name, last, before.mean()));
+  }
 }
 
 Reading ShownBeside(MachineBench& bench, std::vector<double>& by, const MachineOptions& options) {
@@ -99,8 +129,9 @@ Reading ShownBeside(MachineBench& bench, std::vector<double>& by, const MachineO
 
 Reading ShownAgain(MachineBench& bench, double away_rad, Duration dwell, const MachineOptions& options) {
   const std::vector<double> here = CommandedOf(bench);
+  const AxisLimits limits = LimitsOf(options.axes, 0);
   std::vector<double> away = here;
-  away[0] += away_rad;
+  away[0] = std::clamp(here[0] + away_rad, limits.lower, limits.upper);  // a nulled face stands beside its plan
   GoStraight(bench, away, options);
   GoStraight(bench, here, options);
   WaitFor(bench, dwell, options);

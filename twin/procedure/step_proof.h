@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,17 +27,21 @@ class StepProof {
  public:
   /// @param learns  The first step says which sign the columns of a size have and how far they go, within a factor
   /// of three of what
-  ///                they should: wiring and gains are the bench's own.
+  ///                they should: wiring and gains are the bench's own, and a calibration finds them.
   explicit StepProof(bool learns) : learns_(learns) {}
   /// @throws DeviceFault kMoved where a column did not what it should, or is not what it was behind coming back: by
   /// a quarter of the
-  ///         step that shows most, or the other way.
+  ///         step that shows most, or the other way. kImplausible where the last four went otherwise than all
+  ///         before.
   void Require(std::vector<ColumnInStep> columns);
 
  private:
   void Learn(const std::vector<ColumnInStep>& columns, double step);
+  void RequireSteady(const std::vector<ColumnInStep>& columns, double step);
 
   bool learns_;
+  std::map<std::string, std::vector<double>>
+      went_;                   // of what it should, or of the step where it should stand, by column
   std::vector<double> known_;  // what the columns did in the first step, over what shows most; none yet: empty
 };
 

@@ -1,6 +1,6 @@
 """A turntable under test, a multi-tooth table with a mirror on it and an autocollimator, in closed form for small angles.
 
-usage: turntable_bench.py shown.json [controller=...] [device.kind@event ...]   (line_devices.py says which faults there are)
+usage: turntable_bench.py shown.json [controller=...] [polygon] [device.kind@event ...]   (line_devices.py says which faults there are)
 
 Devices: `controller` (esp_controller.py; with controller=linuxcnc axis C of linuxcnc_controller.py, with controller=HOST:PORT that of a LinuxCNC
 which runs there and is none of the bench's devices), `autocollimator` (x and y in microradians and the light), `indexer` (turns the
@@ -12,7 +12,8 @@ turntable. To first order the mirror's normal is then turned by
     a = phi + tooth - shift + T(phi) + R(tooth)        about the vertical,
     b = b0 - tilt * sin(azimuth + phi)                 upwards,
 
-and an autocollimator whose crosshair is rolled by g shows x = a cos g + b sin g, y = b cos g - a sin g, and noise.
+and an autocollimator whose crosshair is rolled by g shows x = a cos g + b sin g, y = b cos g - a sin g, and noise. With `polygon` one of some
+faces stands on the turntable alone, and the indexer is only the hand that clamps it.
 """
 import math
 import random
@@ -29,6 +30,7 @@ ROLL_MRAD, NOISE_ARCSEC, SEATING_ARCSEC, RANGE_ARCSEC = 6.5, 0.05, 0.02, 300.0
 TURNTABLE = ((1, 5.2, 0.7), (2, 1.9, 2.6))  # order, amplitude in arcsec, phase
 # Tilt in arcsec, azimuth in deg, shift in teeth, b0 in arcsec; one a set-up.
 SET_UPS = ((40.0, 25.0, 0, 3.0), (200.0, 25.0, 0, -7.0), (150.0, 140.0, 60, 1.0))
+FACES, CLAMPED_DEG = 6, (0.0, 20.0, 40.0)
 
 
 def turntable_arcsec(angle_deg):
@@ -84,6 +86,20 @@ class Stand:
         return [shown + self.chance.gauss(0.0, NOISE_ARCSEC) for shown in (x, y)]
 
 
+class Polygon(Stand):
+    """In the place of multi-tooth table and mirror: of FACES faces, the one that is nearest is seen."""
+
+    def __init__(self, place):
+        super().__init__(place)
+        self.chance.seed(12)
+
+    def normal_arcsec(self):
+        turned_deg = self.place()
+        beside_deg = turned_deg - CLAMPED_DEG[self.set_up]
+        face = round(beside_deg * FACES / 360.0)
+        return (beside_deg - face * 360.0 / FACES) / ARCSEC_DEG + turntable_arcsec(turned_deg) + 2.0 * math.sin(face % FACES * 2.4), 0.0
+
+
 class Autocollimator(ScpiDevice):
     """Its events are readings."""
 
@@ -122,10 +138,12 @@ class Indexer(Hand):
 def main():
     words = sys.argv[2:]
     controllers, places = controlled(words, "C", "ABC")
-    stand = Stand(lambda: places()[0])
+    stand = (Polygon if "polygon" in words else Stand)(lambda: places()[0])
     positions = [k * 360.0 / POSITIONS for k in range(POSITIONS)]
     hidden = {"position_deg": positions, "turntable_arcsec": [turntable_arcsec(at) for at in positions],
               "multitooth_arcsec": [tooth_arcsec(k * TEETH // POSITIONS) for k in range(POSITIONS)], "roll_mrad": ROLL_MRAD}
+    if "polygon" in words:
+        hidden["turntable_arcsec"] = [turntable_arcsec(at) for at in range(0, 360, 360 // FACES // len(CLAMPED_DEG))]
     show([*controllers, Autocollimator(words, stand), Indexer(words, stand)], hidden, sys.argv[1])
 
 

@@ -36,7 +36,7 @@ void CarryOutPhases(Sequencer&& sequencer, const ProcedureSettings& procedure) {
 void CarryOut(RotaryBench& bench, const Scenario& scenario, ReadingSink& sink, const ProgressCallback& progress,
               const Options& options) {
   Journal journal(bench, options.log, options.calls_done);
-  RunState state{options.readings_done, {}, false};
+  RunState state{static_cast<int>(options.kept.size()), {}, false};
   Attempts attempts(options.attempts);
   for (;;) {
     try {
