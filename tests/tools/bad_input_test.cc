@@ -54,6 +54,15 @@ TEST_F(BadInput, ThatNoFitDescribesHasNoResult) {
   for (const char* command : {"separate", "score"}) EXPECT_THAT(Refusal({command, "run"}), HasSubstr("ccd leaves "));
 }
 
+TEST_F(BadInput, ThatAnotherWiringDescribesHasNoResult) {
+  Write("swapped.toml", Contents(TWINBENCH_SOURCE_DIR "/scenarios/rotary_4dof.toml") +
+                            "[[effect]]\nname = \"convention\"\nwhere = \"swap_psds\"\n");
+  const Outcome run = Call({"run", "swapped.toml", "--set", "mechanics.fidelity=\"kinematic\"", "--set",
+                            "procedure.positions=12", "-o", "run"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("times with PSD a and b exchanged"));
+}
+
 TEST_F(BadInput, AScenarioOfAnotherBenchThanMadeTheReadingsIsRefused) {
   Write("encoder.toml", "bench = \"encoder_comparison\"\n");
   ASSERT_EQ(Call({"run", "small.toml", "-o", "run"}).exit_code, 0);

@@ -52,6 +52,54 @@ std::vector<report::Misfit> MisfitsOf(const separate::Separation& s, const measu
   return misfits;
 }
 
+/// Wires that are not where the scenario has them: what each channel really is, and its sign.
+struct Wiring {
+  const char* what;
+  std::array<std::size_t, kChannels> channel;
+  std::array<double, kChannels> sign;
+};
+constexpr std::array<Wiring, 7> kMiswired = {{{"PSD a and b exchanged", {2, 3, 0, 1}, {1, 1, 1, 1}},
+                                              {"x and y of PSD a exchanged", {1, 0, 2, 3}, {1, 1, 1, 1}},
+                                              {"x and y of PSD b exchanged", {0, 1, 3, 2}, {1, 1, 1, 1}},
+                                              {"x of PSD a negative", {0, 1, 2, 3}, {-1, 1, 1, 1}},
+                                              {"y of PSD a negative", {0, 1, 2, 3}, {1, -1, 1, 1}},
+                                              {"x of PSD b negative", {0, 1, 2, 3}, {1, 1, -1, 1}},
+                                              {"y of PSD b negative", {0, 1, 2, 3}, {1, 1, 1, -1}}}};
+
+std::vector<Reading> Rewired(std::vector<Reading> readings, const Wiring& wiring) {
+  for (Reading& r : readings) {
+    const Reading shown = r;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      r.mean_V[c] = wiring.sign[c] * shown.mean_V[wiring.channel[c]];
+      r.std_V[c] = shown.std_V[wiring.channel[c]];
+    }
+  }
+  return readings;
+}
+
+/// What the fit leaves over the stated noise, all components together.
+double PerU(const separate::Separation& s) {
+  return std::sqrt(s.chi2.sum() / s.dof_of.sum());
+}
+
+/// What another wiring describes so much better is no scatter of the tables.
+void AddMiswiring(const Scenario& scenario, const std::vector<Reading>& readings, const Analysis& analysis,
+                  std::vector<report::Misfit>& misfits) {
+  constexpr double kTimesBetter = 5.0;
+  const double as_is = PerU(*analysis.separation);
+  if (!(as_is > report::kMostMisfit)) return;
+  for (const Wiring& wiring : kMiswired) {
+    try {
+      const Analysis other = Analyse(scenario, Rewired(readings, wiring), analysis.estimator);
+      const double rewired = other.separation ? PerU(*other.separation) : as_is;
+      if (kTimesBetter * rewired < as_is)
+        misfits.push_back(
+            {fmt::format("the separation, which leaves {:.2g} times with {},", rewired, wiring.what), as_is});
+    } catch (const InputError&) {  // it is not so
+    }
+  }
+}
+
 report::ScoredRun ScoreOf(const Analysis& analysis, const nlohmann::json& truth) {
   if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with a full-circle test");
   const Score score =
@@ -76,6 +124,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   if (!analysis.separation) return evaluation;
   evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
   evaluation.misfits = MisfitsOf(*analysis.separation, analysis.calibration);
+  AddMiswiring(scenario, readings, analysis, evaluation.misfits);
   evaluation.score = [analysis](const nlohmann::json& truth) { return ScoreOf(analysis, truth); };
   const report::ErrorMotionTexts motions = EvaluateErrorMotions(*analysis.separation, analysis.motions);
   evaluation.results["iso230_7"] = motions.json;
