@@ -104,6 +104,19 @@ TEST(MeasurePositions, TakesEveryTurnOfLinesThatLieWholeTurnsApart) {
   }
 }
 
+TEST(MeasurePositions, CountsInUWhatFewSamplesATurnFoldOntoTheOrders) {
+  HobMachine machine{.transmission = {{1, 9.8, 1.3}, {2, 1.6, 3.5}, {3, 0.7, 1.2}}};
+  machine.noise_arcsec = 0.05;
+  for (const auto& [samples, folds] : {std::pair(4, true), {720, false}}) {
+    machine.samples_per_turn = samples;
+    const PositionError position = MeasurePositions(Samples(machine, Heads({0.0})), OrdersUpTo(1)).at(0);
+    EXPECT_EQ(position.of_folding_rad2 > 0.0, folds) << samples;
+    const double off_arcsec = DistanceArcsec(position.series.At(1).value, CoefficientOf(machine.transmission, 1));
+    EXPECT_EQ(off_arcsec > 0.5, folds) << samples;  // order 3
+    EXPECT_LT(off_arcsec, 2.0 * LargestUncertainty(position.series.At(1)) / units::arcsec) << samples;
+  }
+}
+
 // At lines of the table the hob stands where it stood a turn ago: its counts err alike in every turn.
 TEST(MeasurePositions, StatesWhatCoarseCountsOfTheHobRepeatInEveryTurn) {
   HobMachine machine = Machine();
@@ -181,6 +194,16 @@ TEST(MeasurePositions, TakesASteadyDriftOut) {
     const double left_arcsec = DistanceArcsec(two.at(0).series.At(1).value, CoefficientOf(machine.transmission, 1));
     EXPECT_NEAR(left_arcsec, 3.0 / units::kPi, 0.01);  // orders above 60, sampled: 1 / 1440
   }
+}
+
+TEST(MeasurePositions, TakesNoCountsThatWereLostBetweenTwoRunsOfTurnsForADrift) {
+  HobMachine machine = Machine();
+  machine.encoder.clear();
+  std::vector<HobSample> samples = Samples(machine, Heads({0.0}, 5.0));
+  constexpr double kLost_rad = 1e-3, kBetween_rad = 20.0 * kTestTurn_rad;
+  for (auto s = samples.begin() + 2 * machine.samples_per_turn; s != samples.end(); ++s)
+    s->table_encoder_rad += kBetween_rad, s->hob_encoder_rad += (kBetween_rad + kLost_rad) / kTestRatio;
+  ExpectOrders(MeasurePositions(samples, OrdersUpTo(60)).at(0), machine, 0.0, 1e-6);
 }
 
 /// Moves the hob's reading of each turn by a constant of its own: what a drift cannot be told from.

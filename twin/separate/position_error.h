@@ -24,6 +24,7 @@ struct PositionError {
   double u_drift_rad_per_turn = kNaN;
   std::vector<double> of_drift_rad2 = {};  // [k - 1]: of the variance of either part of order k, what that leaves
   std::vector<double> of_rounding_rad2 = {};  // likewise, what the steps of counts repeat in every turn; empty: nothing
+  double of_folding_rad2 = 0.0;  // of that variance of every order, what orders above them fold onto them
 };
 
 }  // namespace twinbench::separate::harmonics

@@ -1,7 +1,9 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
@@ -95,14 +97,30 @@ nlohmann::json ToJson(const PositionError& p, const HobSettings& settings) {
   return json;
 }
 
+/// Samples a turn of those whose orders fold; none: nothing.
+std::optional<int> FoldingSamples(const HobAnalysis& a) {
+  const auto folds =
+      std::ranges::find_if(a.positions, [](const PositionError& p) { return p.of_folding_rad2 > 0.0; });
+  if (folds == a.positions.end()) return std::nullopt;
+  return folds->samples / folds->turns;
+}
+
 nlohmann::json NotSeparable(const HobAnalysis& a) {
   nlohmann::json lost = nlohmann::json::array();
   for (const SeparatedOrder& order : a.separation->orders) {
     if (order.status != OrderStatus::kSumOnly) continue;
+    const auto folded = a.folded.find(order.order);
+    const std::string why = folded == a.folded.end()
+                                ? "the heads see this order alike"
+                                : fmt::format("the samples of a turn show order {} so", folded->second);
     lost.push_back({{"what", fmt::format("transmission and table encoder, order {}", order.order)},
-                    {"why", "the heads see this order alike; the sum is counted as the transmission's"},
+                    {"why", why + "; the sum is counted as the transmission's"},
                     {"noise_factor", report::In(1.0, order.noise_factor)}});
   }
+  if (const auto samples = FoldingSamples(a))
+    lost.push_back(
+        {{"what", fmt::format("orders k and {} - k", *samples)},
+         {"why", fmt::format("{} samples per turn show them as one; u has what the turns leave", *samples)}});
   return lost;
 }
 
@@ -221,7 +239,15 @@ std::string LostText(const HobAnalysis& a) {
   for (const SeparatedOrder& order : a.separation->orders) {
     if (order.status == OrderStatus::kSumOnly) orders.push_back(order.order);
   }
-  return orders.empty() ? "" : fmt::format("not separable, counted as transmission: {}\n", report::OrderRanges(orders));
+  std::string text;
+  if (!orders.empty())
+    text += fmt::format("not separable, counted as transmission: {}\n", report::OrderRanges(orders));
+  if (const auto samples = FoldingSamples(a))
+    text += fmt::format("not separable, counted in u: orders k and {0} - k, as {0} samples per turn show them\n",
+                        *samples);
+  if (std::isfinite(a.encoder.At(1).value.real()) && separate::hob::FindLines(a.encoder).empty())
+    text += "doubtful: the table encoder shows no order; was its head moved between the mountings?\n";
+  return text;
 }
 
 std::string SummaryOf(const HobAnalysis& a) {

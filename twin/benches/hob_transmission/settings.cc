@@ -27,7 +27,7 @@ void AddTransmission(Keys& keys, TransmissionSettings& s) {
   t.Add("table_inertia", {"kg_m2"}, Positive(1e6), &s.table_inertia_kg_m2, "of the table with its load");
   t.Add("stiffness", {"Nm_mrad", 1e3}, Positive(1e9), &s.stiffness_Nm_rad, "torsion between worm wheel and table");
   t.Add("damping_ratio", kPure, UpTo(2), &s.damping_ratio, "of that torsion");
-  t.Add("friction", {"Nm"}, UpTo(1e6), &s.friction_Nm, "on the table: winds the torsion up, by direction");
+  t.Add("friction", {"Nm"}, UpTo(1e4), &s.friction_Nm, "on the table: winds the torsion up, by direction");
   t.Add("backlash", kArcsec, UpTo(1000), &s.backlash_rad, "of the worm, full width at the table");
   t.Text("compensation_file", &s.compensation_file, {},
          "CSV of position_deg, correction_arcsec: added by the gearbox to the table's angle that it commands");
@@ -38,7 +38,7 @@ void AddTransmission(Keys& keys, TransmissionSettings& s) {
 void AddRing(Keys& keys, const std::string& table, RingEncoderSettings& s) {
   Table t(keys, table);
   t.Add("lines", kPure, {1, 10000000}, &s.lines, "per turn");
-  t.Add("radius", kMm, Positive(5000), &s.radius_m, "of the ring");
+  t.Add("radius", kMm, Between(1, 5000), &s.radius_m, "of the ring");
   t.Add("eccentricity", kUm, UpTo(10000), &s.eccentricity_m, "of its middle from the shaft's axis");
   t.Add("eccentricity_azimuth", kDeg, Within(360), &s.eccentricity_azimuth_rad, "on the ring");
   t.Add("tilt", kArcsec, Within(36000), &s.tilt_rad, "of the ring against the shaft");
@@ -58,7 +58,7 @@ void AddInterferometer(Keys& keys, InterferometerSettings& s) {
   t.Add("noise", kArcsec, UpTo(3600), &s.noise_rad, "of one reading, standard deviation");
   t.Add("misalignment", kMrad, Within(200), &s.misalignment_rad,
         "of the beam against the reflector's way: it sees cos of the deviation");
-  t.Add("arm", kMm, Positive(1000), &s.arm_m, "between the two paths of its angle optics");
+  t.Add("arm", kMm, Between(1, 1000), &s.arm_m, "between the two paths of its angle optics");
   t.Add("arm_error", kUm, Within(1000), &s.arm_error_m, "by which the real arm is longer");
   t.Add("dead_path", kMm, Within(10000), &s.dead_path_m, "by which one path is longer at zero");
   t.Add("index_drift", {"ppm_h", 1e-6}, Within(100), &s.index_drift_per_h, "of the air's refractive index");

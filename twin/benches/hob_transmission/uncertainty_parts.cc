@@ -32,7 +32,7 @@ OfOrder Of(const PositionError& position, int order, double of_steps_rad2) {
   OfOrder parts;
   parts.drift = k < position.of_drift_rad2.size() ? position.of_drift_rad2[k] : 0.0;
   const double repeated = k < position.of_rounding_rad2.size() ? position.of_rounding_rad2[k] : 0.0;
-  const double scatter = Variance_rad2(position.series, order) - parts.drift - repeated;
+  const double scatter = Variance_rad2(position.series, order) - parts.drift - repeated - position.of_folding_rad2;
   // White samples: 2 / N of their variance in either part of C.
   const double per_sample = 2.0 / position.samples;
   const bool within = position.scatter == separate::harmonics::ScatterSource::kWithinTurn;
@@ -40,7 +40,7 @@ OfOrder Of(const PositionError& position, int order, double of_steps_rad2) {
   parts.steps = std::min(white, per_sample * of_steps_rad2);
   parts.noise = white - parts.steps;
   parts.steps += repeated;
-  parts.repeatability = scatter - white;
+  parts.repeatability = scatter - white + position.of_folding_rad2;
   return parts;
 }
 

@@ -19,7 +19,8 @@ TransmissionOptions OptionsOf(const Scenario& scenario) {
   options.table_turns_per_hob_turn = HobOf(scenario).transmission.Ratio();
   options.zero = HobOf(scenario).hob_procedure.encoder_zero == "table_origin" ? EncoderZero::kTableOrigin
                                                                               : EncoderZero::kReferenceMark;
-  options.max_order = std::min(kHighestOrder, (HobOf(scenario).hob_procedure.samples_per_turn - 1) / 2);
+  options.max_order =
+      std::min(kHighestOrder, HobOf(scenario).hob_procedure.samples_per_turn / 2 - 1);  // with some to spare
   const RingEncoderSettings& hob = HobOf(scenario).hob_encoder;
   options.hob_step_rad = options.table_turns_per_hob_turn * units::turn / hob.lines / hob.interpolation;
   return options;
@@ -59,6 +60,24 @@ std::vector<int> OrdersToCompare(const TransmissionSettings& t, int highest) {
     if (whole && k <= highest && std::ranges::find(orders, k) == orders.end()) orders.push_back(k);
   }
   return orders;
+}
+
+/// Of as many samples in every turn.
+std::map<int, int> FoldedOrders(const TransmissionSettings& t, const std::vector<PositionError>& positions,
+                                int highest) {
+  std::map<int, int> folded;
+  const PositionError& first = *std::ranges::find_if(positions, HasTurns);
+  const int a_turn = first.samples / first.turns;
+  for (const PositionError& p : positions)
+    if (p.samples != p.turns * a_turn) return {};
+  for (const double once : {t.HobOrder(), static_cast<double>(t.gear_teeth), t.WormOrder()}) {
+    for (const double order : {once, 2.0 * once}) {
+      const int seen = static_cast<int>(std::lround(std::abs(std::remainder(order, static_cast<double>(a_turn)))));
+      if (order == std::floor(order) && order > highest && seen >= 1 && seen <= highest)
+        folded.try_emplace(seen, static_cast<int>(order));
+    }
+  }
+  return folded;
 }
 
 bool HasInterferometer(const std::vector<HobSample>& samples) {
@@ -177,6 +196,13 @@ HobAnalysis AnalyseHob(const std::vector<Reading>& readings, const Scenario& sce
   }
   analysis.two_positions = Published(analysis.positions);
   analysis.separation = SeparateHeads(analysis.positions);
+  analysis.folded = FoldedOrders(HobOf(scenario).transmission, analysis.positions, options.max_order);
+  for (SeparatedOrder& order : analysis.separation->orders) {
+    if (!analysis.folded.contains(order.order)) continue;
+    order.status = OrderStatus::kSumOnly;
+    order.encoder = {};
+  }
+  if (analysis.folded.contains(1)) analysis.two_positions.reset();
   const std::vector<int> orders = OrdersToCompare(HobOf(scenario).transmission, options.max_order);
   AddDirections(samples, options, orders, analysis);
   analysis.encoder = EncoderSeries(*analysis.separation);

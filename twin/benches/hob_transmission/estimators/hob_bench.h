@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ struct HobAnalysis {
   int used = 0, left_out = 0;
   std::vector<PositionError> positions;       // what each head showed, by direction
   std::optional<HeadSeparation> separation;   // rigorous
+  std::map<int, int> folded;  // orders as which the samples show one of hob, gear or worm wheel, and that
   std::optional<TwoPositions> two_positions;  // published: the first two heads, in the first direction of both
   std::vector<DirectionResult> directions;
   HarmonicSeries encoder;                        // psi in the encoder's own angle; orders not seen are NaN

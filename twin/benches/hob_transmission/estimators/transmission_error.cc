@@ -104,6 +104,23 @@ void AddCounting(const std::vector<Pass>& passes, const TransmissionOptions& opt
   position.of_rounding_rad2 = AddRounding(th_rad, waves, series);
 }
 
+/// Samples at the same places of every turn show order k and their number less k as one. What the fits leave in
+/// every turn is of orders between these and half of that number; as much is taken to be in those beyond.
+void AddFolding(int max_order, PositionError& position) {
+  constexpr double kReach = 4.0;         // of fewer orders in the samples of a turn, those that fold are far away
+  constexpr double kBeyondChance = 2.0;  // times the variance between turns
+  HarmonicSeries& series = position.series;
+  const double a_turn = static_cast<double>(position.samples) / position.turns;
+  if (kReach * max_order < a_turn) return;
+  double between_rad2 = 0.0;  // of one turn
+  for (const Coefficient& order : series.orders)
+    between_rad2 += 0.5 * order.cov.trace() * position.turns / series.Highest();
+  const double left_rad2 = 2.0 / a_turn * std::pow(position.residual_rms_rad, 2);
+  if (!(left_rad2 > kBeyondChance * between_rad2)) return;
+  position.of_folding_rad2 = left_rad2 - between_rad2;
+  for (Coefficient& order : series.orders) order.cov += position.of_folding_rad2 * Eigen::Matrix2d::Identity();
+}
+
 void Count(const std::vector<FittedPass>& passes, int max_order, PositionError& position) {
   double sum2 = 0.0;
   int dof = 0;
@@ -148,6 +165,7 @@ PositionError MeasurePosition(const std::vector<Pass>& passes, const Transmissio
   FillDrift(fitted, position);
   if (position.turns > 1) {
     FillFromSeveralTurns(fitted, options, position);
+    AddFolding(options.max_order, position);
   } else {
     const auto has_turn = [](const FittedPass& pass) { return !pass.turns.empty(); };
     FillFromOneTurn(std::find_if(fitted.begin(), fitted.end(), has_turn)->turns.front().fit, position);

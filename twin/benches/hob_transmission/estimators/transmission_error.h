@@ -31,17 +31,18 @@ struct TransmissionOptions {
 ///
 /// Every turn is fitted by itself where its samples are (FitTurn), so nothing is interpolated. Their mean is the
 /// result, Resample(series, n) its values at regular angles. A steady drift over the passes of three turns and
-/// more, from the means of the turns, is taken out before; it would show with the amplitude drift / (pi k) in every
-/// order k.
+/// more in a row, from the means of the turns, is taken out before; it would show with the amplitude drift / (pi k)
+/// in every order k.
 ///
 /// @return ascending set-up, direction +1 before -1; those without samples are not there.
 /// @throws InputError if a direction is neither +1 nor -1, if the head angle is missing or changes within a set-up,
 ///         or if the signal wanders by more than 0.1 rad within a pass: an angle that wraps, or another ratio.
 ///
 /// Uncertainty: scatter between turns, the same for both phases of an order, and that of the drift; with a single
-/// turn that of white samples about the fit; and what coarse counts of the hob repeat in every turn. Not included: what
-/// repeats there besides (the encoders' errors: that of the hob spindle's `ratio` times, equation 2), the table's angle being known to the error of its
-/// encoder only (order k: its amplitude times k psi, relative).
+/// turn that of white samples about the fit; what coarse counts of the hob repeat in every turn; and, of few
+/// samples a turn, what higher orders fold onto those that are fitted. Not included: what repeats there besides
+/// (the encoders' errors: that of the hob spindle's `ratio` times, equation 2), the table's angle being known to
+/// the error of its encoder only (order k: its amplitude times k psi, relative).
 std::vector<PositionError> MeasurePositions(const std::vector<HobSample>& samples,
                                             const TransmissionOptions& options, Signal signal = Signal::kEncoders);
 
