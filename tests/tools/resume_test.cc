@@ -8,6 +8,7 @@
 #include "tests/tools/program_here.h"
 #include "tools/twinbench/measured_run.h"
 #include "twin/core/run_record.h"
+#include "twin/procedure/attempts.h"
 
 /// Runs that are broken off at any moment and taken up again by another process.
 namespace twinbench::test {
@@ -130,6 +131,14 @@ TEST_F(ResumedRun, OfAnotherScenarioOrWithoutResumeIsRefusedAndTheFolderNotTouch
   words.insert(words.end(), {"--set", "procedure.positions=12"});
   ExpectRefused(words);
   EXPECT_EQ(ReadingsOf("undisturbed"), readings_);
+}
+
+TEST_F(ResumedRun, BehindReadingsOfTwoStatesIsRefused) {
+  Process run(At(""), Measure("jumped"));
+  run.Await(4);
+  run.Kill();
+  RunRecord::Continue(At("jumped"))->AttemptFailed(40, {}, "implausible", std::string("measure again, ") + procedure::kInAnotherRun);
+  EXPECT_THAT(Refusal(Measure("jumped")), testing::HasSubstr("measure again, in another run"));
 }
 
 TEST_F(ResumedRun, IsNeverWrittenByTwo) {

@@ -10,6 +10,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
+#include "twin/procedure/attempts.h"
 
 namespace twinbench::tools {
 namespace {
@@ -120,6 +121,9 @@ void TakeUp(const BegunRun& begun, const std::string& identity) {
   const std::string source = begun.record->provenance().source;
   if (source != identity)
     throw BenchError(fmt::format("the run was begun on \"{}\" and this is \"{}\"", source, identity));
+  for (const FailedAttempt& failed : begun.record->FailedAttempts())
+    if (failed.text.find(procedure::kInAnotherRun) != std::string::npos)
+      throw InputError("--resume", failed.text, "another folder, for a run without the readings that are kept in this one");
   const int kept = static_cast<int>(begun.readings.size());
   const Time last = begun.readings.empty() ? Time{} : begun.readings.back().time;
   begun.record->AttemptFailed(kept, last, "interrupted", "the program ended; resumed");

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <string>
+
 #include "twin/core/device_fault.h"
 #include "twin/core/state_unknown.h"
+#include "twin/procedure/attempts.h"
 
 namespace twinbench::tools {
 namespace {
@@ -20,13 +23,14 @@ std::string Reason(const std::exception& why) {
 void TellStopped(const std::exception& why, const std::string& what, const std::function<procedure::Standstill()>& stop) {
   const auto* stopped = dynamic_cast<const procedure::StoppedRun*>(&why);
   const procedure::Standstill stands = stopped ? stopped->stands() : stop();
-  constexpr const char* kKept = "every reading so far is kept. Go on with --resume";
+  const bool goes_on = std::string(why.what()).find(procedure::kInAnotherRun) == std::string::npos;
+  const std::string kept = std::string("every reading so far is kept") + (goes_on ? ". Go on with --resume" : "");
   if (!stands.is_sure)
     throw StateUnknown(fmt::format("{}. STATE UNKNOWN - USE THE EMERGENCY STOP. WHETHER THE {} STAND STILL IS NOT KNOWN: "
                                    "{}; {}",
-                                   Reason(why), what == "axes" ? "AXES" : "TABLES", stands.why_not, kKept));
+                                   Reason(why), what == "axes" ? "AXES" : "TABLES", stands.why_not, kept));
   throw BenchError(fmt::format("{}. The {} were brought to rest. The controller says that all {} stand still; {}",
-                               Reason(why), what, what, kKept));
+                               Reason(why), what, what, kept));
 }
 
 }  // namespace twinbench::tools

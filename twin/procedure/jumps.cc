@@ -8,6 +8,7 @@
 
 #include "twin/core/device_fault.h"
 #include "twin/core/distributions.h"
+#include "twin/procedure/attempts.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -97,8 +98,8 @@ void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& read
               "show {} by {:.4g} (SI) otherwise against the pass before at the places of readings {} to {} than at "
               "the others: a zero, a mirror or the mounting jumped, in this pass or the one before; measure "
               "mounting "
-              "{} again, in another run",
-              claim.column.name, jump, repeats[first].reading, repeats[end - 1].reading, reading.setup));
+              "{} again, {}",
+              claim.column.name, jump, repeats[first].reading, repeats[end - 1].reading, reading.setup, kInAnotherRun));
     };
     for (std::size_t first = kFewest; first + kFewest <= all; ++first) require(first, all);
     if (all < kFewestAboutThatCameBack) continue;
@@ -127,8 +128,8 @@ void RequireNotReversed(const ClaimedColumn& a, const ClaimedColumn* less, const
       FaultKind::kImplausible, "instruments",
       fmt::format(
           "show {} at the places of the last {} readings the other way round than in the pass before: was a wire "
-          "exchanged or its sign, in this pass or that one? Measure mounting {} again, in another run",
-          less ? a.column.name + " less " + less->column.name : a.column.name, kPlaces, reading.setup));
+          "exchanged or its sign, in this pass or that one? Measure mounting {} again, {}",
+          less ? a.column.name + " less " + less->column.name : a.column.name, kPlaces, reading.setup, kInAnotherRun));
 }
 
 void Closing::Took(const Reading& reading) {
@@ -170,9 +171,9 @@ void Closing::Require(const Reading& again) const {
         FaultKind::kImplausible, "instruments",
         fmt::format("showed {} = {} at reading {} and show {} at its place, come to from the same side, behind the "
                     "passes: a zero, a mirror or the mounting jumped, or it had not come to rest; measure mounting "
-                    "{} again, in another run",
+                    "{} again, {}",
                     claim.column.name, claim.column.print(then), then.reading, claim.column.print(again),
-                    then.setup));
+                    then.setup, kInAnotherRun));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "twin/core/device_fault.h"
+#include "twin/procedure/attempts.h"
 #include "twin/procedure/machine_watch.h"
 #include "twin/procedure/watch.h"
 #include "twin/procedure/whereabouts.h"
@@ -108,8 +109,8 @@ void StepProof::RequireSteady(const std::vector<ColumnInStep>& columns, double s
         FaultKind::kImplausible, "instruments",
         fmt::format("beside the last {} readings {} went {:.4g} of a short step, and {:.4g} beside those "
                     "before: has a gain or a roll changed? What was measured since is to be measured "
-                    "again, in another run",
-                    kLast, column.name, last, before.mean()));
+                    "again, {}",
+                    kLast, column.name, last, before.mean(), kInAnotherRun));
   }
 }
 
