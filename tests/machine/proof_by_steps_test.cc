@@ -156,6 +156,18 @@ TEST(ProofBySteps, AtStopsOnACircleBarAndGridGoWithAMachineThatGoesOffIt) {
   }
 }
 
+TEST(ProofBySteps, BehindASweepTheBarGoesWithTheMachineOrNothingOfItIsKept) {
+  const Scenario scenario = ShortCircles();
+  constexpr int kFromTheBegin = -1;  // before any reading at rest
+  EXPECT_EQ(RunWith(scenario, 0, 0, {}).fault, "");
+  for (const double factor : {-1.0, 1e-3, 1.4}) {
+    const RunEnd run = RunWith(scenario, kFromTheBegin, 1000,
+                               [&](Reading& r, const Reading&) { In(r, scenario, "bar_um") *= factor; });
+    EXPECT_EQ(run.fault, "moved") << factor;
+    EXPECT_EQ(run.kept, 0u) << factor;
+  }
+}
+
 TEST(ProofBySteps, OneLateAnswerOfBothEncodersCostsAnAttemptWhereNothingBeforeItIsOfItsMounting) {
   const Changes late = [](Reading& r, const Reading& before) {
     r.reference_rad = before.reference_rad, r.measured_rad = before.measured_rad;

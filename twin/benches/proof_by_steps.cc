@@ -81,6 +81,19 @@ Reading Beside(const Reading& reading, const std::vector<double>& by, const std:
   return beside;
 }
 
+/// Behind a sweep nothing has been read at rest yet. Returns false where nothing can be.
+bool ShowIn(Reading& here, const Scenario& scenario, const std::vector<Expected>& columns, MachineBench& bench) {
+  const auto is_shown = [&](const Expected& c) { return std::isfinite(NumberIn(here, scenario, c.column)); };
+  if (std::ranges::any_of(columns, is_shown)) return true;
+  try {
+    Reading look = bench.instruments.Look();
+    for (const Expected& c : columns) NumberIn(here, scenario, c.column) = NumberIn(look, scenario, c.column);
+  } catch (const DeviceFault&) {
+    return false;  // an instrument that only latches
+  }
+  return std::ranges::any_of(columns, is_shown);
+}
+
 bool ShowsAngles(const Reading& reading) {
   return std::isfinite(reading.autocollimator_yaw_rad);
 }
@@ -120,10 +133,12 @@ std::function<void(const Reading&)> ProofBySteps(MachineBench& bench, const Scen
           columns = MovedByAxes(scenario),
           close = ProofByClosing(bench, scenario, options)](const Reading& reading) mutable {
     if (is_compared && proved == reading.setup) return close(reading);
+    Reading here = reading;
+    if (scenario.bench == kCircularBench && !ShowIn(here, scenario, columns, bench)) return;
     std::vector<double> by = StepOf(scenario, reading);
-    if (Reading here = reading; NumberIn(here, scenario, columns[0].column) > 0.0)
+    if (NumberIn(here, scenario, columns[0].column) > 0.0)
       for (double& way : by) way = -way;  // towards the middle of its range
-    Reading shown = procedure::ShownBeside(bench, by, options), back = bench.instruments.Look(), here = reading;
+    Reading shown = procedure::ShownBeside(bench, by, options), back = bench.instruments.Look();
     const Reading there = Beside(reading, by, bench.machine.Axes(), scenario);
     std::vector<ColumnInStep> in_step;
     for (const Expected& c : columns) {

@@ -12,7 +12,7 @@ namespace {
 
 /// Readings that are all the same: of steps so coarse that noise hides in them, one in many is another.
 constexpr int kAgain = 16;
-constexpr int kSamplesTheSame = 64;
+constexpr int kSamplesTheSame = 64, kSamplesTheSameOfNoise = 16;
 constexpr double kAgree = 10.0;                    // times the noise of a difference
 constexpr double kFollows_rad = 1.0 * units::deg;  // more than the steps of any encoder
 
@@ -165,7 +165,7 @@ void DoubtedInstruments::RequireMoving(const Reading& sample) {
     same_[k] = ValueOf(claims_[k], *last_) == ValueOf(claims_[k], sample) && IsShown(claims_[k], sample)
                    ? same_[k] + 1
                    : 0;
-    if (same_[k] >= kSamplesTheSame)
+    if (same_[k] >= (claims_[k].noise > 0.0 ? kSamplesTheSameOfNoise : kSamplesTheSame))
       Fail(fmt::format("show {} in {} samples: they are dead or stuck", Text(claims_[k], sample), same_[k]));
   }
 }

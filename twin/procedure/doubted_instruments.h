@@ -41,7 +41,7 @@ void RequireAsBefore(const std::vector<ClaimedColumn>& claims, const Reading& ag
 /// Instruments of a real bench, which are not believed at once. Every reading at rest is taken twice at its place,
 /// and both must agree within ten times the noise: those that answer late by one show the place before, and a spike
 /// comes alone. One that is the reading before to the last digit, or nothing but zeros, is taken again until
-/// another comes, and then once more, which counts. In motion: no column shows the very same for 64 samples. What
+/// another comes, and then once more, which counts. In motion: no column shows the very same for 16 samples, no angle for 64. What
 /// is read again is in no record: replays need it not.
 class DoubtedInstruments : public InstrumentSet {
  public:

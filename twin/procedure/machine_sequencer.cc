@@ -141,8 +141,9 @@ void MachineSequencer::Go(const Arc& arc) {
   Watch(bench_, PathTime_s(arc, Radius_m(arc, from)), where_, options_);
 }
 
-void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
+void MachineSequencer::Sweep(const Arc& arc, int first, int end, const Reading& stands) {
   const std::vector<Reading> samples = SamplesAlong(arc, static_cast<std::size_t>(end - first));
+  if (options_.prove) options_.prove(stands);
   for (const Reading& sample : samples) Keep(first++, sample);
 }
 

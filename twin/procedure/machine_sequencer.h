@@ -73,9 +73,10 @@ class MachineSequencer {
   void MoveAndIndex(const std::vector<double>& to, int tooth, double tooth_rad);
   /// Goes round without taking anything.
   void Go(const Arc& arc);
-  /// Goes round; the arc's triggers take the readings [first, end).
+  /// Goes round; the arc's triggers take the readings [first, end), which are kept if they are proved where it ends.
+  /// @param stands  There: a reading that shows nothing yet.
   /// @throws DeviceFault kFollowing for one that is not gone round at its feed, within a tenth; what Watch throws.
-  void Sweep(const Arc& arc, int first, int end);
+  void Sweep(const Arc& arc, int first, int end, const Reading& stands);
   /// Lets an axis go over to a speed; returns at once.
   void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp);
   /// The same, and waits until it has.

@@ -105,7 +105,14 @@ class CircleDrive {
                       .triggers = end - first,
                       .first_trigger_rad = kLeadIn_rad,
                       .trigger_step_rad = step_rad},
-                     first, end);
+                     first, end, At(begin, begin.target_rad + begin.direction * (way_rad - kLeadIn_rad)));
+  }
+
+  static Reading At(Reading there, double angle_rad) {
+    const double radius_m = Radius_m(there);
+    there.target_rad = angle_rad;
+    kCommandedX_m(there) = radius_m * std::cos(angle_rad), kCommandedY_m(there) = radius_m * std::sin(angle_rad);
+    return there;
   }
 
   void Stop(int first, int end) {
