@@ -52,6 +52,13 @@ TEST_F(Importing, TakesColumnsInOtherLanguagesInAnyOrder) {
   EXPECT_NEAR(Last_deg(Take(swapped)), 355.0, 1e-9);
 }
 
+TEST_F(Importing, TakesSessionsForSetUps) {
+  std::string text = "session,reference [deg],measured [deg]\n";
+  for (int i = 0; i < 72; ++i) text += fmt::format("{},{},{}\n", 1 + i / 36, 5 * i, 5 * i + i / 36);
+  const Imported imported = Take(text);
+  EXPECT_EQ(imported.readings.front().setup + 1, imported.readings.back().setup);
+}
+
 TEST_F(Importing, RefusesAUnitThatItDoesNotKnow) {
   EXPECT_KEPT(MessageOf([&] { Take(Scaled("reference [furlong],measured [furlong]")); }));
 }

@@ -110,6 +110,10 @@ bool IsCalledDirection(const std::string& name) {
   return HasAny(name, std::array{"direction", "dir", "sense", "approach", "richtung", "side", "sens", "dirección"});
 }
 
+bool IsCalledSetup(const std::string& name) {
+  return HasAny(name, std::array{"setup", "session", "mounting", "clamping", "aufspannung"});
+}
+
 int TurnIn(const std::string& text) {
   std::string small = SmallLetters(text);
   const auto take = [&small](const auto& words) {

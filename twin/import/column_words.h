@@ -23,6 +23,9 @@ bool IsCalledCorrection(const std::string& name);
 /// "direction", "approach", "Richtung", "side".
 bool IsCalledDirection(const std::string& name);
 
+/// "setup", "session", "mounting": behind which everything stands elsewhere.
+bool IsCalledSetup(const std::string& name);
+
 /// +1, -1, or 0 for a word that is no direction: "forward", "down", "cw", "+".
 int DirectionOfWord(std::string_view word);
 

@@ -27,6 +27,7 @@ bool IsLabel(const Column& column) {
 
 bool IsLabelOf(const std::string& target, const Choice& choice) {
   if (!IsLabel(*choice.column)) return false;
+  if (target == "setup") return IsCalledSetup(choice.name);
   if (target != "direction") return SmallLetters(choice.name) == target;
   return IsCalledDirection(choice.name) && StaysWithin(*choice.column, 1.0);
 }
