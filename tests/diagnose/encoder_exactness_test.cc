@@ -118,6 +118,20 @@ TEST(EncoderExactness, AWalkHasTheSizeThatTheReadingsShowAndNoOtherName) {
   }
 }
 
+TEST(EncoderExactness, ASlowCourseBesideLargeCausesIsToldAndWritten) {
+  // What follows the square of a temperature of the room.
+  for (const unsigned seed : {21u, 22u}) {
+    const Answer answer = Ask(Stops(0.002, 0.0, seed, [](double t_s, double a) {
+      const double room_K = std::sin(t_s / 300.0) + 0.4 * std::sin(t_s / 90.0 + 1.0);
+      return (t_s < 1100.0 ? 0.0 : 0.01) + 0.007 * std::cos(2.0 * a * units::deg) + 0.0025 * room_K * room_K;
+    }));
+    SCOPED_TRACE(answer.Words());
+    EXPECT_TRUE(answer.Find("ellipticity"));
+    EXPECT_NE(answer.run.diagnosis.unknown.signature.find("function of time"), std::string::npos);
+    EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
+  }
+}
+
 /// 9 targets of a stage, five times there and back, while its zero goes on from pass to pass.
 TEST(EncoderExactness, OffsetsOfPassesHideNoReversal) {
   for (const unsigned seed : {11u, 12u, 13u}) {
@@ -173,6 +187,43 @@ TEST(EncoderExactness, ACurveOverAPartOfATurnIsNoSumOfOrders) {
     EXPECT_EQ(answer.Find("periodic"), nullptr);
     EXPECT_NE(answer.run.diagnosis.unknown.signature.find("error curve over a part of a turn"), std::string::npos);
   }
+}
+
+TEST(EncoderExactness, ASingleFarReadingThatNoOtherPassCheckedMayBeOfItsPlace) {
+  for (const double between_deg : {0.0, 1.3}) {
+    std::mt19937_64 random(18);
+    std::normal_distribution<double> noise_deg(0.0, 0.002);
+    Record record;
+    for (int k = 0; k < 800; ++k) {
+      const int pass = k / 200;
+      const double turned_deg = 3.6 * (pass % 2 == 0 ? k % 200 : 199 - k % 200) + between_deg * pass;
+      record.Add(0.1 * k + pass, turned_deg, turned_deg + noise_deg(random) + (k == 333 ? 0.04 : 0.0),
+                 pass % 2 == 0 ? 1 : -1, pass);
+    }
+    const Answer answer = Ask(record);
+    SCOPED_TRACE(answer.Words());
+    EXPECT_TRUE(answer.Names("outliers", 0.5));
+    EXPECT_EQ(answer.Names("outliers", 0.8), between_deg == 0.0) << "others were at the place";
+    EXPECT_EQ(answer.run.diagnosis.unknown.signature.empty(), between_deg == 0.0);
+    EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
+  }
+}
+
+TEST(EncoderExactness, AWormIsNoPieceOfACurve) {
+  std::mt19937_64 random(17);
+  std::normal_distribution<double> normal;
+  std::vector<double> knots_deg(17);
+  for (double& k : knots_deg) k = 0.01 * normal(random);
+  const Answer answer = Ask(ListedBothWays(12.0, 45.0, 800, 1, [&](double a, int stop, int) {
+    const double at = stop / 50.0, share = 0.5 * (1.0 - std::cos(units::kPi * (at - std::floor(at))));
+    const auto k = static_cast<std::size_t>(at);
+    return std::lerp(knots_deg[k], knots_deg[k + 1], share) + 0.004 * std::cos(400.0 * a * units::deg) +
+           0.0003 * normal(random);
+  }));
+  SCOPED_TRACE(answer.Words());
+  EXPECT_EQ(answer.Value("periodic", "order"), 400.0);
+  EXPECT_NEAR(answer.Value("periodic", "amplitude"), 0.004, 0.0001);
+  EXPECT_NE(answer.run.diagnosis.unknown.signature.find("error curve over a part of a turn"), std::string::npos);
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
   diagnose::encoder::TellEqualSteps(result);
   diagnose::encoder::TellCurveInPieces(result);
   diagnose::encoder::TellWander(large.bent, result);
-  diagnose::encoder::TellGlitches(large.first->encoder.glitches, result);
+  diagnose::encoder::TellGlitches(large.first->encoder.glitches, scenario, result);
   if (limit) diagnose::encoder::TellSpeedLimit(*limit, result);
   TellPart(looked_at, AnglesOf(recorded).size(), result.diagnosis);
   result.diagnosis.left_out = (limit ? limit->asked : searched.encoder).left_out;

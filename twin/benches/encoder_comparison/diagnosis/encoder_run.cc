@@ -133,6 +133,10 @@ Nuisance EncoderRun::SetUpsAlone() const {
   return nuisance;
 }
 
+Eigen::VectorXd EncoderRun::BesideSetUps(const Eigen::VectorXd& rows) const {
+  return rows - SetUpMeans(setups, rows);
+}
+
 ErrorOfTwin FollowTwin(const EncoderRun& encoder, const Scenario& scenario, const model::FollowMaker& follow,
                        const Eigen::VectorXd& offset_rad, double same_rad) {
   // What is locked to the device's angle turns with it: each step leaves a tenth of what is wrong, or less.

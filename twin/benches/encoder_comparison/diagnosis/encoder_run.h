@@ -25,6 +25,8 @@ struct EncoderRun {
 
   /// Free are the offsets of the set-ups and nothing else.
   Nuisance SetUpsAlone() const;
+  /// What the offsets of the set-ups leave of rows.
+  Eigen::VectorXd BesideSetUps(const Eigen::VectorXd& rows) const;
 };
 
 /// `observed` is the device's angle with the turns that it does not count put back. Where the noise is not known it

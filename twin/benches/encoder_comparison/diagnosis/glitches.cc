@@ -9,6 +9,7 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/recurrence.h"
+#include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -140,6 +141,80 @@ double SumOfSquares(const Cause& outliers, double readings) {
   return value("fraction") * readings * std::pow(value("size"), 2);
 }
 
+void TellFar(const Glitches& glitches, DiagnosisRun& result) {
+  Diagnosis& d = result.diagnosis;
+  const auto readings = static_cast<double>(result.run.schedule.Readings());
+  NoiseCause far;
+  far.log_bayes = 0.5 * kFar * kFar * static_cast<double>(glitches.rows.size());
+  far.outliers = glitches.rows;
+  double squares = glitches.size_rad.squaredNorm();
+  const auto other = std::ranges::find(d.causes, "outliers", &Cause::effect);
+  double others = 0.0;
+  if (other != d.causes.end()) {
+    others =
+        std::round(readings * std::ranges::find(other->parameters, "fraction", &ParameterEstimate::name)->value);
+    squares += SumOfSquares(*other, readings);
+    d.causes.erase(other);
+  }
+  const double count = others + static_cast<double>(glitches.rows.size());
+  far.outlier_size = std::sqrt(squares / count) / result.run.sigma.mean();
+  Cause cause = OutlierCause(far, result.run);
+  ParameterEstimate& fraction = *std::ranges::find(cause.parameters, "fraction", &ParameterEstimate::name);
+  fraction.value = count / readings;
+  fraction.u = fraction.value / std::sqrt(count);
+  d.causes.push_back(std::move(cause));
+  if (d.verdict == Verdict::kNone) d.verdict = Verdict::kNamed;
+  d.alarm_p = std::min(d.alarm_p, std::exp(-far.log_bayes));
+  d.notes.push_back(fmt::format(
+      "readings far from all around them, by up to {:.3g} {}: {}; everything else was found without them",
+      glitches.size_rad.cwiseAbs().maxCoeff() / result.run.to_SI, result.run.unit,
+      Places(glitches, result.run.schedule.reading)));
+}
+
+/// Those that the search has left out are with them.
+std::vector<int> FarRows(const Glitches& glitches, const DiagnosisRun& result) {
+  constexpr double kLeftOut = 1e3;  // times the noise
+  std::vector<int> rows = glitches.rows;
+  for (int k = 0; k < result.run.Rows(); ++k) {
+    if (result.noise.sigma[k] > kLeftOut * result.run.sigma[k] && std::ranges::count(glitches.rows, k) == 0)
+      rows.push_back(k);
+  }
+  std::ranges::sort(rows);
+  return rows;
+}
+
+/// One or two, where another pass went by between its readings: a fault of a place that is narrower than their
+/// distance shows no more often, a code of a converter that is missing.
+bool MayBeOfPlaces(const std::vector<int>& rows, const Schedule& s) {
+  constexpr std::size_t kFew = 2;
+  constexpr double kSamePlace = 0.02;  // of the way from one reading to the next
+  const double step_rad = UsualStep_rad(s);
+  return !rows.empty() && rows.size() <= kFew && std::ranges::all_of(rows, [&](int row) {
+    double nearest_rad = units::turn;
+    for (int i = 0; i < s.Readings(); ++i) {
+      const bool is_own_pass = s.pass[static_cast<std::size_t>(i)] == s.pass[static_cast<std::size_t>(row)];
+      if (is_own_pass || std::ranges::count(rows, i) > 0) continue;
+      nearest_rad =
+          std::min(nearest_rad, std::abs(std::remainder(s.reference_rad[i] - s.reference_rad[row], units::turn)));
+    }
+    return nearest_rad > kSamePlace * step_rad && nearest_rad < step_rad;
+  });
+}
+
+/// Single readings are the more usual reason.
+void DoubtFew(const std::vector<int>& rows, DiagnosisRun& result) {
+  Diagnosis& d = result.diagnosis;
+  const auto outliers = std::ranges::find(d.causes, "outliers", &Cause::effect);
+  if (outliers == d.causes.end() || !MayBeOfPlaces(rows, result.run.schedule)) return;
+  outliers->probability = std::min(outliers->probability, tuning::kNotProven);
+  d.unknown.probability = std::max(d.unknown.probability, 1.0 - tuning::kNotProven);
+  d.unknown.signature += fmt::format(
+      "{}fault of a place that is narrower than the distance of readings, synchronous with "
+      "reference angle, on angle",
+      d.unknown.signature.empty() ? "" : " | ");
+  if (d.verdict == Verdict::kNamed) d.verdict = Verdict::kTie;
+}
+
 }  // namespace
 
 Glitches FindGlitches(const LinearRun& run, const Eigen::VectorXd& relative_noise) {
@@ -176,35 +251,10 @@ void Bridge(const Glitches& glitches, Eigen::VectorXd& rows) {
     rows[glitches.rows[static_cast<std::size_t>(k)]] -= glitches.size_rad[k];
 }
 
-void TellGlitches(const Glitches& glitches, DiagnosisRun& result) {
-  if (glitches.rows.empty()) return;
-  Diagnosis& d = result.diagnosis;
-  const auto readings = static_cast<double>(result.run.schedule.Readings());
-  NoiseCause far;
-  far.log_bayes = 0.5 * kFar * kFar * static_cast<double>(glitches.rows.size());
-  far.outliers = glitches.rows;
-  double squares = glitches.size_rad.squaredNorm();
-  const auto other = std::ranges::find(d.causes, "outliers", &Cause::effect);
-  double others = 0.0;
-  if (other != d.causes.end()) {
-    others =
-        std::round(readings * std::ranges::find(other->parameters, "fraction", &ParameterEstimate::name)->value);
-    squares += SumOfSquares(*other, readings);
-    d.causes.erase(other);
-  }
-  const double count = others + static_cast<double>(glitches.rows.size());
-  far.outlier_size = std::sqrt(squares / count) / result.run.sigma.mean();
-  Cause cause = OutlierCause(far, result.run);
-  ParameterEstimate& fraction = *std::ranges::find(cause.parameters, "fraction", &ParameterEstimate::name);
-  fraction.value = count / readings;
-  fraction.u = fraction.value / std::sqrt(count);
-  d.causes.push_back(std::move(cause));
-  if (d.verdict == Verdict::kNone) d.verdict = Verdict::kNamed;
-  d.alarm_p = std::min(d.alarm_p, std::exp(-far.log_bayes));
-  d.notes.push_back(fmt::format(
-      "readings far from all around them, by up to {:.3g} {}: {}; everything else was found without them",
-      glitches.size_rad.cwiseAbs().maxCoeff() / result.run.to_SI, result.run.unit,
-      Places(glitches, result.run.schedule.reading)));
+void TellGlitches(const Glitches& glitches, const Scenario& scenario, DiagnosisRun& result) {
+  if (!glitches.rows.empty()) TellFar(glitches, result);
+  const bool are_stated = std::ranges::count(scenario.effects, "outliers", &EffectSettings::name) > 0;
+  if (!are_stated) DoubtFew(FarRows(glitches, result), result);
 }
 
 }  // namespace twinbench::diagnose::encoder

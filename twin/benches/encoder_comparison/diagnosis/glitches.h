@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "twin/core/scenario.h"
 #include "twin/diagnose/diagnose.h"
 
 /// Readings so far from all around them that nothing else could be fitted beside them.
@@ -24,7 +25,9 @@ Glitches FindGlitches(const LinearRun& run, const Eigen::VectorXd& relative_nois
 /// What the readings beside a glitch show is put in its place.
 void Bridge(const Glitches& glitches, Eigen::VectorXd& rows);
 
-/// As outliers, with their places; those that the search has found besides are counted with them.
-void TellGlitches(const Glitches& glitches, DiagnosisRun& result);
+/// As outliers, with their places; those that the search has found besides are counted with them. One
+/// or two may as well be of a place that no other pass has read.
+/// @param scenario  What it states is not doubted.
+void TellGlitches(const Glitches& glitches, const Scenario& scenario, DiagnosisRun& result);
 
 }  // namespace twinbench::diagnose::encoder

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 #include "twin/diagnose/engine/answer.h"
@@ -17,20 +18,18 @@ Accepted AcceptedOf(const LargeCause& cause) {
   accepted.family.amplitudes = {{"strength", "1", 1.0, 1.0}};
   accepted.amplitudes = Eigen::VectorXd::Ones(1);
   accepted.columns = cause.shown;
+  if (const std::optional<double> order = WaveOrderOf(cause.effect))
+    accepted.shape = Eigen::VectorXd::Constant(1, *order);
   return accepted;
 }
 
-Eigen::VectorXd AboutMean(const Eigen::VectorXd& shown) {
-  return shown.array() - shown.mean();
-}
-
-/// What has no name beside the large causes, as it is fitted with them, each about its mean.
+/// What has no name beside the large causes, as it is fitted with them, each without what an offset takes of it.
 std::vector<Eigen::VectorXd> UnnamedOf(const LargeCauses& large) {
   const Searched& last = large.Last();
   std::vector<Eigen::VectorXd> unnamed;
   for (const Term& term : last.analysis.found.terms) {
     const Family& family = last.families[static_cast<std::size_t>(term.family)];
-    if (family.kind == Kind::kUnknown) unnamed.push_back(AboutMean(term.columns * term.amplitudes));
+    if (family.kind == Kind::kUnknown) unnamed.push_back(last.encoder.BesideSetUps(term.columns * term.amplitudes));
   }
   return unnamed;
 }
@@ -58,14 +57,15 @@ void WeighTheRest(const LargeCauses& large, Diagnosis& d, std::vector<Cause>& ca
   const std::vector<Eigen::VectorXd> shapes = UnnamedOf(large);
   const double unnamed = PowerOf(shapes);
   double named = 0.0;
-  for (const LargeCause& cause : large.causes) named += AboutMean(cause.shown).squaredNorm();
+  for (const LargeCause& cause : large.causes)
+    named += large.first->encoder.BesideSetUps(cause.shown).squaredNorm();
   if (unnamed <= named) {
     d.verdict = Verdict::kNamed;
     return;
   }
   auto at = causes.begin();
   for (const LargeCause& cause : large.causes) {
-    const Eigen::VectorXd shown = AboutMean(cause.shown);
+    const Eigen::VectorXd shown = large.first->encoder.BesideSetUps(cause.shown);
     const bool may_be_piece =
         shown.squaredNorm() < tuning::kSmallRest * unnamed ||
         std::ranges::any_of(shapes, [&](const Eigen::VectorXd& shape) { return Likeness(shown, shape) > kAlike; });

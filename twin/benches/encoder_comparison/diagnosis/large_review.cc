@@ -43,7 +43,7 @@ void LargeSearch::LeaveToLarge() {
     last.analysis.found.first_statistic = last.analysis.found.last_statistic;  // as if it were not there
   if (!large_.last || terms.empty()) return;
   const double least = LeastExplained();
-  const Eigen::VectorXd left = Left();
+  const Eigen::VectorXd left = Left(Beside());
   const auto is_of_large = [&](const Term& term) {
     const Family& family = last.families[static_cast<std::size_t>(term.family)];
     return std::ranges::any_of(large_.causes, [&](const LargeCause& cause) {
@@ -73,15 +73,18 @@ double LargeSearch::LeastExplained() const {
   return kAsExact * explained;
 }
 
-/// What neither the large causes nor the others explain, whitened.
-Eigen::VectorXd LargeSearch::Left() const {
-  return large_.causes.empty() ? fit_->WhiteOf(Beside()) : fit_->WhiteOf(fit_->Ask(large_.causes, Beside()).left);
+/// What the large causes leave of what the others do, whitened.
+Eigen::VectorXd LargeSearch::Left(const Eigen::VectorXd& beside) const {
+  return fit_->WhiteOf(large_.causes.empty() ? beside : fit_->Ask(large_.causes, beside).left);
 }
 
+/// @param left  With a random walk in it (Beside), which is no noise beside itself.
 bool LargeSearch::IsChance(const Term& term, const Eigen::VectorXd& left) const {
-  const Eigen::VectorXd own = fit_->WhiteOf(term.columns * term.amplitudes);
-  const double noise = left.squaredNorm() / static_cast<double>(left.size());
-  return own.squaredNorm() < std::pow(tuning::kHeadline, 2) * noise * MemoryAlong(own, left);
+  const Eigen::VectorXd shown = term.columns * term.amplitudes, own = fit_->WhiteOf(shown);
+  const bool is_walk = FollowsWalk(large_.Last().families[static_cast<std::size_t>(term.family)], term.columns);
+  const Eigen::VectorXd others = is_walk ? Left(Beside() - shown) : left;
+  const double noise = others.squaredNorm() / static_cast<double>(others.size());
+  return own.squaredNorm() < std::pow(tuning::kHeadline, 2) * noise * MemoryAlong(own, others);
 }
 
 /// What stood for something that was found later is not kept, nor what the memory of the rest makes by chance: the

@@ -42,7 +42,7 @@ class LargeSearch {
   void Review();
   void LeaveToLarge();
   double LeastExplained() const;
-  Eigen::VectorXd Left() const;
+  Eigen::VectorXd Left(const Eigen::VectorXd& beside) const;
   bool IsChance(const Term& term, const Eigen::VectorXd& left) const;
   SecondOrder Bent() const;
   void DropNeedless();

@@ -12,13 +12,18 @@
 #include "twin/core/linear_algebra.h"
 #include "twin/diagnose/cause_groups.h"
 #include "twin/diagnose/engine/base.h"
+#include "twin/diagnose/folds.h"
+#include "twin/diagnose/gain.h"
 #include "twin/diagnose/tuning.h"
+#include "twin/model/local_level.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
 
 /// Readings from which a memory as long as a part of them can be seen.
 constexpr Eigen::Index kFewest = 128;
+constexpr const char *kWords = "random walk, function of time", *kOfTime = "function of time";
 
 /// Changes of some rows over a lag; a walk goes on from pass to pass, and not over a new mounting.
 std::vector<double> Changes(const Eigen::VectorXd& rows, const std::vector<int>& setup, Eigen::Index lag,
@@ -227,6 +232,51 @@ double GiveToWander(DiagnosisRun& result, const Walk& walk, Eigen::VectorXd& wan
   return named;
 }
 
+/// Of these readings alone, by time: what the file shows of it. A column for each part that is held out: what was
+/// not seen of a walk is not predicted.
+Accepted CourseOf(const Walk& walk, const LinearRun& run) {
+  Accepted course;
+  course.family.kind = Kind::kUnknown;
+  course.family.effect = "walk";
+  course.family.where = run.channels.front();
+  course.family.goes_by_time = true;
+  const double noise = std::max(run.sigma.mean(), std::sqrt(0.5 * walk.Change(1)));
+  const Eigen::VectorXd smoothed = model::Smoothed(run.schedule.time_s, walk.left, noise);
+  course.columns = model::Times(model::Indicators(MakeFolds(run.schedule).of_reading), smoothed);
+  const Eigen::MatrixXd all = HStack(run.nuisance.jacobian.toDense(), course.columns);
+  course.amplitudes = SolveShortest(all, walk.left).tail(course.columns.cols());
+  course.family.amplitudes.assign(static_cast<std::size_t>(course.columns.cols()), {"strength", "1", 1.0, 1.0});
+  return course;
+}
+
+/// Without the parts that say so.
+void DropParts(const std::string& words, std::string& signature) {
+  std::string kept;
+  for (std::size_t at = 0; at < signature.size();) {
+    const std::size_t end = std::min(signature.find(" | ", at), signature.size());
+    const std::string part = signature.substr(at, end - at);
+    if (part.find(words) == std::string::npos) kept += (kept.empty() ? "" : " | ") + part;
+    at = end + 3;
+  }
+  signature = kept;
+}
+
+void AddWords(const Eigen::VectorXd& walk, const LinearRun& run, std::string& signature) {
+  const double amplitude = std::sqrt(2.0 * SquaresAboutMean(walk) / static_cast<double>(run.Rows()));
+  signature += fmt::format("{}{}, on angle, amplitude {:.2g} {}", signature.empty() ? "" : " | ", kWords,
+                           amplitude / run.to_SI, run.unit);
+}
+
+/// With the names that are left beside it.
+void TellWalk(const Walk& walk, DiagnosisRun& result) {
+  Diagnosis& d = result.diagnosis;
+  Eigen::VectorXd wander = walk.left;
+  const double named = GiveToWander(result, walk, wander);
+  AddWords(wander, result.run, d.unknown.signature);
+  d.unknown.probability = std::max(d.unknown.probability, tuning::kListed);
+  if (d.verdict == Verdict::kNone || SquaresAboutMean(wander) > named) d.verdict = Verdict::kUnknown;
+}
+
 }  // namespace
 
 bool FollowsWalk(const Family& family, const Eigen::MatrixXd& columns) {
@@ -236,19 +286,18 @@ bool FollowsWalk(const Family& family, const Eigen::MatrixXd& columns) {
 void TellWander(const SecondOrder& bent, DiagnosisRun& result) {
   const LinearRun& run = result.run;
   if (run.Channels() != 1 || run.Rows() < kFewest) return;
-  if (!IsWalk(WalkOf(result, bent), run.sigma.minCoeff())) return;
-  Diagnosis& d = result.diagnosis;
-  if (std::ranges::any_of(result.accepted, IsFollowed)) d.unknown.signature.clear();  // which is told below
-  FitBesideWalk(result);
-  const Walk walk = WalkOf(result, bent);
-  Eigen::VectorXd wander = walk.left;
-  const double named = GiveToWander(result, walk, wander);
-  const double amplitude = std::sqrt(2.0 * SquaresAboutMean(wander) / static_cast<double>(run.Rows()));
-  const std::string words = fmt::format("random walk, function of time, on angle, amplitude {:.2g} {}",
-                                        amplitude / run.to_SI, run.unit);
-  d.unknown.signature += (d.unknown.signature.empty() ? "" : " | ") + words;
-  d.unknown.probability = std::max(d.unknown.probability, tuning::kListed);
-  if (d.verdict == Verdict::kNone || SquaresAboutMean(wander) > named) d.verdict = Verdict::kUnknown;
+  const bool is_walk = IsWalk(WalkOf(result, bent), run.sigma.minCoeff());
+  const bool is_followed = std::ranges::any_of(result.accepted, IsFollowed);
+  if (!is_walk && !is_followed) return;
+  std::string& signature = result.diagnosis.unknown.signature;
+  if (is_followed) DropParts(is_walk ? kOfTime : kWords, signature);  // it is told here
+  if (is_walk) {
+    FitBesideWalk(result);
+    TellWalk(WalkOf(result, bent), result);
+  }
+  std::erase_if(result.accepted, IsFollowed);
+  result.accepted.push_back(CourseOf(WalkOf(result, bent), run));
+  if (!is_walk) AddWords(ShownByFit(run, {result.accepted.back()}), run, signature);
 }
 
 }  // namespace twinbench::diagnose::encoder
