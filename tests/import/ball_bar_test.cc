@@ -165,5 +165,40 @@ TEST(UnitsOverATime, AreUnitsInNamesAndInBrackets) {
   EXPECT_FALSE(UnitNamed("mm/px"));
 }
 
+TEST_F(BallBar, NamesThePlaneAndRefusesSeveral) {
+  const auto circles = [](const char* first, const char* second) {
+    return "angle_deg,deviation_um,direction,plane\n" + Circles([&](double a, int d) {
+             return fmt::format("{},{:.4f},{},{}\n", a, Deviation_um(a, d), d, d > 0 ? first : second);
+           });
+  };
+  EXPECT_THAT(Take(circles("Y-Z", "YZ")).story, HasSubstr("the circle is in the plane YZ: x of the results is Y, y is Z"));
+  EXPECT_THAT(Take(circles("XY", "G17")).story, Not(HasSubstr("the plane")));
+  EXPECT_THAT(MessageOf([&] { Take(circles("XY", "ZX")); }), HasSubstr("circles in the planes XY, ZX are in one file"));
+  EXPECT_THAT(Take("Ebene: ZX\nangle_deg,deviation_um\n" + Circles([](double a, int d) { return fmt::format("{},{:.4f}\n", a, Deviation_um(a, d)); })).story,
+              HasSubstr("x of the results is Z"));
+}
+
+TEST_F(BallBar, MayBeFrench) {
+  const Imported taken = Take("Rayon (mm);100\nAvance (mm/min);500\nAngle (°);Écart (µm);Sens\n" + Circles([](double a, int d) {
+                                return fmt::format("{};{:.4f};{}\n", a, Deviation_um(a, d), d > 0 ? "antihoraire" : "horaire");
+                              }));
+  Expect(taken, 100.0, 500.0);
+}
+
+/// Each run an object of lists, and what holds for all beside them.
+TEST_F(BallBar, MayBeRunsInJSON) {
+  std::string runs;
+  for (const int direction : {1, -1}) {
+    std::string angles, values;
+    for (int k = 0; k < 360; k += 5) {
+      const double angle_deg = direction > 0 ? k + 0.5 : 359.5 - k;
+      angles += fmt::format("{}{}", k > 0 ? "," : "", angle_deg);
+      values += fmt::format("{}{:.4f}", k > 0 ? "," : "", Deviation_um(angle_deg, direction));
+    }
+    runs += fmt::format(R"({}{{"direction":"{}","angle_deg":[{}],"deviation_um":[{}]}})", direction > 0 ? "" : ",", direction > 0 ? "ccw" : "cw", angles, values);
+  }
+  Expect(Take(R"({"radius_mm":100,"feed_mm_min":500,"runs":[)" + runs + "]}"), 100.0, 500.0);
+}
+
 }  // namespace
 }  // namespace twinbench::imports

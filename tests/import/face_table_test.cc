@@ -7,6 +7,9 @@
 #include <functional>
 
 #include "tests/import/importing.h"
+#include "twin/benches/evaluated.h"
+#include "twin/core/estimator.h"
+#include "twin/report/evaluation.h"
 
 // Tables of a certified polygon under an autocollimator: other names, orders, units and ways of saying the direction.
 namespace twinbench::imports {
@@ -81,6 +84,62 @@ TEST_F(FaceTable, WithoutCertifiedDeviationsSaysSo) {
                               }), "face_table");
   EXPECT_EQ(taken.readings.size(), 36U);
   EXPECT_THAT(taken.story, HasSubstr("no certified deviations were found"));
+}
+
+/// Columns that are called by the way round alone, a certificate's expanded uncertainty, and a face's number beside them.
+TEST_F(FaceTable, MayCallItsColumnsByTheWayRoundAlone) {
+  const auto text = [](const char* names) {
+    return names + Faces(8, [](int face, double angle, double forward, double reverse) {
+             return fmt::format("{},{:g},{:.4f},{:.4f},{:.4f},0.1\n", face, angle, forward, reverse, Certified_arcsec(face - 1));
+           });
+  };
+  const Imported taken = Take(text("Face,Nominal [°],Forward [\"],Reverse [\"],Certified [\"],U (k=2) [\"]\n"));
+  Expect(taken, 8);
+  EXPECT_THAT(taken.set, Contains("multitooth.u_tooth_arcsec=0.05"));
+  Expect(Take(text("No.,Soll [°],Run 1 fwd (\"),Run 1 rev (\"),Kalibrierwert (\"),u (\")\n")), 8);
+}
+
+/// The certificate has angles of the faces, or corrections; or only the faces are numbered.
+TEST_F(FaceTable, TakesCertificatesOfOtherKinds) {
+  const auto both = [](const std::string& names, const std::function<std::string(int, double)>& certified) {
+    std::string back, there = Faces(12, [&](int face, double angle, double forward, double reverse) {
+      back = fmt::format("-,{},{:g},{:.4f},{}\n", face, angle, reverse, certified(face - 1, angle)) + back;
+      return fmt::format("+,{},{:g},{:.4f},{}\n", face, angle, forward, certified(face - 1, angle));
+    });
+    return "direction," + names + "\n" + there + back;
+  };
+  Expect(Take(both("no,nominal angle (deg),reading (arcsec),certified angle (deg)",
+                   [](int face, double angle) { return fmt::format("{:.8f}", angle + Certified_arcsec(face) / 3600.0); })),
+         12);
+  const auto correction = [](int face, double) { return fmt::format("{:.4f}", -Certified_arcsec(face)); };
+  Expect(Take(both("no,position (deg),reading (arcsec),correction (arcsec)", correction)), 12);
+  const Imported numbered = Take(both("face,remark,reading (arcsec),certified deviation (arcsec)",
+                                      [](int face, double) { return fmt::format("{:.4f}", Certified_arcsec(face)); }));
+  Expect(numbered, 12);
+  EXPECT_THAT(numbered.story, HasSubstr("stand evenly round the circle"));
+}
+
+/// An error beside an angle is that of a device; what an autocollimator read at nominal angles is a face table.
+TEST_F(FaceTable, OfReadingsAloneIsGuessedWhereTheyAreNoErrors) {
+  const auto named = [](const char* name) {
+    return fmt::format("angle_deg,{}\n", name) +
+           Faces(36, [](int, double angle, double forward, double) { return fmt::format("{:g},{:.4f}\n", angle, forward); });
+  };
+  EXPECT_EQ(Take(named("x_arcsec")).bench, "turntable_autocollimator");
+  EXPECT_EQ(Take(named("measured error [arcsec]")).bench, "encoder_comparison");
+}
+
+/// Nothing is left over, and nothing is invented.
+TEST_F(FaceTable, ReadOnceHasErrorsWithoutAnUncertainty) {
+  const Imported taken = Take("nominal [deg],reading [arcsec],certified [arcsec]\n" + Faces(8, [](int face, double angle, double forward, double) {
+                                return fmt::format("{:g},{:.4f},{:.4f}\n", angle, forward, Certified_arcsec(face - 1));
+                              }));
+  const auto evaluated = EvaluationOf(ParseScenario("bench = \"" + taken.bench + "\"\n", "faces.csv", "", taken.set), taken.readings, Estimator::kRigorous);
+  EXPECT_EQ(evaluated.not_separated, "");
+  EXPECT_THAT(evaluated.summary, HasSubstr("no position was read twice"));
+  const auto& turntable = evaluated.results.at("separation").at("turntable");
+  EXPECT_FALSE(turntable.contains("u_ez_arcsec"));
+  EXPECT_NEAR(turntable.at("ez_arcsec").at(2).get<double>(), 3.0, 0.01);
 }
 
 }  // namespace

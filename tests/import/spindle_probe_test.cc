@@ -27,7 +27,7 @@ TEST_F(SpindleProbe, IsGuessedByItsProbes) {
   ASSERT_EQ(taken.bench, "rotary_4dof") << taken.story;
   EXPECT_THAT(taken.story, HasSubstr("taken as --map spindle_probe"));
   ASSERT_EQ(taken.readings.size(), 144U);
-  EXPECT_NEAR(taken.readings[100].target_rad / units::deg, 500.0, 1e-9);
+  EXPECT_NEAR(taken.readings[100].target_rad / units::deg, 140.0, 1e-9) << "an angle that goes on starts again at a turn";
   EXPECT_NEAR(In(taken.readings[100], "probe_1_um") / units::um, 2.0, 1e-9);
   EXPECT_NEAR(In(taken.readings[100], "probe_tilt_y_arcsec") / units::arcsec, 25.0, 1e-9);
   EXPECT_TRUE(std::isnan(In(taken.readings[100], "probe_axial_um")));
@@ -58,6 +58,32 @@ TEST_F(SpindleProbe, KnowsAReversal) {
   EXPECT_EQ(taken.readings.front().setup, 0);
   EXPECT_EQ(taken.readings.back().setup, 1);
   EXPECT_THAT(taken.set, testing::Contains("probes.reversed_mounting=1"));
+}
+
+/// In any order: probe 1 is the one with the smallest angle.
+TEST_F(SpindleProbe, HasTheAnglesInTheNamesOfItsProbes) {
+  const auto text = [](const std::string& names) {
+    std::string all = names + "\n";
+    for (int k = 0; k < 144; ++k) all += fmt::format("{},{},{},{},{}\n", k / 72, 5 * (k % 72), 2000 + k, 1000 + k, 3000 + k);
+    return all;
+  };
+  for (const char* names : {"rev,angle [deg],sensor 100 deg [nm],sensor 0 deg [nm],sensor 213 deg [nm]", "rev,angle_deg,S_100_nm,S_0_nm,S_213_nm"}) {
+    const Imported taken = Take(text(names));
+    ASSERT_EQ(taken.bench, "rotary_4dof") << taken.story;
+    EXPECT_THAT(taken.set, testing::Contains("probes.angles_deg=[0, 100, 213]"));
+    EXPECT_NEAR(In(taken.readings[9], "probe_1_um") / units::um, 1.009, 1e-9);
+    EXPECT_NEAR(In(taken.readings[9], "probe_3_um") / units::um, 3.009, 1e-9);
+    EXPECT_EQ(taken.readings[9].direction, 1) << "rev numbers the turns";
+  }
+  const Imported stated = Take(text("Sensor angles: 5; 100; 213 deg\nrev,angle [deg],s1 [nm],s2 [nm],s3 [nm]"));
+  EXPECT_THAT(stated.set, testing::Contains("probes.angles_deg=[5, 100, 213]"));
+}
+
+/// Without units nothing is guessed, and what the names look like is said.
+TEST_F(SpindleProbe, WithoutUnitsIsNamed) {
+  std::string text = "theta,p1,p2\n";
+  for (int k = 0; k < 40; ++k) text += fmt::format("{},{},{}\n", 10 * k, k % 7, k % 5);
+  EXPECT_THAT(MessageOf([&] { Take(text); }), HasSubstr("--map spindle_probe"));
 }
 
 }  // namespace

@@ -139,5 +139,18 @@ TEST(WholeTurns, OfCoarseCountsAreWhatAllStepsTogetherSay) {
   EXPECT_THAT(ColumnsFunction("whole_turns")(input_deg, output_deg, ""), testing::ElementsAre(60));
 }
 
+/// Counts of which a line above the rows says how many make a turn, and a ratio as a fraction, either way round.
+TEST_F(TwoEncoders, MayBeCountsWithAStatedFraction) {
+  const Train train{29, 2, 40.0};
+  const auto log = [&](const std::string& above, double in_counts, double out_counts) {
+    return above + Log(train, [&](int, double in, double out) {
+             return fmt::format("{:.0f},{:.0f}\n", in / 360.0 * in_counts, out / 360.0 * out_counts);
+           }, 1980, 180);
+  };
+  Expect(Take(log("input encoder: 10000000 counts/rev\noutput encoder: 129600000 counts/rev\nratio: 29/2\nmotor,table\n", 1e7, 1.296e8)), train, 1980);
+  Expect(Take(log("# i = 2:29\n# both encoders 2^24 counts per rev\nch1_in,ch2_out\n", std::exp2(24), std::exp2(24))), train, 1980);
+  EXPECT_THAT(MessageOf([&] { Take(log("ratio: 31\nboth 2^24 counts per rev\nmotor,table\n", std::exp2(24), std::exp2(24))); }), HasSubstr("states a ratio of 31"));
+}
+
 }  // namespace
 }  // namespace twinbench::imports

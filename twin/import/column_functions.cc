@@ -150,6 +150,12 @@ std::vector<double> Seats(std::vector<double> x, const std::string&) {
   return {are_even ? seats : different};
 }
 
+/// From 0 deg up to a turn.
+std::vector<double> WithinTurn(std::vector<double> x, const std::string&) {
+  for (double& angle_deg : x) angle_deg -= kTurn_deg * std::floor(angle_deg / kTurn_deg);
+  return x;
+}
+
 /// Angles numbered as they lie round the circle, wherever they come again.
 std::vector<double> Places(std::vector<double> x, const std::string&) {
   constexpr double kSame_deg = 1e-6;
@@ -193,13 +199,14 @@ OfColumn ColumnFunction(std::string_view name) {
                                               {"unwrapped", Unwrapped},
                                               {"distinct", Distinct},
                                               {"seats", Seats},
-                                              {"places", Places}});
+                                              {"places", Places},
+                                              {"within_turn", WithinTurn}});
   return FindIn(kFunctions, name);
 }
 
 OfColumns ColumnsFunction(std::string_view name) {
   static constexpr auto kFunctions =
-      std::to_array<NamedFunction<OfColumns>>({{"ratio", Ratio}, {"whole_turns", WholeTurns}});
+      std::to_array<NamedFunction<OfColumns>>({{"ratio", Ratio}, {"whole_turns", WholeTurns}, {"beside", Beside}, {"stated_ratio", StatedRatio}});
   return FindIn(kFunctions, name);
 }
 

@@ -133,9 +133,10 @@ int TurnIn(const std::string& text) {
     return found;
   };
   // The longer ones first: what is taken is not looked at again.
-  const bool counter = take(std::array<std::string_view, 14>{"counter-clockwise", "counter clockwise", "counterclockwise", "anti-clockwise", "anticlockwise", "ccw", "acw",
-                                  "gegen den uhrzeigersinn", "gegen uhrzeigersinn", "gegenuhrzeigersinn", "linkslauf", "g03", "g3", "逆时针"});
-  const bool clockwise = take(std::array<std::string_view, 8>{"clockwise", "cw", "im uhrzeigersinn", "uhrzeigersinn", "rechtslauf", "g02", "g2", "顺时针"});
+  const bool counter = take(std::array<std::string_view, 20>{"counter-clockwise", "counter clockwise", "counterclockwise", "anti-clockwise", "anticlockwise", "ccw", "acw",
+                                  "gegen den uhrzeigersinn", "gegen uhrzeigersinn", "gegenuhrzeigersinn", "linkslauf", "g03", "g3", "逆时针",
+                                  "antihoraire", "anti-horaire", "trigonométrique", "antihorario", "antiorario", "entgegen uhrzeigersinn"});
+  const bool clockwise = take(std::array<std::string_view, 11>{"clockwise", "cw", "im uhrzeigersinn", "uhrzeigersinn", "rechtslauf", "g02", "g2", "顺时针", "horaire", "horario", "orario"});
   return counter == clockwise ? 0 : counter ? 1 : -1;
 }
 

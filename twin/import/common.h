@@ -14,9 +14,19 @@ namespace twinbench::imports {
 inline constexpr double kGapIntervals = 5.0;                     // a gap is longer than this many usual intervals
 inline constexpr double kFileTimeOf1970 = 116444736000000000.0;  // Windows counts 100 ns since 1601
 
+/// Latin letters with accents, Greek and Cyrillic ones too.
 inline std::string SmallLetters(std::string_view text) {
   std::string small(text);
   std::ranges::transform(small, small.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (std::size_t i = 0; i + 1 < small.size(); ++i) {
+    const auto lead = static_cast<unsigned char>(small[i]), letter = static_cast<unsigned char>(small[i + 1]);
+    const bool is_accented = lead == 0xC3 && letter >= 0x80 && letter <= 0x9E && letter != 0x97;
+    const bool is_greek = lead == 0xCE && letter >= 0x91 && letter <= 0x9F, is_cyrillic = lead == 0xD0 && letter >= 0x90 && letter <= 0x9F;
+    if (is_accented || is_greek || is_cyrillic) small[i + 1] = static_cast<char>(letter + 0x20);
+    if (lead != 0xD0 || letter < 0xA0 || letter > 0xAF) continue;  // the second half of the Cyrillic ones begins with another byte
+    small[i] = static_cast<char>(0xD1);
+    small[i + 1] = static_cast<char>(letter - 0x20);
+  }
   return small;
 }
 

@@ -11,6 +11,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/lag.h"
 #include "twin/core/units.h"
+#include "twin/import/column_words.h"
 #include "twin/import/common.h"
 #include "twin/import/follows.h"
 #include "twin/import/table.h"
@@ -28,10 +29,12 @@ bool AreWhole(const Column& column) {
   return std::ranges::all_of(column.value, [](double x) { return std::isnan(x) || x == std::round(x); });
 }
 
-/// By the column's own name or unit, "encoder [4096 counts/rev]", or by what stands above the rows.
-std::optional<double> StatedPerTurn(const Column& column, const Track& track) {
+/// By the column's own name or unit, "encoder [4096 counts/rev]", by a line that has a word of its own, or by what stands above the rows.
+std::optional<double> StatedPerTurn(const Column& column, const Track& track, const std::vector<std::string>& words = {}) {
   Track own;
   AddNumbers(column.name + " " + column.unit, own);
+  for (const TextLine& line : track.lines)
+    if (ClearnessBy(line.text, words) > 0) AddNumbers(line.text, own);
   for (const Track* said : {static_cast<const Track*>(&own), &track}) {
     for (const auto& [name, number] : said->numbers) {
       if (SaysPerTurn(SmallLetters(name)) && number > 1.0) return number;
@@ -140,6 +143,13 @@ bool IsStepTestInCounts(const std::string& reference, const std::vector<Recordin
 }
 
 }  // namespace
+
+std::optional<double> CountsPerTurnOf(const Column& column, const Track& track, const std::vector<std::string>& words) {
+  constexpr double kMoreThanATurn_deg = 400.0;  // else whole degrees
+  const bool is_large = std::ranges::any_of(column.value, [](double x) { return std::abs(x) > kMoreThanATurn_deg; });
+  const bool may_be = AreWhole(column) && (IsCalledCounts(column) || (IsNoUnit(column.unit) && is_large));
+  return may_be ? StatedPerTurn(column, track, words) : std::nullopt;
+}
 
 bool IsCalledCounts(const Column& column) {
   const std::vector<const char*> words = {"count", "cts", "tick", "pulse", "incr", "lsb", "digit", "cpr", "ppr"};

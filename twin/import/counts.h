@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ void TakeCountsBesideAngle(const std::vector<std::string>& compared, const std::
 /// are counts by name where the reference is sent to a few places only.
 void TakeBothForCounts(const std::vector<std::string>& compared, const std::vector<Recording>& recordings, Map& map,
                        std::vector<std::string>& remarks);
+
+/// How many counts make a turn of a column of whole numbers without another unit, as its name, a line with one of the words, or
+/// any line above the rows states.
+std::optional<double> CountsPerTurnOf(const Column& column, const Track& track, const std::vector<std::string>& words);
 
 /// By its unit or, where it has none, by its name.
 bool IsCalledCounts(const Column& column);

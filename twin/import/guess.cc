@@ -13,6 +13,7 @@
 #include "twin/import/common.h"
 #include "twin/import/counts.h"
 #include "twin/import/join.h"
+#include "twin/import/sought.h"
 
 namespace twinbench::imports {
 namespace {
@@ -158,8 +159,8 @@ void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Record
     throw InputError(
         recordings[0].file,
         fmt::format("which column is {} is not clear; there are {}", compared[k], ColumnNames(recordings)),
-        fmt::format("{} = \"a column\" under [columns] of a map, or --column '{}=a column'", compared[k],
-                    compared[k]));
+        fmt::format("{} = \"a column\" under [columns] of a map, or --column '{}=a column'{}", compared[k],
+                    compared[k], ReadyMapsByNames(recordings[0])));
   }
 }
 

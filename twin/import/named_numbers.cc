@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <string>
 
 #include "twin/import/common.h"
@@ -20,6 +22,14 @@ bool BeginsPerTurn(const std::string& behind) {
   return std::ranges::any_of(std::array{"a turn", "a rev", "per ", "/", "each "}, [&behind](const char* word) { return behind.starts_with(word); });
 }
 
+/// "2^20" where 20 stands behind "2^", and "20 bit": a power of two.
+std::optional<double> PowerOfTwo(std::string_view before, std::string_view digits, const std::string& behind) {
+  constexpr double kMostBits = 32.0;
+  const auto bits = FieldNumber(digits, false);
+  const bool is_one = before.ends_with("2^") || behind.starts_with("bit") || behind.starts_with("-bit");
+  return is_one && bits && *bits <= kMostBits ? std::optional(std::exp2(*bits)) : std::nullopt;
+}
+
 /// "encoder of 4096 counts/rev", "1440 counts per revolution", "4000cpr", "counts of 4096 a turn": a number that says what it
 /// is behind it, or before and behind it.
 void AddNumbersPerTurn(std::string_view line, Track& track) {
@@ -29,7 +39,9 @@ void AddNumbersPerTurn(std::string_view line, Track& track) {
     const std::string_view digits = line.substr(at, end - at), behind = Trimmed(line.substr(end)).substr(0, 40);
     const std::string what = SmallLetters(behind.substr(0, behind.find_first_of(",;=\t")));
     const bool says = SaysPerTurn(what) || (BeginsPerTurn(what) && SaysPerTurn(SmallLetters(ClauseBefore(line, at)) + what));
-    if (const auto number = FieldNumber(digits, false); number && says) track.numbers[SaysPerTurn(what) ? what : "counts " + what] = *number;
+    const auto power = PowerOfTwo(line.substr(0, at), digits, what);
+    const auto number = power ? power : FieldNumber(digits, false);
+    if (number && says && !behind.starts_with('^')) track.numbers[SaysPerTurn(what) ? what : "counts " + what] = *number;
     at = end;
   }
 }

@@ -137,12 +137,25 @@ std::size_t RowsOfColumns(const Json& object) {
   return most == counts.end() || most->second < 2 ? 0 : most->first;
 }
 
+/// Several such objects in a list, each a run: all their rows.
+std::size_t RowsOfRuns(const Json& list) {
+  std::size_t rows = 0;
+  for (const Json& run : list) {
+    const std::size_t own = run.is_object() ? RowsOfColumns(run) : 0;
+    if (own == 0) return 0;
+    rows += own;
+  }
+  return rows;
+}
+
 /// Looks for what has the most rows, and writes the single numbers on the way down as named ones.
 class Search {
  public:
-  Search(Recording& recording, std::map<std::string, double>& numbers) : recording_(recording), numbers_(numbers) {}
+  Search(Recording& recording, std::map<std::string, double>& numbers, std::vector<TextLine>& lines)
+      : recording_(recording), numbers_(numbers), lines_(lines) {}
 
   void In(const Json& json, int depth = 0) {
+    if (const std::size_t rows = json.is_array() ? RowsOfRuns(json) : 0; rows > 0) return Offer(rows, json, "a list of runs, each an object of lists");
     if (IsListOf(json, [](const Json& e) { return e.is_object(); })) return Offer(json.size(), json, "a list of objects");
     if (IsListOf(json, [](const Json& e) { return e.is_array() && !e.empty() && !e[0].is_structured(); }))
       return Offer(json.size(), json, "a list of rows");
@@ -152,6 +165,7 @@ class Search {
     if (const std::size_t rows = RowsOfColumns(json); rows > 0) Offer(rows, json, "an object of lists");
     for (const auto& [name, part] : json.items()) {
       if (part.is_number()) numbers_[name] = part.get<double>();
+      if (part.is_primitive()) lines_.push_back({0, name + ": " + part.dump()});
       if (part.is_structured()) In(part, depth + 1);
     }
   }
@@ -161,7 +175,9 @@ class Search {
     recording_.layout = std::string("records in JSON, ") + what_;
     Sheet sheet;
     if (best_->is_object()) {
-      PutColumns(sheet);
+      PutColumns(*best_, sheet);
+    } else if (RowsOfRuns(*best_) > 0) {
+      for (const Json& run : *best_) PutColumns(run, sheet);
     } else {
       PutRows(sheet);
     }
@@ -176,11 +192,16 @@ class Search {
     what_ = what;
   }
 
-  void PutColumns(Sheet& sheet) const {
-    for (const auto& [name, list] : best_->items()) {
-      if (!IsColumn(list) || list.size() != rows_) continue;
-      std::size_t row = 0;
-      for (const Json& cell : list) sheet.Put(name, cell, row++);
+  /// What a run says once holds for all its rows.
+  void PutColumns(const Json& run, Sheet& sheet) const {
+    const std::size_t first = sheet.Rows(), rows = RowsOfColumns(run);
+    for (const auto& [name, part] : run.items()) {
+      std::size_t row = first;
+      if (IsColumn(part) && part.size() == rows) {
+        for (const Json& cell : part) sheet.Put(name, cell, row++);
+      } else if (&run != best_ && part.is_primitive()) {
+        while (row < first + rows) sheet.Put(name, part, row++);
+      }
     }
   }
 
@@ -202,6 +223,7 @@ class Search {
 
   Recording& recording_;
   std::map<std::string, double>& numbers_;
+  std::vector<TextLine>& lines_;
   const Json* best_ = nullptr;
   std::size_t rows_ = 0;
   const char* what_ = "";
@@ -226,7 +248,8 @@ void ReadRecords(std::string_view text, const Layout& layout, const ClockSetting
   if (json.is_discarded()) json = FromLines(plain, recording);
   if (json.is_null()) throw InputError(recording.file, "it begins as JSON does and is none", "JSON, or an object in JSON a line");
   std::map<std::string, double> numbers;
-  Search search(recording, numbers);
+  std::vector<TextLine> lines;
+  Search search(recording, numbers, lines);
   search.In(json);
   const std::string table = search.Found().Text();
   const std::string layout_in_words = recording.layout;
@@ -239,6 +262,7 @@ void ReadRecords(std::string_view text, const Layout& layout, const ClockSetting
   for (Track& track : recording.tracks) {
     std::erase_if(track.columns, [](const Column& column) { return column.name == "record"; });
     track.numbers.insert(numbers.begin(), numbers.end());
+    track.lines.insert(track.lines.begin(), lines.begin(), lines.end());
     if (!track.HasClock()) TakeStatedRate(track);
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "twin/core/errors.h"
@@ -12,8 +13,10 @@
 #include "twin/import/clampings.h"
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
+#include "twin/import/counts.h"
 #include "twin/import/expression.h"
 #include "twin/import/join.h"
+#include "twin/import/places_said.h"
 #include "twin/import/stacked.h"
 #include "twin/import/statements.h"
 
@@ -25,10 +28,13 @@ NamedUnit UnitOf(const Sought& sought) {
 }
 
 /// Whether a column can be the quantity by its unit. Without one it may be; with one that is not known it is
-/// something else.
-bool UnitFits(const Column& column, const Sought& sought) {
+/// something else, but for counts of an angle of which a turn has a known number.
+bool UnitFits(const Column& column, const Sought& sought, const Track& track) {
   const auto has = UnitNamed(column.unit);
-  return has ? has->dimension == UnitOf(sought).dimension : IsNoUnit(column.unit);
+  const auto wanted = UnitOf(sought).dimension;
+  if (has) return has->dimension == wanted;
+  if (wanted == Dimension::kAngle && IsCalledCounts(column)) return CountsPerTurnOf(column, track, sought.words).has_value();
+  return IsNoUnit(column.unit);
 }
 
 double ShareOfChanges(const Column& column) {
@@ -41,11 +47,11 @@ bool IsTurn(const Column& column) {
   return column.IsNumber() && std::ranges::all_of(column.value, [](double x) { return x == 1.0 || x == -1.0; });
 }
 
-bool CanBe(const Column& column, const Sought& sought) {
+bool CanBe(const Column& column, const Sought& sought, const Track& track) {
   constexpr double kSeldom = 0.25;
   if (sought.kind == "turn") return IsTurn(column);
   if (sought.kind == "column" && !column.IsNumber()) return UnitOf(sought).dimension == Dimension::kPure;
-  if (!column.IsNumber() || !UnitFits(column, sought)) return false;
+  if (!column.IsNumber() || !UnitFits(column, sought, track)) return false;
   if (sought.kind == "value") return ShareOfChanges(column) > kSeldom;
   return sought.kind == "any" || sought.kind == "column" || ShareOfChanges(column) <= kSeldom;
 }
@@ -67,6 +73,7 @@ class Seeker {
     for (const Sought& sought : all_) {
       if (const Column* column = ColumnFor(sought)) {
         taken_.insert(column->name);
+        source_[sought.name] = column->name;
         Put(sought, InUnitOf(sought, *column), column->unit);
       } else if (const std::vector<double> stated = StatedOf(sought); !stated.empty()) {
         Put(sought, stated, "");
@@ -94,14 +101,30 @@ class Seeker {
     return std::ranges::find(found_, sought.name, &Column::name) != found_.end();
   }
 
-  /// In a column, with a unit that says what it is; an angle and what has no unit need none.
-  bool HasSurely(const std::string& name) const {
+  bool HasColumn(const std::string& name) const { return std::ranges::find(found_, name, &Column::name) != found_.end(); }
+
+  std::string SourceOf(const std::string& name) const { return source_.contains(name) ? source_.at(name) : ""; }
+
+  /// In a column, with a unit that says what it is; what has no unit needs none, nor does an angle, but for one in arcsec beside
+  /// one other quantity alone, which is none that is called an error.
+  bool HasSurely(const std::string& name, bool is_of_two) const {
     const auto found = std::ranges::find(found_, name, &Column::name);
     const auto unit = UnitAtEnd(name);
-    return found != found_.end() && (!unit || unit->dimension == Dimension::kAngle || UnitNamed(found->unit));
+    if (found == found_.end()) return false;
+    if (is_of_two && unit && unit->name == "arcsec") return UnitNamed(found->unit) && !IsCalledError(SourceOf(name));
+    return !unit || unit->dimension == Dimension::kAngle || UnitNamed(found->unit);
   }
 
-  bool GivesANumber(const std::string& formula) const { return std::isfinite(Evaluated(formula).front()); }
+  /// What it needs and no column has is made of others.
+  bool GivesANumber(const std::string& text) {
+    const Expression expression(text, text);
+    for (const std::string& name : expression.Names()) {
+      const auto sought = std::ranges::find(all_, name, &Sought::name);
+      const std::string* formula = sought == all_.end() || Has(*sought) ? nullptr : FormulaOf(*sought);
+      if (formula) Put(*sought, Evaluated(*formula), "");
+    }
+    return std::isfinite(Evaluated(text).front());
+  }
 
   /// The columns of the track under the names that formulas have.
   void Finish() {
@@ -133,7 +156,7 @@ class Seeker {
     int clearness = 0;
     for (const Column& column : track_.columns) {
       const int own =
-          taken_.contains(column.name) || !CanBe(column, sought) ? 0 : ClearnessBy(column.name, sought.words);
+          taken_.contains(column.name) || !CanBe(column, sought, track_) ? 0 : ClearnessBy(column.name, sought.words);
       if (own <= clearness) continue;
       clearness = own;
       best = &column;
@@ -151,6 +174,11 @@ class Seeker {
     constexpr double kMoreThanATurn_rad = 6.4;
     const NamedUnit to = UnitOf(sought);
     auto has = UnitNamed(column.unit);
+    const auto counts = has || to.dimension != Dimension::kAngle ? std::nullopt : CountsPerTurnOf(column, track_, sought.words);
+    if (counts) {
+      assumed_.push_back(fmt::format("\"{}\" is in counts, {:.10g} per turn as the file states", column.name, *counts));
+      has = NamedUnit{"counts", Dimension::kAngle, units::turn / *counts};
+    }
     if (!has && to.dimension != Dimension::kPure) {
       const bool is_rad =
           to.name == "deg" && column.value.size() > 20 &&
@@ -202,6 +230,7 @@ class Seeker {
   Track& track_;
   std::vector<Column> found_;
   std::set<std::string> taken_;  // columns of the file
+  std::map<std::string, std::string> source_;  // the file's name of each quantity
   std::vector<std::string> assumed_;
 };
 
@@ -216,23 +245,25 @@ std::vector<std::string> NamesIn(const std::string& list) {
 }
 
 /// The most columns by which a track is of the map's kind; 0: it is not.
-std::size_t ColumnsOfKind(const Track& own, const Map& map) {
+/// @param by_names  Whether columns need no units.
+std::size_t ColumnsOfKind(const Track& own, const Map& map, bool by_names) {
   if (map.guess_clock == "none" && own.HasClock()) return 0;
   Track track = own;
+  TakeAnglesOfProbes(track);
   StackTurns(map, track);
   Seeker seeker(map.sought, track);
   seeker.Find();
   std::size_t most = 0;
   for (const std::string& list : map.guess_by) {
     const std::vector<std::string> names = NamesIn(list);
-    if (std::ranges::all_of(names, [&seeker](const std::string& name) { return seeker.HasSurely(name); })) most = std::max(most, names.size());
+    if (std::ranges::all_of(names, [&](const std::string& name) { return by_names ? seeker.HasColumn(name) : seeker.HasSurely(name, names.size() == 2); })) most = std::max(most, names.size());
   }
   return map.guess_only.empty() || most == 0 || seeker.GivesANumber(map.guess_only) ? most : 0;
 }
 
-std::size_t ColumnsOfKind(const Recording& recording, const Map& map) {
+std::size_t ColumnsOfKind(const Recording& recording, const Map& map, bool by_names = false) {
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  for (const Track& track : recording.tracks) fewest = std::min(fewest, ColumnsOfKind(track, map));
+  for (const Track& track : recording.tracks) fewest = std::min(fewest, ColumnsOfKind(track, map, by_names));
   return fewest;
 }
 
@@ -255,6 +286,14 @@ void FillInKey(const Seeker& seeker, const Sought& sought, std::string& key) {
       recording.file,
       fmt::format("no column is {} by its name and unit; there are {}", called, ColumnNames({recording})),
       fmt::format("a name such as \"{}\", or --column '{}=a column'", called, sought.name));
+}
+
+/// A circle's axes are called x and y whatever its plane is.
+void SayPlane(const Map& map, const Track& track, const Seeker& seeker, Recording& recording) {
+  if (map.bench != "circular_motion") return;
+  const auto plane = PlaneOf(track, seeker.SourceOf("commanded_1_mm"), seeker.SourceOf("commanded_2_mm"), recording.file);
+  if (plane && *plane != "XY")
+    recording.remarks.push_back(fmt::format("the circle is in the plane {}: x of the results is {}, y is {}", *plane, plane->front(), plane->back()));
 }
 
 /// What the map makes of a quantity that is not there.
@@ -281,17 +320,32 @@ std::optional<Map> ReadyMapOf(const Recording& recording) {
   return best;
 }
 
+std::string ReadyMapsByNames(const Recording& recording) {
+  std::string maps;
+  for (const ReadyMap& ready : ReadyMaps()) {
+    const Map map = ParseMap(ready.text, ready.name);
+    if (!map.guess_by.empty() && ColumnsOfKind(recording, map, true) > 2)
+      maps += fmt::format("; of a {}: --map {}, with units in the names if they are not its own", map.title, ready.name);
+  }
+  return maps;
+}
+
 void TakeSought(Map& map, Recording& recording) {
   if (map.sought.empty()) return;
   for (Track& track : recording.tracks) {
+    const bool has_probes = std::ranges::find(map.sought, "probe_1_um", &Sought::name) != map.sought.end();
+    const std::vector<double> angles_deg = has_probes ? TakeAnglesOfProbes(track) : std::vector<double>();
+    if (!angles_deg.empty()) map.set.push_back(fmt::format("probes.angles_deg=[{}]", fmt::join(angles_deg, ", ")));
     StackTurns(map, track);
     Seeker seeker(map.sought, track);
     seeker.Find();
+    SayPlane(map, track, seeker, recording);
     for (const std::string& assumed : seeker.assumed()) recording.remarks.push_back(assumed);
     seeker.Make(recording.remarks);
     for (const Sought& sought : map.sought) {
       if (!seeker.Has(sought) && sought.kind == "value") RefuseWithout(sought, recording);
       if (!seeker.Has(sought)) DropWithout(sought, map);
+      if (!seeker.Has(sought)) std::erase_if(map.set, [&sought](const std::string& key) { return key.find("{" + sought.name) != std::string::npos; });
       for (std::string& key : map.set) FillInKey(seeker, sought, key);
     }
     seeker.Finish();

@@ -14,6 +14,9 @@ namespace twinbench::imports {
 /// most of them. Nothing: none.
 std::optional<Map> ReadyMapOf(const Recording& recording);
 
+/// "; if it is ...: --map NAME" of the ready maps that know the columns by their names, which say no units; empty: none.
+std::string ReadyMapsByNames(const Recording& recording);
+
 /// Gives every track a column for each quantity that the map seeks, in the unit of its name; drops what the map makes of
 /// quantities that are not there; fills in the keys of the scenario.
 /// @throws InputError if a quantity is neither found nor made of others, and the bench needs it.

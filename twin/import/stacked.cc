@@ -69,11 +69,9 @@ std::string OwnNameOf(const Map& map, const Column& column, const ColumnSide& si
   }
   const auto unit = UnitNamed(column.unit);
   for (const Sought& sought : map.sought) {
-    if (side.clamping.Any() && sought.kind == "value" && &sought != &map.sought.front())
-      return sought.words.front();
+    if (sought.kind != "value" || &sought == &map.sought.front() || sought.words.empty()) continue;
     const auto own = UnitAtEnd(sought.name);
-    if (sought.kind == "value" && own && !IsAnAngle(sought) && !sought.words.empty() && (!unit || unit->dimension == own->dimension))
-      return sought.words.front();
+    if (side.clamping.Any() || (own && (!unit || unit->dimension == own->dimension))) return sought.words.front();
   }
   return column.name;
 }
@@ -158,10 +156,20 @@ class Stack {
       clamping_{"clamping", "", {}, {}}, offset_{"offset", "deg", {}, {}};
 };
 
+/// "rev" is a way back beside a way there only; else a revolution.
+void NameRevolutions(Track& track) {
+  if (std::ranges::any_of(track.columns, [](const Column& c) { return WayIn(c.name) > 0; })) return;
+  for (Column& column : track.columns) {
+    const std::string small = SmallLetters(column.name);
+    if (small.starts_with("rev") && !small.starts_with("reve")) column.name = "revolution" + column.name.substr(3);
+  }
+}
+
 }  // namespace
 
 void StackTurns(const Map& map, Track& track) {
   if (std::ranges::find(map.sought, "turn", &Sought::kind) == map.sought.end()) return;
+  NameRevolutions(track);
   TakeClampingLines(map, track);
   const Track whole = track;
   const std::vector<Part> parts = PartsOf(map, whole);

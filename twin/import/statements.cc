@@ -56,6 +56,15 @@ std::optional<double> AnyNumber(std::string_view digits) {
   return std::nullopt;
 }
 
+/// "29/2", "31:16" without the first number.
+std::optional<double> DivisorBehind(std::string_view rest) {
+  rest = Trimmed(rest);
+  if (rest.empty() || (rest.front() != '/' && rest.front() != ':')) return std::nullopt;
+  rest = Trimmed(rest.substr(1));
+  const auto divisor = AnyNumber(rest.substr(0, rest.find_first_not_of("0123456789.,")));
+  return divisor && *divisor > 0.0 ? divisor : std::nullopt;
+}
+
 std::optional<NamedUnit> Fitting(const std::string& unit, Dimension dimension) {
   const auto named = UnitNamed(unit);
   return named && named->dimension == dimension ? named : std::nullopt;
@@ -86,6 +95,9 @@ std::optional<Statement> StatementIn(const std::string& line, const std::string&
   const std::size_t end = std::min(rest.find_first_not_of("0123456789.,'eE+-", begin), rest.size());
   const auto number = AnyNumber(rest.substr(begin, end - begin));
   if (!number) return std::nullopt;
+  if (dimension == Dimension::kPure) {
+    if (const auto divisor = DivisorBehind(rest.substr(end))) return Statement{(negative ? -*number : *number) / *divisor, ""};
+  }
   for (const std::string& unit : {UnitBehind(rest.substr(end)), UnitBefore(between)}) {
     if (Fitting(unit, dimension)) return Statement{negative ? -*number : *number, unit};
     if (UnitNamed(unit)) return std::nullopt;  // of another quantity

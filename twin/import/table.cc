@@ -110,6 +110,14 @@ class TableReader {
     return fields_.size() > 1 && fields_.size() >= waiting_.back().size();
   }
 
+  /// Names of columns state nothing: "U (k=2)", "run 1".
+  bool IsTheHeading(std::string_view line) const {
+    std::vector<std::string_view> names;
+    Split(line, how_.separator, names);
+    return heading_.found && names.size() > 1 &&
+           std::ranges::equal(HeadingOf(names).columns, heading_.columns, {}, &NameAndUnit::name, &NameAndUnit::name);
+  }
+
   bool Gathering() const { return !gatherers_.empty(); }
 
   void TakeRow(std::string_view line) {
@@ -129,6 +137,7 @@ class TableReader {
     std::ranges::copy_if(waiting_, std::back_inserter(rows),
                          [this](const auto& row) { return row.size() == width_; });
     if (!heading_.found) heading_ = FindHeading(above_, width_, how_.separator);
+    std::erase_if(track_.lines, [this](const TextLine& line) { return IsTheHeading(line.text); });
     if (heading_.found && heading_.columns.size() > width_) width_ = heading_.columns.size();
     rows.front().resize(std::max(width_, rows.front().size()));
     for (const Kind kind : KindsOf(rows, heading_, how_)) gatherers_.emplace_back(kind);

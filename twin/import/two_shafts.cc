@@ -1,5 +1,7 @@
 #include "twin/import/two_shafts.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -112,6 +114,23 @@ std::vector<double> Unwrapped(std::vector<double> x, const std::string&) {
 
 std::vector<double> Ratio(const std::vector<double>& a, const std::vector<double>& b, const std::string&) {
   return {ProportionOf(a, b).ratio};
+}
+
+std::vector<double> Beside(const std::vector<double>& a, const std::vector<double>& b, const std::string&) {
+  constexpr double kOneToOne = 0.01;
+  std::vector<double> beside = a;
+  const bool goes_along = std::abs(ProportionOf(a, b).ratio - 1.0) < kOneToOne;
+  for (std::size_t i = 0; goes_along && i < std::min(a.size(), b.size()); ++i) beside[i] -= b[i];
+  return beside;
+}
+
+std::vector<double> StatedRatio(const std::vector<double>& stated, const std::vector<double>& found, const std::string& where) {
+  constexpr double kSame = 0.02;
+  const double ratio = std::abs(stated.at(0)), goes = std::abs(found.at(0));
+  for (const double meant : {ratio, 1.0 / ratio})
+    if (std::abs(meant / goes - 1.0) < kSame) return {meant};
+  throw InputError(where, fmt::format("the file states a ratio of {:.6g}, and its angles go {:.6g} to one", ratio, goes),
+                   "angles of both shafts in their units, and the ratio of these two");
 }
 
 std::vector<double> WholeTurns(const std::vector<double>& a, const std::vector<double>& b, const std::string& where) {

@@ -186,6 +186,25 @@ nlohmann::json ResultsOf(const TurntableAnalysis& a, const Scenario& scenario) {
   return json;
 }
 
+void DropUncertainties(nlohmann::json& node) {
+  for (auto item = node.begin(); node.is_object() && item != node.end();)
+    item = item.key().starts_with("u_") ? node.erase(item) : std::next(item);
+  for (nlohmann::json& inner : node)
+    if (inner.is_structured()) DropUncertainties(inner);
+}
+
+/// Of readings at one pass and mounting nothing is left over: they are the errors, and nobody knows how well.
+void SayNoUncertainty(report::Evaluation& evaluation) {
+  constexpr const char* kReadOnce = "no position was read twice: the errors are the readings, without an uncertainty";
+  for (nlohmann::json* json : {&evaluation.results, &evaluation.separation}) DropUncertainties(*json);
+  evaluation.results["notes"].push_back(kReadOnce);
+  evaluation.summary += fmt::format("note: {}\n", kReadOnce);
+}
+
+bool IsWithoutUncertainty(const IndexingSeparation& s) {
+  return !(s.noise.u_x_rad > 0.0) && s.turntable.value_rad.size() > 0 && s.turntable.value_rad.allFinite();
+}
+
 std::string RollText(const Roll& roll) {
   if (roll.status == RollStatus::kTiltsAlike)
     return "roll of the crosshair: not seen, the mountings do not differ in tilt\n";
@@ -287,7 +306,9 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   }
   if (analysis.separation) AddTilt(analysis, scenario, evaluation);
   if (analysis.separation) evaluation.misfits = {report::WidenedMisfit("the separation of both tables", analysis.separation->scale)};
-  if (analysis.separation) evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
+  if (analysis.separation && IsWithoutUncertainty(*analysis.separation))
+    SayNoUncertainty(evaluation);
+  else if (analysis.separation) evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
   return evaluation;
 }
 
