@@ -83,6 +83,9 @@ class SameAsTheCommandLine(unittest.TestCase):
             self.assertEqual(plain(dict(found)), theirs)
             self.assertEqual(found["causes"][0]["effect"], "periodic")
             self.assertIn("periodic", found.extended.toml())
+            self.assertEqual(plain(dict(tb.diagnose(tb.Run(changed, readings)))), theirs)
+            with self.assertRaises(TypeError):
+                tb.diagnose(changed)
 
     def test_a_plan_to_the_bit(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -290,7 +290,7 @@ void FillInKey(const Seeker& seeker, const Sought& sought, std::string& key) {
 
 /// A circle's axes are called x and y whatever its plane is.
 void SayPlane(const Map& map, const Track& track, const Seeker& seeker, Recording& recording) {
-  if (map.bench != "circular_motion") return;
+  if (std::ranges::find(map.sought, "radius_mm", &Sought::name) == map.sought.end()) return;
   const auto plane = PlaneOf(track, seeker.SourceOf("commanded_1_mm"), seeker.SourceOf("commanded_2_mm"), recording.file);
   if (plane && *plane != "XY")
     recording.remarks.push_back(fmt::format("the circle is in the plane {}: x of the results is {}, y is {}", *plane, plane->front(), plane->back()));

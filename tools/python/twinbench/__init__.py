@@ -5,7 +5,7 @@
     run = tb.run("scenarios/rotary_4dof.toml")    # simulated; tb.SCENARIOS is the folder of those that come with the package
     run.readings["target_deg"]                    # a numpy array; run.readings.frame(): pandas
     run.results["separation"]["target"]           # as in results.json
-    tb.diagnose(run.scenario, run.readings)["verdict"]
+    tb.diagnose(run)["verdict"]
     tb.report(run, "page.html")
 
 Everything is what the command line does, to the same bits. Angles and lengths carry their unit in their name; what has

@@ -131,13 +131,22 @@ def drive(bench: Any, scenario: Scenario) -> Run:
     return Run(scenario, Readings(_core.drive(bench, scenario._core)))
 
 
-def separate(scenario: Scenario, readings: Readings, estimator: str = "rigorous") -> shown.Answer:
+def _parts(source: Run | Scenario, readings: Readings | None) -> tuple[_core.Scenario, _core.Readings]:
+    """Of a run its own, where nothing else is stated."""
+    if isinstance(source, Run):
+        source, readings = source.scenario, readings or source.readings
+    if readings is None:
+        raise TypeError("a Run, or a Scenario and Readings")
+    return source._core, readings._core
+
+
+def separate(scenario: Run | Scenario, readings: Readings | None = None, estimator: str = "rigorous") -> shown.Answer:
     """separation.json: the errors of what was measured and of what it was measured with, arrays by position.
 
     estimator: "rigorous" (weighted least squares, exact model), or "published" for the paper's equations. Raises InputError if the
     readings show no errors.
     """
-    return shown.Answer(_core.separate(scenario._core, readings._core, estimator))
+    return shown.Answer(_core.separate(*_parts(scenario, readings), estimator))
 
 
 def score(run: Run, estimator: str = "rigorous") -> shown.Answer:
@@ -154,23 +163,27 @@ class Diagnosis(shown.Answer):
         super().__init__(found)
         self._extended_toml = extended_toml
 
+    def __repr__(self) -> str:
+        causes = ", ".join(dict.fromkeys(cause["effect"] for cause in self["causes"][:4]))
+        return f"<twinbench.Diagnosis: {self['verdict']}{': ' if causes else ''}{causes}>"
+
     @property
     def extended(self) -> Scenario:
         return Scenario.from_toml(self._extended_toml)
 
 
 def diagnose(
-    scenario: Scenario,
-    readings: Readings,
+    scenario: Run | Scenario,
+    readings: Readings | None = None,
     model: str = "rigorous",
     exclude: Iterable[str] = (),
     cache_folder: str | os.PathLike = "",
 ) -> Diagnosis:
-    """Identifies the causes by which the readings differ from the scenario.
+    """Identifies the causes by which the readings of a run differ from the scenario, its own or another.
 
     exclude: effects left out of the catalogue. cache_folder: where calibrations of thresholds are kept; "" keeps none.
     """
-    found = _core.diagnose(scenario._core, readings._core, model, list(exclude), os.fspath(cache_folder))
+    found = _core.diagnose(*_parts(scenario, readings), model, list(exclude), os.fspath(cache_folder))
     return Diagnosis(*found)
 
 
@@ -181,8 +194,8 @@ class Follow:
     ("laser.yaw", "target.ez"); disturbances are arrays of one value a reading, in SI.
     """
 
-    def __init__(self, scenario: Scenario, readings: Readings):
-        self._core = _core.follow(scenario._core, readings._core)
+    def __init__(self, scenario: Run | Scenario, readings: Readings | None = None):
+        self._core = _core.follow(*_parts(scenario, readings))
 
     @property
     def points(self) -> dict[str, str]:
