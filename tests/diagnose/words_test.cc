@@ -37,7 +37,7 @@ TEST(Percent, TellsLittleFromNothingAndFromUnknown) {
   EXPECT_EQ(Percent(0.974), "97 %");
   EXPECT_EQ(Percent(0.004), "< 1 %");
   EXPECT_EQ(Percent(0.0), "0 %");
-  EXPECT_EQ(Percent(-0.003), "0 %");
+  EXPECT_EQ(Percent(-0.002), "0 %");
   EXPECT_EQ(Percent(kNaN), "-");
 }
 

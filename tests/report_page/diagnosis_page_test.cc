@@ -7,6 +7,7 @@
 #include "twin/report/page/diagnosis_page.h"
 #include "twin/report/page/investigation_page.h"
 #include "twin/report/page/plan_page.h"
+#include "twin/report/page/run_page.h"
 
 namespace twinbench::report {
 namespace {
@@ -48,6 +49,21 @@ TEST(DiagnosisSections, StateEveryCauseWithItsSizeAndProbability) {
   EXPECT_THAT(causes.series[0].y, ElementsAre(0.95, 0.05));
   EXPECT_THAT(BlockIn<PageTable>(sections, "Sizes").rows[0],
               ElementsAre("eccentricity or tilt at x", "amplitude 12.35 ± 0.50 arcsec", "", "95 %", "turn the device by 90 degrees"));
+}
+
+TEST(RunPage, HasTheErrorsRightBehindTheirCauses) {
+  const auto titles = [](const json& results) {
+    std::vector<std::string> all;
+    for (const PageSection& section : RunPage({"run", "", {}, "", {}}, results, {}).sections) all.push_back(section.title);
+    return all;
+  };
+  json results = {{"diagnosis", kDiagnosis}, {"table", {{"position_deg", {0, 90, 180}}, {"ez_arcsec", {1.5, 0.2, -2.5}}}}};
+  EXPECT_THAT(titles(results), testing::IsSupersetOf({"Diagnosis", "Errors", "Residuals", "Detectability"}));
+  EXPECT_EQ(titles(results).at(0), "Diagnosis");
+  EXPECT_EQ(titles(results).at(1), "Errors");
+  const json one = {{"order", 1}, {"unit", "um"}, {"cosine", 3.0}, {"amplitude", 3.0}};
+  results = {{"errors", {{"XOC", {{"value", 3.0}, {"u", 0.1}, {"unit", "um"}}}}}, {"component_errors", {{"EXA", {one}}}}};
+  EXPECT_EQ(titles(results).at(0), "Results") << "one order is no spectrum";
 }
 
 TEST(DiagnosisSections, RankCausesByWhatTheyExplain) {

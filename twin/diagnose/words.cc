@@ -24,8 +24,8 @@ std::string Place(const std::string& effect, const std::string& where) {
 
 std::string Percent(double share) {
   if (!std::isfinite(share)) return "-";
-  return share > 0.0 && share < 0.01 ? "< 1 %"
-                                     : fmt::format("{:.0f} %", std::round(100.0 * share) + 0.0);  // no "-0"
+  const double percent = std::round(100.0 * share) + 0.0;  // no minus before nothing
+  return share > 0.0 && share < 0.01 ? "< 1 %" : fmt::format("{:.0f} %", percent);
 }
 
 ChannelUnit FinerUnit(const ChannelUnit& unit, double largest_SI) {

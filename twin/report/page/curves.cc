@@ -106,7 +106,8 @@ void Rank(std::vector<Figure>& figures) {
 // Spectra ------------------------------------------------------------------------------------------------------------
 
 bool IsAmplitude(const std::string& key) {
-  return !IsUncertainty(key) && !key.starts_with("phase") && !key.starts_with("order");
+  constexpr std::array kOthers = {"phase", "order", "cosine", "sine"};
+  return !IsUncertainty(key) && std::ranges::none_of(kOthers, [&key](const char* other) { return key.starts_with(other); });
 }
 
 /// [{ "order": 1, "amplitude_arcsec": 6.1, ...}, ...] as lists beside each other.
@@ -123,7 +124,7 @@ json ListsOf(const json& terms) {
 
 void AddSpectrum(const Lists& lists, const json& object, std::vector<Figure>& figures) {
   const auto orders = NumbersAt(object, "order");
-  if (!orders || lists.path.ends_with("u_harmonics")) return;  // those are the limits of the spectrum of their curve
+  if (!orders || orders->size() < 2 || lists.path.ends_with("u_harmonics")) return;  // those are the limits of the spectrum of their curve
   for (const auto& [key, value] : object.items())
     if (IsAmplitude(key)) AddList(lists, object, key, *orders, figures);
 }

@@ -146,8 +146,12 @@ Page RunPage(const PageSource& source, const nlohmann::json& results, const nloh
     page.verdict = verdict.text, page.tone = verdict.tone;
     page.sections = DiagnosisSections(results.at("diagnosis"));
   }
-  for (PageSection& section : std::vector{CurveSection(circles, results, shown), SpectrumSection(curves, circles.figures, SpectrumFigures(results, score)),
-                                          VolumetricSection(results), ValueSection(results, score), BudgetSection(results),
+  PageSection errors = CurveSection(circles, results, shown), values = ValueSection(results, score);
+  if (errors.blocks.empty()) std::swap(errors, values);  // the answer comes first, right behind its causes
+  const auto behind_causes = page.sections.begin() + std::min<std::ptrdiff_t>(1, std::ssize(page.sections));
+  if (!errors.blocks.empty()) page.sections.insert(behind_causes, std::move(errors));
+  for (PageSection& section : std::vector{SpectrumSection(curves, circles.figures, SpectrumFigures(results, score)),
+                                          VolumetricSection(results), std::move(values), BudgetSection(results),
                                           ReadingsSection(readings, source.provenance.bench), ImageSection(images)}) {
     if (!section.blocks.empty()) page.sections.push_back(std::move(section));
   }

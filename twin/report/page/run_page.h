@@ -18,7 +18,7 @@ struct PageSource {
   std::vector<std::pair<std::string, std::string>> digests;  // file, SHA-256
 };
 
-/// A run: its diagnosis if there is one, curves, spectra, values, budget, what is not separable, provenance.
+/// A run: its causes if there is a diagnosis, errors (values where there are no curves), residuals, spectra, values, budget, what is not separable, provenance.
 ///
 /// @param results  results.json.
 /// @param score    score.json; null if the run was not scored. The only place that truth is taken from.
