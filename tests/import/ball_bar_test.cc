@@ -178,6 +178,14 @@ TEST_F(BallBar, NamesThePlaneAndRefusesSeveral) {
               HasSubstr("x of the results is Z"));
 }
 
+/// A column of "G02" says the way round whatever it is called; lines of names and values above may be separated as the rows are.
+TEST_F(BallBar, HasWaysRoundByTheirWordsAndConditionsBetweenCommas) {
+  const Imported taken = Take("Serial,12345\nDate,2024-05-06 10:11\nBallbar length,100,mm\nFeed rate,500,mm/min\nCode,Angle,Deviation\n,deg,uin\n" +
+                              Circles([](double a, int d) { return fmt::format("{},{},{:.3f}\n", d > 0 ? "G03" : "G02", a, Deviation_um(a, d) / 0.0254); }));
+  Expect(taken, 100.0, 500.0);
+  EXPECT_THAT(taken.story, Not(HasSubstr("not said")));
+}
+
 TEST_F(BallBar, MayBeFrench) {
   const Imported taken = Take("Rayon (mm);100\nAvance (mm/min);500\nAngle (°);Écart (µm);Sens\n" + Circles([](double a, int d) {
                                 return fmt::format("{};{:.4f};{}\n", a, Deviation_um(a, d), d > 0 ? "antihoraire" : "horaire");

@@ -111,6 +111,7 @@ void Write(const Imported& taken, const ImportOptions& options, JsonAnswer& answ
   json["doubts"] = doubts;
   if (!taken.story.empty()) json["story"] = taken.story;
   answer.Write(json);
+  if (run.evaluation.IsRefuted()) throw InputError(options.files.front(), run.evaluation.not_separated, "readings of such a bench, in the units and the order that were taken");
 }
 
 /// @throws InputError where nothing would be imported, behind what was seen.

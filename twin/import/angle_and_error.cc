@@ -46,6 +46,7 @@ bool TakeAngleAndError(const std::vector<Choice>& columns, const std::vector<std
   const auto put = std::ranges::find(map.columns, compared[0], &MappedColumn::column);
   const std::string unit = put->unit;
   const auto own = UnitNamed(error->column->unit), sum = UnitNamed(unit);
+  if (!own && !IsNoUnit(error->column->unit)) return false;
   if (!sum || (own && own->dimension != sum->dimension) || put->expression != angle->name) return false;
   const bool is_correction = IsCalledCorrection(error->name);
   const double factor = own ? own->to_SI / sum->to_SI : 1.0;

@@ -118,10 +118,9 @@ class Seeker {
   /// What it needs and no column has is made of others.
   bool GivesANumber(const std::string& text) {
     const Expression expression(text, text);
-    for (const std::string& name : expression.Names()) {
-      const auto sought = std::ranges::find(all_, name, &Sought::name);
-      const std::string* formula = sought == all_.end() || Has(*sought) ? nullptr : FormulaOf(*sought);
-      if (formula) Put(*sought, Evaluated(*formula), "");
+    for (const Sought& sought : all_) {
+      const bool is_needed = std::ranges::count(expression.Names(), sought.name) > 0 && !Has(sought);
+      if (const std::string* formula = is_needed ? FormulaOf(sought) : nullptr) Put(sought, Evaluated(*formula), "");
     }
     return std::isfinite(Evaluated(text).front());
   }

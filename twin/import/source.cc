@@ -60,11 +60,14 @@ std::string Describe(const Track& track) {
   return numbers.empty() ? text : text + "    numbers above the rows: " + numbers + "\n";
 }
 
-/// "up" and "down" in a column called direction are 1 and -1.
+/// "up" and "down" in a column called direction are 1 and -1; of ways round, "cw" or "G02", no name need say so.
 void WordsToDirections(Column& column) {
-  const bool all = !column.IsNumber() && IsCalledDirection(column.name) &&
-                   std::ranges::all_of(column.words, [](const std::string& word) { return DirectionOfWord(word) != 0; });
+  const bool is_called = IsCalledDirection(column.name);
+  const bool all = !column.IsNumber() && std::ranges::all_of(column.words, [is_called](const std::string& word) {
+    return (is_called ? DirectionOfWord(word) : TurnIn(word)) != 0;
+  });
   if (!all) return;
+  if (!is_called) column.name = "direction, " + column.name;
   for (double& x : column.value) {
     if (std::isfinite(x)) x = DirectionOfWord(column.words[static_cast<std::size_t>(x)]);
   }

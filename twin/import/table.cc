@@ -82,11 +82,12 @@ class TableReader {
       return;
     }
     if (!waiting_.empty()) {
+      for (TextLine& above : track_.lines) above.row = 0;
       for (const std::string_view statement : waiting_lines_) track_.lines.push_back({0, std::string(statement)});
+      waiting_.clear();
+      waiting_lines_.clear();
       KeepLine(line);
     }
-    waiting_.clear();
-    waiting_lines_.clear();
     above_.emplace_back(line);
     AddNumbers(WithoutMark(line), track_);
   }

@@ -35,6 +35,8 @@ constexpr std::array kUnits = std::to_array<NamedUnit>({
     {"um", Dimension::kLength, units::um},
     {"nm", Dimension::kLength, units::nm},
     {"inch", Dimension::kLength, 0.0254},
+    {"mil", Dimension::kLength, 25.4e-6},
+    {"uinch", Dimension::kLength, 25.4e-9},
     {"s", Dimension::kTime, 1.0},
     {"ms", Dimension::kTime, 1e-3},
     {"us", Dimension::kTime, 1e-6},
@@ -69,6 +71,8 @@ constexpr std::array kSpellings = std::to_array<Spelling>({
     {"arcs", "arcsec"},     {"arcminutes", "arcmin"}, {"bogenminuten", "arcmin"}, {"gons", "gon"},
     {"度", "deg"},          {"град", "deg"},     {"мм", "mm"},           {"мкм", "um"},
     {"mikrometer", "um"},   {"millisekunden", "ms"}, {"sekunden", "s"},  {"сек", "s"},
+    {"thou", "mil"},        {"mils", "mil"},     {"uin", "uinch"},       {"µin", "uinch"},
+    {"μin", "uinch"},       {"microinch", "uinch"}, {"microinches", "uinch"}, {"minute", "min"},
 });
 
 std::optional<NamedUnit> PlainUnit(std::string_view name) {
@@ -103,6 +107,7 @@ std::optional<NamedUnit> RateNamed(std::string_view name) {
 /// "mm/min", "°/s".
 std::optional<NamedUnit> OverATime(std::string_view text) {
   const std::size_t slash = text.rfind('/');
+  if (SmallLetters(text) == "ipm") return RateNamed("inch_min");
   if (slash == std::string_view::npos) return RateNamed(text);
   const auto unit = UnitNamed(text.substr(0, slash)), over = UnitNamed(text.substr(slash + 1));
   return unit && over ? RateNamed(std::string(unit->name) + "_" + std::string(over->name)) : std::nullopt;

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "twin/benches/turntable_autocollimator/bench.h"
+#include "twin/benches/turntable_autocollimator/estimators/collimator_sweep.h"
 #include "twin/benches/turntable_autocollimator/estimators/one_axis.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
@@ -47,6 +48,22 @@ std::vector<Reading> AtNominal(std::vector<Reading> readings, const TurntableSet
     r.autocollimator_yaw_rad -= beside_rad * std::cos(own.collimator.roll_rad);
     r.autocollimator_tilt_rad += beside_rad * std::sin(own.collimator.roll_rad);
     r.target_rad = nominal_rad;
+  }
+  return readings;
+}
+
+/// A sweep alone, so that x goes with the reference, as the twin's does: whoever made it turned the instrument as he liked.
+std::vector<Reading> AlongTheReference(std::vector<Reading> readings, std::vector<std::string>& notes) {
+  const auto sweep = separate::turntable::AnalyseSweep(readings);
+  if (!sweep || !std::ranges::all_of(readings, IsInSweep)) return readings;
+  const bool is_against = sweep->axis.Sense() < 0;
+  if (sweep->is_along_y) notes.emplace_back("y follows the reference: it is diagnosed as x, and x as y");
+  if (is_against) notes.emplace_back("the autocollimator counts against the reference: it is diagnosed with the other sign");
+  for (Reading& r : readings) {
+    if (sweep->is_along_y) std::swap(r.autocollimator_yaw_rad, r.autocollimator_tilt_rad);
+    if (!is_against) continue;
+    r.autocollimator_yaw_rad *= -1.0;
+    r.autocollimator_tilt_rad *= -1.0;
   }
   return readings;
 }
@@ -283,12 +300,16 @@ TwinComparison Comparison(const std::vector<Reading>& readings, const Scenario& 
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  const std::vector<Reading> reduced = AtNominal(readings, TurntableOf(scenario));
-  return diagnose::DiagnoseByTwin(reduced, scenario, options, Comparison(reduced, scenario));
+  std::vector<std::string> notes;
+  const std::vector<Reading> reduced = AlongTheReference(AtNominal(readings, TurntableOf(scenario)), notes);
+  diagnose::DiagnosisRun run = diagnose::DiagnoseByTwin(reduced, scenario, options, Comparison(reduced, scenario));
+  std::ranges::move(notes, std::back_inserter(run.diagnosis.notes));
+  return run;
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
-  const std::vector<Reading> reduced = AtNominal(readings, TurntableOf(scenario));
+  std::vector<std::string> notes;
+  const std::vector<Reading> reduced = AlongTheReference(AtNominal(readings, TurntableOf(scenario)), notes);
   return diagnose::CompareWithTwin(reduced, scenario, Comparison(reduced, scenario));
 }
 
