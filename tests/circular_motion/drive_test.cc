@@ -96,6 +96,32 @@ TEST(Drive, LagsByFirstOrderIfTwoFeedsSaySo) {
   ExpectError(results, "machine.lag_x_s", 5e-3, 1e-5);
 }
 
+/// Circles of a file in machine coordinates are about their own centres; arcs too, and what stands about the origin is left.
+TEST(Drive, IsAboutTheCentreOfWhatWasCommanded) {
+  std::vector<Reading> readings = Logged({}, {1000.0});
+  readings.erase(readings.begin() + 900, readings.end());
+  const std::vector<Reading> about_origin = readings;
+  AboutItsCentre(readings);
+  EXPECT_EQ(kCommandedX_m(readings[7]), kCommandedX_m(about_origin[7]));
+  for (Reading& r : readings) {
+    kCommandedX_m(r) += 250.0 * mm, kGridX_m(r) += 250.0 * mm;
+    kCommandedY_m(r) -= 120.0 * mm, kGridY_m(r) -= 120.0 * mm;
+  }
+  AboutItsCentre(readings);
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    ASSERT_NEAR(kCommandedX_m(readings[k]), kCommandedX_m(about_origin[k]), 1e-9);
+    ASSERT_NEAR(kGridY_m(readings[k]), kGridY_m(about_origin[k]), 1e-9);
+  }
+}
+
+TEST(Drive, SaysWhereRowsGoTheOtherWayRoundThanTheySay) {
+  std::vector<Reading> readings = Logged({}, {1000.0, 3000.0});
+  for (Reading& r : readings)
+    if (r.pass == 1) r.direction = -r.direction;
+  EXPECT_THAT(ResultsOf(readings).at("not_described").get<std::string>(),
+              testing::HasSubstr("places go the other way round than the rows say: mounting 0, pass 1)"));
+}
+
 /// Of a circle a second of angle a lag of 5 ms takes 12.5 um/m, or nothing.
 TEST(Drive, IsAmbiguousAtOneFeed) {
   const nlohmann::json results = ResultsOf(Logged({}, {3000.0}));

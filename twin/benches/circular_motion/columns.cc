@@ -1,6 +1,8 @@
 #include "twin/benches/circular_motion/columns.h"
 
+#include <Eigen/QR>
 #include <cmath>
+#include <map>
 
 #include "twin/benches/circular_motion/format.h"
 #include "twin/core/units.h"
@@ -34,6 +36,32 @@ std::vector<ReadingColumn> Columns() {
   const ReadingColumn temperature = NumberColumn(
       "temperature_degC", 1.0, ColumnRole::kOptional, [](auto& r) -> auto& { return r.temperature_degC; });
   return Joined({CommonColumns(false), own, {temperature}});
+}
+
+void AboutItsCentre(std::vector<Reading>& readings) {
+  constexpr double kOff = 1e-3, kRound = 1e-4;  // of the radius: files are written to less
+  std::map<std::pair<int, int>, std::vector<Reading*>> circles;
+  for (Reading& r : readings)
+    if (std::isfinite(Radius_m(r))) circles[{r.setup, r.pass}].push_back(&r);
+  for (const auto& [pass, circle] : circles) {
+    Eigen::MatrixX3d plane(std::ssize(circle), 3);  // x^2 + y^2 = 2 a x + 2 b y + c of a circle about (a, b)
+    Eigen::VectorXd squares(std::ssize(circle));
+    for (Eigen::Index k = 0; k < squares.size(); ++k) {
+      const Reading& r = *circle[static_cast<std::size_t>(k)];
+      plane.row(k) << 2.0 * kCommandedX_m(r), 2.0 * kCommandedY_m(r), 1.0;
+      squares[k] = std::pow(Radius_m(r), 2);
+    }
+    const auto solver = plane.colPivHouseholderQr();
+    if (solver.rank() < 3) continue;
+    const Eigen::Vector3d found = solver.solve(squares);
+    const double radius2_m2 = found[2] + found.head<2>().squaredNorm();
+    const bool is_round = ((plane * found - squares).array().abs() < 2.0 * kRound * radius2_m2).all();
+    if (!is_round || found.head<2>().norm() < kOff * std::sqrt(radius2_m2)) continue;
+    for (Reading* r : circle) {
+      kCommandedX_m(*r) -= found[0], kCommandedY_m(*r) -= found[1];
+      if (!IsOfBar(*r)) kGridX_m(*r) -= found[0], kGridY_m(*r) -= found[1];
+    }
+  }
 }
 
 Reading WithAngle(const Reading* before, Reading r) {

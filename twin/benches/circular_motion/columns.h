@@ -10,6 +10,9 @@ inline const Quantity kFeed_m_s{"feed_mm_min"};  // 0: at rest
 inline const Quantity kBar_m{"bar_um"}, kEncoder_rad{"encoder_deg"};
 inline const Quantity kGridX_m{"grid_x_mm"}, kGridY_m{"grid_y_mm"};
 
+/// Circles of a file that stand in machine coordinates, a pass each, about the centre of what was commanded.
+void AboutItsCentre(std::vector<Reading>& readings);
+
 /// The readings with what follows from their columns: target_rad, the commanded polar angle, unwrapped along each
 /// pass, and velocity_rad_s, its rate.
 std::vector<Reading> WithAngles(std::vector<Reading> readings);

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/circular_motion/analysis.h"
 #include "twin/benches/circular_motion/bench.h"
+#include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/ranked.h"
+#include "twin/core/reading_clock.h"
 #include "twin/report/json_units.h"
 #include "twin/report/polar_text.h"
 #include "twin/report/uncertainty_parts.h"
@@ -305,6 +308,21 @@ std::string PolarsOf(const CircleAnalysis& a) {
   return text;
 }
 
+/// Passes whose places go the other way round than their rows say, by the clock: " (pass 1 says cw, and ...)"; empty: none.
+std::string OtherWays(const std::vector<Reading>& readings) {
+  std::string text;
+  std::map<std::pair<int, int>, double> along_rad;
+  for (std::size_t i = 1; HasClock(readings) && i < readings.size(); ++i) {
+    const Reading &before = readings[i - 1], &r = readings[i];
+    if (before.setup != r.setup || before.pass != r.pass) continue;
+    const double step_rad = std::remainder(WithAngle(nullptr, r).target_rad - WithAngle(nullptr, before).target_rad, units::turn);
+    along_rad[{r.setup, r.pass}] += r.direction * step_rad;
+  }
+  for (const auto& [pass, rad] : along_rad)
+    if (rad < -0.5 * units::turn) text += fmt::format("{}mounting {}, pass {}", text.empty() ? "" : "; ", pass.first, pass.second);
+  return text.empty() ? "" : " (places go the other way round than the rows say: " + text + ")";
+}
+
 }  // namespace
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
@@ -324,12 +342,12 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   const std::vector<RankedError> ranked = RankedErrors(a);
   if (!ranked.empty()) evaluation.results["ranked"] = RankedJson(ranked);
   evaluation.summary = fmt::format("{} of {} readings have a radius\n", a.points.size(), readings.size());
-  if (a.IsFitted()) evaluation.summary += ErrorsText(a);
   if (!a.method_bias.empty()) evaluation.results["method_bias"] = BiasJson(a.method_bias);
   evaluation.summary += BiasText(a);
-  evaluation.summary += DeviationsText(a) + RankedText(ranked);
+  evaluation.summary += RankedText(ranked) + DeviationsText(a);
+  if (a.IsFitted()) evaluation.summary += ErrorsText(a);
   evaluation.tables = {{"polar.txt", PolarsOf(a)}};
-  if (a.IsFitted() && a.fit.dof > 0) evaluation.misfits = {{"the joint fit of the circles", a.fit.chi}};
+  if (a.IsFitted() && a.fit.dof > 0) evaluation.misfits = {{"the joint fit of the circles" + OtherWays(readings), a.fit.chi}};
   if (a.IsFitted()) evaluation.joints = [fit = a.fit] { return std::vector<uncertainty::Joint>{JointOf(fit)}; };
   evaluation.score = [a](const json& truth) { return ScoreOf(a, truth); };
   return evaluation;
