@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -93,23 +93,51 @@ struct ShiftSolution {
   double Residual_um() const { return std::sqrt(squares_um2 / static_cast<double>(std::max<Index>(1, dof))); }
 };
 
-ShiftSolution SolvedFor(const ShiftDesign& design, const std::vector<ChosenTerm>& chosen, bool with_weak) {
+/// @param most_weak  What the values of weak terms are thought to be at most (standard deviation), by the residual: 0: none is
+///                   there, infinite: nothing is thought of them.
+ShiftSolution SolvedFor(const ShiftDesign& design, const std::vector<ChosenTerm>& chosen, double most_weak) {
   ShiftSolution solution;
-  for (const ChosenTerm& term : chosen)
-    if (with_weak || !term.is_weak) solution.of.push_back(term.at);
-  const MatrixXd slopes = design.slopes(Eigen::all, solution.of), inverse = PseudoInverseOf(slopes);
-  solution.values = inverse * design.shifts_um;
+  std::vector<Index> believed;
+  for (const ChosenTerm& term : chosen) {
+    if (term.is_weak && most_weak == 0.0) continue;
+    if (term.is_weak && std::isfinite(most_weak)) believed.push_back(std::ssize(solution.of));
+    solution.of.push_back(term.at);
+  }
+  const Index rows = design.shifts_um.size(), beliefs = std::ssize(believed);
+  MatrixXd slopes = MatrixXd::Zero(rows + beliefs, std::ssize(solution.of));
+  slopes.topRows(rows) = design.slopes(Eigen::all, solution.of);
+  for (Index k = 0; k < beliefs; ++k) slopes(rows + k, believed[static_cast<std::size_t>(k)]) = 1.0 / most_weak;
+  VectorXd shifts_um = VectorXd::Zero(rows + beliefs);
+  shifts_um.head(rows) = design.shifts_um;
+  const MatrixXd inverse = PseudoInverseOf(slopes);
+  solution.values = inverse * shifts_um;
   solution.u = inverse.rowwise().norm();
-  solution.squares_um2 = (design.shifts_um - slopes * solution.values).squaredNorm();
-  solution.dof = design.shifts_um.size() - std::ssize(solution.of);
+  solution.squares_um2 = (shifts_um - slopes * solution.values).squaredNorm();
+  solution.dof = rows + beliefs - std::ssize(solution.of);
   return solution;
 }
 
-/// Whether what the weak terms explain is more than chance: three standard deviations of chi-squared.
-bool ShowMore(const ShiftSolution& all, const ShiftSolution& strong) {
-  const double more = static_cast<double>(all.of.size() - strong.of.size());
-  const double explained = (strong.squares_um2 - all.squares_um2) / std::pow(std::max(all.Residual_um(), 1e-6), 2);
-  return explained > more + 3.0 * std::sqrt(2.0 * more);
+/// How large weak terms are, by the residual: what is most likely by what the others leave (restricted likelihood).
+double SizeOfWeak(const ShiftDesign& design, const std::vector<ChosenTerm>& chosen, const ShiftSolution& strong) {
+  std::vector<Index> weak;
+  for (const ChosenTerm& term : chosen)
+    if (term.is_weak) weak.push_back(term.at);
+  if (weak.empty() || strong.dof < 1) return 0.0;
+  const MatrixXd slopes = design.slopes(Eigen::all, strong.of), inverse = PseudoInverseOf(slopes);
+  const MatrixXd own = design.slopes(Eigen::all, weak) - slopes * (inverse * design.slopes(Eigen::all, weak));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(own.transpose() * own);
+  const VectorXd strength = parts.eigenvalues().cwiseMax(0.0);
+  const VectorXd shown2 = (parts.eigenvectors().transpose() * (own.transpose() * design.shifts_um)).cwiseAbs2();
+  double best = 0.0, most = -0.5 * static_cast<double>(strong.dof) * std::log(strong.squares_um2);
+  for (double size = 1e-2; size < 1e4; size *= 1.25) {
+    const VectorXd with = 1.0 + size * size * strength.array();
+    const double left_um2 = strong.squares_um2 - (size * size * shown2.array() / with.array()).sum();
+    const double likelihood = -0.5 * (static_cast<double>(strong.dof) * std::log(std::max(left_um2, 1e-300)) + with.array().log().sum());
+    if (likelihood <= most) continue;
+    most = likelihood;
+    best = size;
+  }
+  return best;
 }
 
 /// A chain at its poses, and what its terms make of the readings.
@@ -142,7 +170,7 @@ struct Looked {
     if (static_cast<double>(tried.chosen.size()) >
         kMostUnknowns * static_cast<double>(tried.design.shifts_um.size()))
       return false;
-    tried.all = SolvedFor(tried.design, tried.chosen, true);
+    tried.all = SolvedFor(tried.design, tried.chosen, INFINITY);
     return true;
   }
 };
@@ -221,17 +249,17 @@ std::vector<std::size_t> Alike(const MatrixXd& fitted, const VectorXd& term) {
   return alike;
 }
 
-/// Weak terms that the readings do not show are taken as none where the others are found: their own values are
-/// those beside all.
+/// Where the others are found, weak terms are thought to be as large as the readings make likely: their own values are those
+/// beside all, without that.
 void SetTerms(const Tried& tried, double least_u_um, DisplacementFit& fit) {
-  const ShiftSolution strong = SolvedFor(tried.design, tried.chosen, false);
-  const ShiftSolution& used = ShowMore(tried.all, strong) ? tried.all : strong;
+  const ShiftSolution strong = SolvedFor(tried.design, tried.chosen, 0.0);
+  const ShiftSolution used = SolvedFor(tried.design, tried.chosen, SizeOfWeak(tried.design, tried.chosen, strong));
   fit.dof = used.dof;
   fit.residual_um = used.Residual_um();
   for (std::size_t k = 0; k < tried.chosen.size(); ++k) {
     const auto own = std::ranges::find(used.of, tried.chosen[k].at);
-    const ShiftSolution& by = own == used.of.end() ? tried.all : used;
-    const Index at = own == used.of.end() ? static_cast<Index>(k) : own - used.of.begin();
+    const ShiftSolution& by = tried.chosen[k].is_weak ? tried.all : used;
+    const Index at = tried.chosen[k].is_weak ? static_cast<Index>(k) : own - used.of.begin();
     fit.fitted.push_back({tried.terms[static_cast<std::size_t>(tried.chosen[k].at)], by.values[at],
                           std::max(by.Residual_um(), least_u_um) * by.u[at]});
   }

@@ -40,8 +40,8 @@ struct DisplacementFit {
 };
 
 /// Weighted alike. A term is fitted if a fiftieth of what it does is done by none before it (pose_terms.h has the
-/// order). Components of which others do most are left out where the locations are found, unless they explain more
-/// than chance does. The highest orders are left out until the unknowns are four for five values.
+/// order). Components of which others do most are believed to be as large as the readings make likely, where the
+/// locations are found: nothing, or their part is in u. The highest orders are left out until the unknowns are four for five values.
 ///
 /// Uncertainty: what is left over, first order. Not included: errors that are no terms, or whose part is less than
 /// chance; that rotary axes are where the commanded positions say.
