@@ -186,6 +186,16 @@ TEST_F(BallBar, HasWaysRoundByTheirWordsAndConditionsBetweenCommas) {
   EXPECT_THAT(taken.story, Not(HasSubstr("not said")));
 }
 
+/// What two axes of a circle say without units is compared as angles, and that it may be something else is said.
+TEST_F(BallBar, LogsWithoutUnitsAreNamed) {
+  std::string text = "time_s\tcommandedPosX\tcommandedPosY\tactualPosX\tactualPosY\n";
+  for (int k = 0; k < 720; ++k)
+    text += fmt::format("{:.2f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.4f}\n", 0.01 * k, 50.0 * std::cos(0.02 * k), 50.0 * std::sin(0.02 * k),
+                        50.0 * std::cos(0.02 * (k - 1)), 50.0 * std::sin(0.02 * (k - 1)));
+  EXPECT_THAT(Take(text).story, HasSubstr("by its names it may be of another kind; of a log of a controller on a circle"));
+  EXPECT_EQ(Take(text, "xy_log").bench, "circular_motion");
+}
+
 TEST_F(BallBar, MayBeFrench) {
   const Imported taken = Take("Rayon (mm);100\nAvance (mm/min);500\nAngle (°);Écart (µm);Sens\n" + Circles([](double a, int d) {
                                 return fmt::format("{};{:.4f};{}\n", a, Deviation_um(a, d), d > 0 ? "antihoraire" : "horaire");

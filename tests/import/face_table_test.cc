@@ -99,6 +99,19 @@ TEST_F(FaceTable, MayCallItsColumnsByTheWayRoundAlone) {
   Expect(Take(text("No.,Soll [°],Run 1 fwd (\"),Run 1 rev (\"),Kalibrierwert (\"),u (\")\n")), 8);
 }
 
+/// Each run has a column, "up" and "down" say the way, and two apostrophes are seconds.
+TEST_F(FaceTable, MayHaveAColumnForEachRun) {
+  const auto text = [](const char* names) {
+    return names + Faces(12, [](int face, double angle, double forward, double reverse) {
+             return fmt::format("{:g},{:.4f},{:.4f},{:.4f}\n", angle, forward, reverse, Certified_arcsec(face - 1));
+           });
+  };
+  Expect(Take(text("angle (deg),reading up (''),reading down (''),certified ('')\n")), 12);
+  const Imported taken = Take(text("nominal_deg,run1_arcsec,run2_arcsec,certified_arcsec\n"));
+  ASSERT_EQ(taken.readings.size(), 24U) << taken.story;
+  EXPECT_NE(taken.readings.front().pass, taken.readings.back().pass);
+}
+
 /// The certificate has angles of the faces, or corrections; or only the faces are numbered.
 TEST_F(FaceTable, TakesCertificatesOfOtherKinds) {
   const auto both = [](const std::string& names, const std::function<std::string(int, double)>& certified) {

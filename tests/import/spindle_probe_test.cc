@@ -75,6 +75,7 @@ TEST_F(SpindleProbe, HasTheAnglesInTheNamesOfItsProbes) {
     EXPECT_NEAR(In(taken.readings[9], "probe_3_um") / units::um, 3.009, 1e-9);
     EXPECT_EQ(taken.readings[9].direction, 1) << "rev numbers the turns";
   }
+  EXPECT_EQ(Take(text("rev,angle_deg,cap1_nm,cap2_nm,Cap_3_nm")).bench, "rotary_4dof");
   const Imported stated = Take(text("Sensor angles: 5; 100; 213 deg\nrev,angle [deg],s1 [nm],s2 [nm],s3 [nm]"));
   EXPECT_THAT(stated.set, testing::Contains("probes.angles_deg=[5, 100, 213]"));
 }

@@ -148,6 +148,7 @@ TEST_F(TwoEncoders, MayBeCountsWithAStatedFraction) {
            }, 1980, 180);
   };
   Expect(Take(log("input encoder: 10000000 counts/rev\noutput encoder: 129600000 counts/rev\nratio: 29/2\nmotor,table\n", 1e7, 1.296e8)), train, 1980);
+  Expect(Take(log("EncIn(counts),EncOut(counts)\n# EncIn 10000000 counts/rev, EncOut 129600000 counts/rev\n", 1e7, 1.296e8)), train, 1980);
   Expect(Take(log("# i = 2:29\n# both encoders 2^24 counts per rev\nch1_in,ch2_out\n", std::exp2(24), std::exp2(24))), train, 1980);
   EXPECT_THAT(MessageOf([&] { Take(log("ratio: 31\nboth 2^24 counts per rev\nmotor,table\n", std::exp2(24), std::exp2(24))); }), HasSubstr("states a ratio of 31"));
 }

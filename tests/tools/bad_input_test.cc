@@ -30,6 +30,10 @@ TEST_F(BadInput, InAScenarioOrAFileThatItNamesIsToldWithItsLine) {
   EXPECT_THAT(Refusal({"run", "bad.toml", "-o", "out"}), HasSubstr(" bad.toml:2: "));
 }
 
+TEST_F(BadInput, ABudgetOfWhatTheScenarioHasNotNamesWhatItHas) {
+  ExpectRefused({"budget", "small.toml"}, "a place in results.json that has, as calibration");
+}
+
 TEST_F(BadInput, WithoutEndIsRefused) {
   ExpectRefused({"run", "/dev/zero", "-o", "out"}, "larger than 256 MB");
   ExpectRefused({"separate", "/dev/zero", "--scenario", "small.toml"}, "larger than 256 MB");

@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -36,10 +37,25 @@ void AddFigures(const nlohmann::json& node, const std::string& path, const std::
   }
 }
 
-std::vector<uncertainty::Figure> FiguresOf(const Scenario& scenario, const std::string& wanted) {
+nlohmann::json ResultsOfTwin(const Scenario& scenario) {
+  return EvaluationOf(scenario, ReadingsOfTwin(scenario), Estimator::kRigorous).results;
+}
+
+std::vector<uncertainty::Figure> FiguresOf(const nlohmann::json& results, const std::string& wanted) {
   std::vector<uncertainty::Figure> figures;
-  AddFigures(EvaluationOf(scenario, ReadingsOfTwin(scenario), Estimator::kRigorous).results, "", wanted, figures);
+  AddFigures(results, "", wanted, figures);
   return figures;
+}
+
+/// Places of figures that this scenario has, before many runs are made for none.
+void RequireFigures(const nlohmann::json& results, const std::string& wanted) {
+  if (!FiguresOf(results, wanted).empty()) return;
+  std::vector<std::string> places;
+  for (const auto& [key, value] : results.items()) {
+    if (!FiguresOf(results, key).empty()) places.push_back(key);
+  }
+  throw InputError("--of " + wanted, "the results of this scenario have no number there",
+                   fmt::format("a place in results.json that has, as {}", fmt::join(places, ", ")));
 }
 
 void Share(const BudgetOptions& options, JsonAnswer& answer) {
@@ -57,16 +73,14 @@ Answer BudgetOf(const Scenario& scenario, const std::string& source, const std::
   if (!bench.contributions)
     throw InputError(source, "there is no list of the sources that move the readings of " + scenario.bench,
                      BenchesWhere([](const Bench& b) { return b.contributions != nullptr; }));
+  RequireFigures(ResultsOfTwin(scenario), figures);
   const std::vector<uncertainty::Contribution> contributions = bench.contributions(scenario);
   std::size_t runs = 0;
   const uncertainty::OneAtATime found = uncertainty::RunOneAtATime(scenario, contributions, [&](const Scenario& s) {
     if (between) between();
     Doing(fmt::format("run {} of at most {}, one source after the other off", ++runs, 2 + 2 * contributions.size()));
-    return FiguresOf(s, figures);
+    return FiguresOf(ResultsOfTwin(s), figures);
   });
-  if (found.total.empty())
-    throw InputError("--of " + figures, "results.json has no number there",
-                     "a place of results.json, as stability.range");
   return {report::ContributionsJson(found), report::WithoutNoNumbers(report::ContributionsText(found))};
 }
 

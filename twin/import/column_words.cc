@@ -83,12 +83,18 @@ int Clearness(const std::string& name, Speaks of) {
   return ClearnessBy(name, WordsFor(of));
 }
 
+std::string BareName(const std::string& name) {
+  std::string bare = SmallLetters(UnitAtEnd(name) ? name.substr(0, name.rfind('_')) : name);
+  std::ranges::replace(bare, '_', ' ');
+  return bare;
+}
+
 int ClearnessBy(const std::string& name, const std::vector<std::string>& words) {
   const std::set<std::string> own = WordsOf(name);
-  const std::string small = SmallLetters(name);
+  const std::string small = SmallLetters(name), bare = BareName(name);
   int clearest = 0, count = 0;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (!Has(own, name, words[i]) && small != words[i]) continue;
+    if (!Has(own, name, words[i]) && small != words[i] && bare != words[i]) continue;
     ++count;
     if (clearest == 0) clearest = static_cast<int>(words.size() - i);
   }

@@ -10,6 +10,9 @@ namespace twinbench::imports {
 
 enum class Speaks { kReference, kDevice };
 
+/// "probe 1" of "Probe_1_um".
+std::string BareName(const std::string& name);
+
 /// How clearly a name speaks of a reference or of a device under test: by its clearest word, then by how many there are; 0:
 /// not at all.
 int Clearness(const std::string& name, Speaks of);

@@ -33,8 +33,13 @@ bool AreWhole(const Column& column) {
 std::optional<double> StatedPerTurn(const Column& column, const Track& track, const std::vector<std::string>& words = {}) {
   Track own;
   AddNumbers(column.name + " " + column.unit, own);
-  for (const TextLine& line : track.lines)
-    if (ClearnessBy(line.text, words) > 0) AddNumbers(line.text, own);
+  for (const TextLine& line : track.lines) {
+    for (std::string_view rest = line.text; !rest.empty() && own.numbers.empty();) {
+      const std::size_t end = std::min(rest.find_first_of(",;"), rest.size());
+      if (ClearnessBy(std::string(rest.substr(0, end)), words) > 0) AddNumbers(rest.substr(0, end), own);
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+  }
   for (const Track* said : {static_cast<const Track*>(&own), &track}) {
     for (const auto& [name, number] : said->numbers) {
       if (SaysPerTurn(SmallLetters(name)) && number > 1.0) return number;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <string>
 
+#include "twin/import/common.h"
 #include "twin/import/layout.h"
+#include "twin/import/table.h"
 #include "twin/import/text.h"
 
 namespace twinbench::imports {
@@ -52,6 +54,7 @@ Heading FindHeading(const std::vector<std::string_view>& above, std::size_t widt
     if (width == 1) names = {WithoutMark(above[i])};
     if (names.size() > 1 && names.back().empty()) names.pop_back();
     if (names.size() != width && !(names.size() + 1 == width || names.size() == width + 1)) continue;
+    if (IsComment(above[i]) && SaysPerTurn(SmallLetters(above[i]))) continue;  // how many counts make a turn
     const bool may_be_units = units.empty() && names.size() == width && i > 0;
     if (may_be_units && (AllUnits(names) || (Repeats(names) && IsAsWide(above[i - 1], width, separator)))) {
       units.assign(names.begin(), names.end());

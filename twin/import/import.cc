@@ -62,6 +62,8 @@ std::vector<Recording> ReadAll(const std::vector<std::string>& files, Map& map) 
   for (const std::string& file : files) {
     recordings.push_back(ReadRecording(file, layout, map.clock));
     if (!was_said && !map.name.empty()) recordings.back().remarks.push_back(fmt::format("by its columns a {}: taken as --map {}", map.title, map.name));
+    const std::string others = layout.columns_are_open && map.name.empty() ? ReadyMapsByNames(recordings.back()) : "";
+    if (!others.empty()) recordings.back().remarks.push_back("by its names it may be of another kind" + others);
     TakeSought(map, recordings.back());
     TakeUnnamedClock(map, recordings.back());
   }

@@ -74,6 +74,11 @@ bool NamesRuns(const std::vector<std::string_view>& names) {
   return first < names.size() && DirectionIn(names[first]) == 0 && RunsFrom(first + 1, names);
 }
 
+bool NumbersARun(std::string_view name) {
+  std::set<std::string> different;
+  return !name.empty() && std::isalpha(static_cast<unsigned char>(name.front())) && IsNumberedRun(name, different);
+}
+
 bool NumbersRuns(const std::vector<std::string_view>& names) {
   const std::size_t first = names.empty() || !CountsRows(names[0]) ? 0 : 1;
   if (names.size() < first + 3 || !IsCalledTarget(names[first])) return false;

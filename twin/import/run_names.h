@@ -9,6 +9,9 @@ namespace twinbench::imports {
 /// Of a heading above a table, or of a column: 1 up, -1 down, 0 neither.
 int DirectionIn(std::string_view text);
 
+/// "run 2", "Lauf 2", in small letters.
+bool NumbersARun(std::string_view name);
+
 /// "no.", "point": it counts rows.
 bool CountsRows(std::string_view name);
 

@@ -324,7 +324,7 @@ std::string ReadyMapsByNames(const Recording& recording) {
   for (const ReadyMap& ready : ReadyMaps()) {
     const Map map = ParseMap(ready.text, ready.name);
     if (!map.guess_by.empty() && ColumnsOfKind(recording, map, true) > 2)
-      maps += fmt::format("; of a {}: --map {}, with units in the names if they are not its own", map.title, ready.name);
+      maps += fmt::format("; of a {}: --map {}, with units in the names if they are not those of the map", map.title, ready.name);
   }
   return maps;
 }

@@ -8,6 +8,7 @@
 #include "twin/import/clampings.h"
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
+#include "twin/import/run_names.h"
 #include "twin/import/unit_names.h"
 
 namespace twinbench::imports {
@@ -36,8 +37,8 @@ bool SaysWhere(const Map& map, const Column& column) {
 
 /// "CCW", or one of its words says which way: "reading forward".
 int WayIn(const std::string& name) {
-  constexpr std::array<std::string_view, 4> kForward = {"forward", "fwd", "vorwärts", "vor"};
-  constexpr std::array<std::string_view, 7> kBack = {"reverse", "rev", "backward", "backwards", "bwd", "rückwärts", "zurück"};
+  constexpr std::array<std::string_view, 7> kForward = {"forward", "fwd", "up", "vorwärts", "vor", "hin", "aller"};
+  constexpr std::array<std::string_view, 9> kBack = {"reverse", "rev", "backward", "backwards", "bwd", "down", "rückwärts", "zurück", "retour"};
   if (const int turn = TurnIn(name); turn != 0) return turn;
   const std::string words = SmallLetters(name) + ' ';
   for (std::size_t from = 0, end; (end = words.find_first_of(" _-.", from)) != std::string::npos; from = end + 1) {
@@ -48,17 +49,20 @@ int WayIn(const std::string& name) {
   return 0;
 }
 
-/// What of a table was read one way round, or in one clamping.
+/// What of a table was read one way round, in one clamping, or in one run of several.
 struct ColumnSide {
   int turn = 0;  // 0: the name says none
   ClampingSaid clamping;
+  std::string run;  // "run 2" of columns that are called so and no more
 
-  bool IsOne() const { return turn != 0 || clamping.Any(); }
+  bool IsOne() const { return turn != 0 || clamping.Any() || !run.empty(); }
   bool operator==(const ColumnSide&) const = default;
 };
 
 ColumnSide SideOf(const Map& map, const Column& column) {
-  return {WayIn(column.name), SeeksClampings(map) ? ClampingOf(column) : ClampingSaid{}};
+  if (!SeeksClampings(map)) return {WayIn(column.name), {}, {}};
+  const std::string bare = BareName(column.name);
+  return {WayIn(column.name), ClampingOf(column), bare.find_first_of("123456789") != std::string::npos && NumbersARun(bare) ? bare : ""};
 }
 
 /// "CCW [µm]" says a way round and a unit only: it is the quantity that has such a unit. "clamping 2" is what was

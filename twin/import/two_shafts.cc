@@ -124,12 +124,12 @@ std::vector<double> Beside(const std::vector<double>& a, const std::vector<doubl
   return beside;
 }
 
-std::vector<double> StatedRatio(const std::vector<double>& stated, const std::vector<double>& found, const std::string& where) {
+std::vector<double> StatedRatio(const std::vector<double>& stated, const std::vector<double>& found, const std::string&) {
   constexpr double kSame = 0.02;
   const double ratio = std::abs(stated.at(0)), goes = std::abs(found.at(0));
   for (const double meant : {ratio, 1.0 / ratio})
     if (std::abs(meant / goes - 1.0) < kSame) return {meant};
-  throw InputError(where, fmt::format("the file states a ratio of {:.6g}, and its angles go {:.6g} to one", ratio, goes),
+  throw InputError("the ratio", fmt::format("the file states a ratio of {:.6g}, and its angles go {:.6g} to one", ratio, goes),
                    "angles of both shafts in their units, and the ratio of these two");
 }
 
