@@ -8,6 +8,7 @@
 #include "twin/campaign/campaign.h"
 #include "twin/campaign/study.h"
 #include "twin/campaign/summary.h"
+#include "twin/campaign/table.h"
 #include "twin/core/reading.h"
 
 namespace twinbench::campaign {
@@ -172,6 +173,25 @@ TEST(Table, HasOneWriterWhateverItIsCalledAndIsReadMeanwhile) {
     EXPECT_TRUE(Table::Open(path).Done().empty());
   }
   EXPECT_NO_THROW(Table::Continue(path, "1", study));
+}
+
+TEST(Table, WhoseTrialsWereAlteredTakenAwayOrAddedIsRefused) {
+  const TemporaryFolder folder;
+  const Study study = ParseStudy(StudyOf("trials = 2\n"), "study.toml", "");
+  const std::string path = folder.File("table.sqlite"), altered = folder.File("altered.sqlite");
+  {
+    Ranks alone(false);
+    Table table = Table::Create(path, "1", study);
+    RunCampaign(study, table, 1, alone, [](const CampaignProgress&) {});
+  }
+  EXPECT_EQ(std::ssize(Table::Open(path).Done()), 2);
+  for (const char* change : {"UPDATE results SET value = value + 1e-9 WHERE trial = 1", "UPDATE trials SET seed = '7' WHERE trial = 0",
+                             "DELETE FROM trials WHERE trial = 1; DELETE FROM results WHERE trial = 1",
+                             "INSERT INTO results VALUES(2, 'x', 1.0, NULL, NULL, NULL)"}) {
+    std::filesystem::copy_file(path, altered, std::filesystem::copy_options::overwrite_existing);
+    SqliteDatabase(altered, SQLITE_OPEN_READWRITE).Execute(change);
+    EXPECT_KEPT(MessageOf([&] { Table::Open(altered); }));
+  }
 }
 
 }  // namespace

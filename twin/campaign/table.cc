@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 
+#include "twin/core/digest.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_file.h"
 #include "twin/core/number_text.h"
@@ -47,6 +48,7 @@ void MakeCampaignTables(SqliteDatabase& database, const std::string& version, co
   database.Execute(
       "CREATE TABLE results(trial INTEGER NOT NULL, name TEXT NOT NULL, value REAL, u REAL, error REAL, k REAL, "
       "PRIMARY KEY(trial, name)) WITHOUT ROWID");
+  database.Execute("CREATE TABLE digests(trial INTEGER PRIMARY KEY, digest TEXT NOT NULL)");
   SqliteStatement insert(database, "INSERT INTO provenance VALUES(?, ?)");
   for (const auto& [name, value] : ProvenanceOf(version, study)) {
     insert.Bind(0, name);
@@ -55,6 +57,31 @@ void MakeCampaignTables(SqliteDatabase& database, const std::string& version, co
   }
   database.Execute(fmt::format("PRAGMA application_id = {}", kTableId).c_str());
   transaction.Commit();
+}
+
+/// Of a trial with its values and results.
+std::string DigestOf(SqliteDatabase& database, std::int64_t trial) {
+  std::string bytes;
+  for (const char* rows : {"SELECT * FROM trials WHERE trial = ?", "SELECT * FROM results WHERE trial = ? ORDER BY name"}) {
+    SqliteStatement ask(database, rows);
+    ask.Bind(0, trial);
+    while (ask.Step()) bytes += ask.RowBytes();
+  }
+  return Sha256(bytes);
+}
+
+/// Trials as they were written, none taken away or added. (Tables of versions before the digests have nothing to tell it by.)
+void RequireUnaltered(SqliteDatabase& database) {
+  const SqliteTransaction at_one_moment(database, "BEGIN");  // another program may be writing
+  if (database.Ask("SELECT count(*) FROM sqlite_master WHERE name = 'digests'") == "0") return;
+  SqliteStatement ask(database,
+                      "SELECT n.trial, d.digest FROM (SELECT trial FROM trials UNION SELECT trial FROM results UNION "
+                      "SELECT trial FROM digests) n LEFT JOIN digests d USING(trial) ORDER BY n.trial");
+  while (ask.Step()) {
+    if (const std::int64_t trial = ask.Integer(0); DigestOf(database, trial) != ask.Text(1))
+      throw InputError(database.path(), fmt::format("trial {} is not as it was written", trial),
+                       "the table as the campaign left it, from a copy or made again");
+  }
 }
 
 /// What was written survives kill -9; a power failure may cost the last trials, which are then done again.
@@ -73,6 +100,7 @@ std::unique_ptr<SqliteDatabase> OpenTable(const std::string& path, int flags) {
     auto database = std::make_unique<SqliteDatabase>(path, flags);
     if (database->Ask("PRAGMA application_id") != fmt::format("{}", kTableId))
       throw InputError(path, "this is another kind of database", kExpected);
+    RequireUnaltered(*database);
     return database;
   } catch (const BenchError& failure) {
     throw InputError(path, fmt::format("it cannot be opened ({})", failure.what()), kExpected);
@@ -177,6 +205,10 @@ void Table::Write(const TrialRow& row, std::uint64_t seed, const std::vector<std
     result.Bind(5, r.k);
     result.Run();
   }
+  SqliteStatement digest(*database_, "INSERT INTO digests VALUES(?, ?)");
+  digest.Bind(0, row.trial);
+  digest.Bind(1, DigestOf(*database_, row.trial));
+  digest.Run();
   transaction.Commit();
 }
 
