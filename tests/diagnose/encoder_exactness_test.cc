@@ -125,6 +125,7 @@ TEST(EncoderExactness, ASlowCourseBesideLargeCausesIsToldAndWritten) {
       const double room_K = std::sin(t_s / 300.0) + 0.4 * std::sin(t_s / 90.0 + 1.0);
       return (t_s < 1100.0 ? 0.0 : 0.01) + 0.007 * std::cos(2.0 * a * units::deg) + 0.0025 * room_K * room_K;
     }));
+    answer.Again();
     SCOPED_TRACE(answer.Words());
     EXPECT_TRUE(answer.Find("ellipticity"));
     EXPECT_NE(answer.run.diagnosis.unknown.signature.find("function of time"), std::string::npos);

@@ -85,12 +85,12 @@ struct Answer {
     const Cause* const cause = Find(effect);
     return cause && cause->probability >= from;
   }
-  std::string Words() const {
-    std::string words = VerdictName(run.diagnosis.verdict);
-    for (const Cause& c : run.diagnosis.causes) words += fmt::format(" [{} {:.2f}]", c.effect, c.probability);
-    words += " " + run.diagnosis.unknown.signature;
-    return again ? words + " | again: " + VerdictName(again->verdict) + " " + again->unknown.signature : words;
+  static std::string WordsOf(const Diagnosis& d) {
+    std::string words = VerdictName(d.verdict);
+    for (const Cause& c : d.causes) words += fmt::format(" [{} {:.2f}]", c.effect, c.probability);
+    return words + " " + d.unknown.signature;
   }
+  std::string Words() const { return WordsOf(run.diagnosis) + (again ? " | again: " + WordsOf(*again) : ""); }
 };
 
 inline Answer Ask(const Record& record) {

@@ -267,11 +267,11 @@ void AddWords(const Eigen::VectorXd& walk, const LinearRun& run, std::string& si
                            amplitude / run.to_SI, run.unit);
 }
 
-/// With the names that are left beside it.
-void TellWalk(const Walk& walk, DiagnosisRun& result) {
+/// With the names that are left beside it, and what the others show in it.
+void TellWalk(Walk& walk, DiagnosisRun& result) {
   Diagnosis& d = result.diagnosis;
-  Eigen::VectorXd wander = walk.left;
-  const double named = GiveToWander(result, walk, wander);
+  Eigen::VectorXd& wander = walk.left;
+  const double named = GiveToWander(result, Walk(walk), wander);
   AddWords(wander, result.run, d.unknown.signature);
   d.unknown.probability = std::max(d.unknown.probability, tuning::kListed);
   if (d.verdict == Verdict::kNone || SquaresAboutMean(wander) > named) d.verdict = Verdict::kUnknown;
@@ -291,12 +291,11 @@ void TellWander(const SecondOrder& bent, DiagnosisRun& result) {
   if (!is_walk && !is_followed) return;
   std::string& signature = result.diagnosis.unknown.signature;
   if (is_followed) DropParts(is_walk ? kOfTime : kWords, signature);  // it is told here
-  if (is_walk) {
-    FitBesideWalk(result);
-    TellWalk(WalkOf(result, bent), result);
-  }
+  if (is_walk) FitBesideWalk(result);
+  Walk walk = WalkOf(result, bent);
+  if (is_walk) TellWalk(walk, result);
   std::erase_if(result.accepted, IsFollowed);
-  result.accepted.push_back(CourseOf(WalkOf(result, bent), run));
+  result.accepted.push_back(CourseOf(walk, run));
   if (!is_walk) AddWords(ShownByFit(run, {result.accepted.back()}), run, signature);
 }
 
