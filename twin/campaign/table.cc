@@ -59,16 +59,26 @@ void MakeCampaignTables(SqliteDatabase& database, const std::string& version, co
   transaction.Commit();
 }
 
-/// Of a trial with its values and results.
-std::string DigestOf(SqliteDatabase& database, std::int64_t trial) {
-  std::string bytes;
-  for (const char* rows : {"SELECT * FROM trials WHERE trial = ?", "SELECT * FROM results WHERE trial = ? ORDER BY name"}) {
-    SqliteStatement ask(database, rows);
-    ask.Bind(0, trial);
-    while (ask.Step()) bytes += ask.RowBytes();
+/// Of a trial with its values and results; prepared once for all that are asked for.
+class TrialDigests {
+ public:
+  explicit TrialDigests(SqliteDatabase& database)
+      : trial_(database, "SELECT * FROM trials WHERE trial = ?"),
+        results_(database, "SELECT * FROM results WHERE trial = ? ORDER BY name") {}
+
+  std::string Of(std::int64_t trial) {
+    std::string bytes;
+    for (SqliteStatement* rows : {&trial_, &results_}) {
+      rows->Bind(0, trial);
+      while (rows->Step()) bytes += rows->RowBytes();
+      rows->Reset();
+    }
+    return Sha256(bytes);
   }
-  return Sha256(bytes);
-}
+
+ private:
+  SqliteStatement trial_, results_;
+};
 
 /// Trials as they were written, none taken away or added. (Tables of versions before the digests have nothing to tell it by.)
 void RequireUnaltered(SqliteDatabase& database) {
@@ -77,8 +87,9 @@ void RequireUnaltered(SqliteDatabase& database) {
   SqliteStatement ask(database,
                       "SELECT n.trial, d.digest FROM (SELECT trial FROM trials UNION SELECT trial FROM results UNION "
                       "SELECT trial FROM digests) n LEFT JOIN digests d USING(trial) ORDER BY n.trial");
+  TrialDigests digests(database);
   while (ask.Step()) {
-    if (const std::int64_t trial = ask.Integer(0); DigestOf(database, trial) != ask.Text(1))
+    if (const std::int64_t trial = ask.Integer(0); digests.Of(trial) != ask.Text(1))
       throw InputError(database.path(), fmt::format("trial {} is not as it was written", trial),
                        "the table as the campaign left it, from a copy or made again");
   }
@@ -207,7 +218,7 @@ void Table::Write(const TrialRow& row, std::uint64_t seed, const std::vector<std
   }
   SqliteStatement digest(*database_, "INSERT INTO digests VALUES(?, ?)");
   digest.Bind(0, row.trial);
-  digest.Bind(1, DigestOf(*database_, row.trial));
+  digest.Bind(1, TrialDigests(*database_).Of(row.trial));
   digest.Run();
   transaction.Commit();
 }
