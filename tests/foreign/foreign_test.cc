@@ -5,6 +5,7 @@
 #include "tests/foreign/plans.h"
 #include "tests/hidden/known_wrong.h"
 #include "tests/support/oracle_poses.h"
+#include "tests/support/thresholds.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
@@ -44,10 +45,8 @@ std::vector<hidden::Answered> Answers() {
   std::vector<hidden::Answered> answers;
   for (const Plan& plan : ReducedPlans()) {
     const Machine machine = plan.make();
-    diagnose::DiagnoseOptions options;
-    options.cache_folder = hidden::CacheFolder();
-    const Answer answer =
-        Judge(machine.truth, diagnose::Diagnose(machine.readings(kFirst), machine.believed, options).diagnosis);
+    const Answer answer = Judge(
+        machine.truth, diagnose::Diagnose(machine.readings(kFirst), machine.believed, test::QuickOptions()).diagnosis);
     answers.push_back({plan.set, plan.name, IsRight(answer), "is " + machine.truth.kind + ": " + answer.words});
   }
   return answers;

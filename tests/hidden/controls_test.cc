@@ -5,6 +5,7 @@
 #include "tests/hidden/effect_size.h"
 #include "tests/hidden/known_wrong.h"
 #include "tests/hidden/twin_cases.h"
+#include "tests/support/thresholds.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -33,9 +34,8 @@ std::vector<Reading> ReadingsWith(const EffectSettings& effect) {
 
 Diagnosis Diagnosed(const std::vector<Reading>& readings, const Scenario& believed = Believed(Design::kRotary),
                     Estimator model = Estimator::kRigorous) {
-  diagnose::DiagnoseOptions options;
+  diagnose::DiagnoseOptions options = test::QuickOptions();
   options.model = model;
-  options.cache_folder = CacheFolder();
   return diagnose::Diagnose(readings, believed, options).diagnosis;
 }
 

@@ -1,15 +1,14 @@
 #include "tests/hidden/known_wrong.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
 
 #include "tests/hidden/judge.h"
+#include "tests/support/thresholds.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::hidden {
@@ -44,15 +43,6 @@ std::string InLines(const std::string& title, const std::vector<std::string>& ca
 }
 
 namespace fs = std::filesystem;
-
-class Cache : public ::testing::Environment {
- public:
-  static std::string Path() { return fs::temp_directory_path() / fmt::format("twinbench-hidden-{}", ::getpid()); }
-  void SetUp() override { fs::create_directories(Path()); }
-  void TearDown() override { fs::remove_all(Path()); }
-};
-
-::testing::Environment* const kCache = ::testing::AddGlobalTestEnvironment(new Cache);
 
 }  // namespace
 
@@ -135,13 +125,8 @@ int FewestOf(int of, double caught) {
                                        << so_many;
 }
 
-const std::string& CacheFolder() {
-  static const std::string path = Cache::Path();
-  return path;
-}
-
 std::vector<Outcome> RunReduced(const std::vector<Plan>& plans, int threads) {
-  return RunCases(plans, {threads, CacheFolder()});
+  return RunCases(plans, {threads, test::ThresholdsFolder(), test::QuickOptions().null_runs});
 }
 
 int CountOf(const std::vector<Outcome>& outcomes, bool (*test)(const Outcome&)) {

@@ -47,9 +47,6 @@ int FewestOf(int of, double caught);
 /// Two-sided, of a share that is claimed as a number: fails if so uneven a count has a probability below 1 %.
 ::testing::AssertionResult IsShareOf(int count, std::size_t of, double claimed);
 
-/// A folder of this program for calibrated thresholds, empty at its start and removed at its end.
-const std::string& CacheFolder();
-
 std::vector<Outcome> RunReduced(const std::vector<Plan>& plans, int threads = 1);
 
 int CountOf(const std::vector<Outcome>& outcomes, bool (*test)(const Outcome&));

@@ -1,5 +1,6 @@
 #include "tests/hidden/run_cases.h"
 
+#include <algorithm>
 #include <atomic>
 #include <thread>
 
@@ -9,9 +10,10 @@
 namespace twinbench::hidden {
 namespace {
 
-Outcome Diagnosed(const Case& hidden_case, const std::string& cache_folder) {
+Outcome Diagnosed(const Case& hidden_case, const RunOptions& run) {
   diagnose::DiagnoseOptions options = hidden_case.options;
-  options.cache_folder = cache_folder;
+  options.cache_folder = run.cache_folder;
+  options.null_runs = std::min(options.null_runs, run.most_null_runs);
   try {
     return Judge(hidden_case.hidden,
                  diagnose::Diagnose(hidden_case.readings, hidden_case.scenario, options).diagnosis);
@@ -36,8 +38,8 @@ void InParallel(std::size_t count, int threads, const std::function<void(std::si
   for (std::thread& worker : workers) worker.join();
 }
 
-Outcome RunCase(const Plan& plan, const std::string& cache_folder) {
-  Outcome outcome = Diagnosed(plan.make(), cache_folder);
+Outcome RunCase(const Plan& plan, const RunOptions& options) {
+  Outcome outcome = Diagnosed(plan.make(), options);
   outcome.set = plan.set;
   outcome.name = plan.name;
   return outcome;
@@ -45,8 +47,7 @@ Outcome RunCase(const Plan& plan, const std::string& cache_folder) {
 
 std::vector<Outcome> RunCases(const std::vector<Plan>& plans, const RunOptions& options) {
   std::vector<Outcome> outcomes(plans.size());
-  InParallel(plans.size(), options.threads,
-             [&](std::size_t k) { outcomes[k] = RunCase(plans[k], options.cache_folder); });
+  InParallel(plans.size(), options.threads, [&](std::size_t k) { outcomes[k] = RunCase(plans[k], options); });
   return outcomes;
 }
 

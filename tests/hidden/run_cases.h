@@ -13,6 +13,7 @@ void InParallel(std::size_t count, int threads, const std::function<void(std::si
 struct RunOptions {
   int threads = 2;
   std::string cache_folder;  // of calibrated thresholds
+  int most_null_runs = 500;
 };
 
 /// Makes, diagnoses and judges every case; the outcomes are in the order of the plans and do not depend on the
@@ -20,6 +21,6 @@ struct RunOptions {
 std::vector<Outcome> RunCases(const std::vector<Plan>& plans, const RunOptions& options);
 
 /// One case, in this thread. An InputError is the outcome kRefused.
-Outcome RunCase(const Plan& plan, const std::string& cache_folder);
+Outcome RunCase(const Plan& plan, const RunOptions& options);
 
 }  // namespace twinbench::hidden

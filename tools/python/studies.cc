@@ -76,17 +76,20 @@ class Measured {
 
 /// @return investigation.json, and the scenario with what was told.
 py::tuple Investigate(const Scenario& scenario, const std::optional<Scenario>& hidden, const py::object& measure,
-                      const std::string& goal, double budget_min, double conclusive, int most_runs) {
+                      const std::string& goal, double budget_min, double conclusive, int most_runs,
+                      const std::string& cache_folder) {
   const Measured bench(scenario, hidden, measure);
   investigate::InvestigationOptions how;
   if (!goal.empty()) how.goal = investigate::ParseGoal(goal);
   how.budget_min = budget_min;
   how.conclusive = conclusive;
   how.most_runs = most_runs;
+  diagnose::DiagnoseOptions diagnosed;
+  diagnosed.cache_folder = cache_folder;
   const auto [told, extended] = [&] {
     py::gil_scoped_release unlocked;
     const investigate::Means means =
-        tools::MeansOf(BenchOf(scenario), [&bench](const plan::NextRun& run) { return bench.CanMake(run); });
+        tools::MeansOf(BenchOf(scenario), [&bench](const plan::NextRun& run) { return bench.CanMake(run); }, diagnosed);
     investigate::Laboratory laboratory;
     laboratory.measure = std::cref(bench);
     const investigate::Investigation found = investigate::Investigate(scenario, how, means, laboratory);
@@ -101,7 +104,7 @@ void AddStudies(py::module_& m) {
   m.def("plan", &Plan, py::arg("scenario"), py::arg("setups"), py::arg("minutes"), py::arg("readings"), py::arg("goal"));
   m.def("campaign", &Campaign, py::arg("study"), py::arg("table"), py::arg("threads"), py::arg("resume"));
   m.def("investigate", &Investigate, py::arg("scenario"), py::arg("hidden"), py::arg("measure"), py::arg("goal"),
-        py::arg("budget_min"), py::arg("conclusive"), py::arg("most_runs"));
+        py::arg("budget_min"), py::arg("conclusive"), py::arg("most_runs"), py::arg("cache_folder"));
 }
 
 }  // namespace twinbench::python

@@ -6,11 +6,12 @@
 
 namespace twinbench::tools {
 
-investigate::Means MeansOf(const Bench& bench, const std::function<bool(const plan::NextRun&)>& may_offer) {
+investigate::Means MeansOf(const Bench& bench, const std::function<bool(const plan::NextRun&)>& may_offer,
+                           const diagnose::DiagnoseOptions& how) {
   investigate::Means means;
-  means.diagnose = [&bench](const std::vector<Reading>& readings, const Scenario& scenario,
-                            const std::vector<std::string>& struck) {
-    diagnose::DiagnoseOptions options;
+  means.diagnose = [&bench, how](const std::vector<Reading>& readings, const Scenario& scenario,
+                                 const std::vector<std::string>& struck) {
+    diagnose::DiagnoseOptions options = how;
     options.excluded = struck;
     return bench.diagnose(readings, scenario, options);
   };

@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "tools/twinbench/cache_folder.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/common_options.h"
 #include "tools/twinbench/doubts.h"
@@ -47,24 +47,6 @@ struct DiagnoseOptions {
   bool follow = false;
   double false_alarm_rate = 0.01;
 };
-
-std::string DefaultCache() {
-  if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
-    return std::string(folder) + "/twinbench";
-  if (const char* home = std::getenv("HOME"); home && *home) return std::string(home) + "/.cache/twinbench";
-  return "";
-}
-
-/// The folder of the calibrations, made if it is not there; nothing, with a note, where that cannot be.
-std::string CacheFolder(const std::string& asked) {
-  const std::string folder = asked.empty() ? DefaultCache() : asked;
-  if (folder.empty()) return "";
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!error && fs::is_directory(folder)) return folder;
-  fmt::print(stderr, "calibrations are not kept: {} cannot be made\n", folder);
-  return "";
-}
 
 void CheckExcluded(const std::vector<std::string>& excluded, const std::string& bench) {
   std::vector<std::string> names;
@@ -164,7 +146,7 @@ void AddDiagnose(CLI::App& app) {
   AddEstimator(*command, options->model, ",--model");
   command->add_option("--strike", options->excluded, "exclude an effect of the catalogue")
       ->allow_extra_args(false);
-  command->add_option("--cache", options->cache, "folder that keeps calibrated thresholds; else the user's cache");
+  AddCache(*command, options->cache);
   command->add_flag("--follow", options->follow, "watch a run while it is recorded and raise alarms");
   command->add_option("--false-alarm-rate", options->false_alarm_rate, "of --follow, per run")->capture_default_str();
   AnswerWith(*command, "diagnosis.json", [options](JsonAnswer& answer) { Diagnose(*options, answer); });

@@ -7,6 +7,7 @@
 #include <regex>
 
 #include "tools/twinbench/bench_means.h"
+#include "tools/twinbench/cache_folder.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/common_options.h"
 #include "tools/twinbench/investigated_bench.h"
@@ -25,7 +26,7 @@ namespace twinbench::tools {
 namespace {
 
 struct InvestigateOptions {
-  std::string scenario, twin, bench, goal, folder, budget = "2h";
+  std::string scenario, twin, bench, goal, folder, cache, budget = "2h";
   std::vector<std::string> overrides;
   double conclusive = 0.95;
   std::optional<double> faint;
@@ -88,7 +89,9 @@ void Investigate(const InvestigateOptions& options, LivePage& page, JsonAnswer& 
   how.faint = options.faint;
   const std::unique_ptr<InvestigatedBench> bench = Open(options, scenario, page);
   const auto alone = [&](const plan::NextRun& run) { return options.ask || bench->CanMakeAlone(run); };
-  const investigate::Means means = MeansOf(BenchOf(scenario), alone);
+  diagnose::DiagnoseOptions diagnosed;
+  diagnosed.cache_folder = CacheFolder(options.cache);
+  const investigate::Means means = MeansOf(BenchOf(scenario), alone, diagnosed);
   investigate::Laboratory laboratory;
   laboratory.measure = [&](const investigate::Step& step, const Scenario& asked) {
     HearPage();
@@ -131,6 +134,7 @@ void AddInvestigate(CLI::App& app) {
                       "one run would be found; 0: stop after the first run. 2 unless there is a goal")
       ->check(CLI::Range(0.0, 100.0));
   AddOutput(*command, options->folder, "the folder of the investigation, which goes on if it was begun,");
+  AddCache(*command, options->cache);
   AddSet(*command, options->overrides);
   command->add_flag("--ask", options->ask,
                     "confirm every run; also offers those for which somebody has to change the bench or its temperature");

@@ -81,12 +81,14 @@ def investigate(
     budget_min: float = 120.0,
     conclusive: float = 0.95,
     most_runs: int = 20,
+    cache_folder: str | os.PathLike = "",
 ) -> Investigation:
     """Measures, diagnoses and chooses the run that gives most information per minute, until the causes are resolved.
 
     scenario: what is believed. bench: a scenario with something hidden, whose twin is measured; or a function that runs the
     scenario that it is given and returns its readings, ``lambda asked: tb.drive(my_bench, asked).readings``. Of a function only runs are asked
     that nobody has to change the bench or its surroundings for. goal: "target.ez 0.1arcsec". budget_min: of the procedures' own clocks.
+    cache_folder: where calibrations of thresholds are kept; "" keeps none.
     """
     hidden = bench._core if isinstance(bench, Scenario) else None
     if hidden is None and not callable(bench):
@@ -95,6 +97,8 @@ def investigate(
     def measure(asked: _core.Scenario) -> _core.Readings:
         return bench(Scenario._of(asked))._core
 
+    function = None if hidden else measure
+    cache = os.fspath(cache_folder)
     return Investigation(
-        *_core.investigate(scenario._core, hidden, None if hidden else measure, goal, budget_min, conclusive, most_runs)
+        *_core.investigate(scenario._core, hidden, function, goal, budget_min, conclusive, most_runs, cache)
     )

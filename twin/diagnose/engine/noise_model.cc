@@ -60,7 +60,7 @@ Eigen::MatrixXd NoiseModel::Whiten(const LinearRun& run, const Eigen::MatrixXd& 
 }
 
 RunsByRow NoiseModel::Whiten(const LinearRun& run, const Eigen::MatrixXd& rows, RowsOf which) const {
-  const auto sigma_of = sigma(Eigen::seqN(which.first, rows.rows(), which.stride));
+  const Eigen::VectorXd sigma_of = sigma(Eigen::seqN(which.first, rows.rows(), which.stride));
   RunsByRow scaled = sigma_of.cwiseInverse().asDiagonal() * rows;
   if (memory.IsWhite()) return scaled;
   const Filters filters(run, *this);

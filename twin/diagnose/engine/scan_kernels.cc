@@ -10,17 +10,21 @@ namespace {
 
 constexpr Eigen::Index kRowsAtOnce = 8;  // so many rows of B stay in the first-level cache
 
-/// product += A'B of kRowsAtOnce rows: each sum is loaded and stored once for all of them.
+/// product += A'B of whole blocks of kRowsAtOnce rows: each sum is loaded and stored once a block.
 [[gnu::target_clones("avx512f", "avx2", "default")]] void AddRows(const double* __restrict A, Eigen::Index stride,
                                                                   Eigen::Index m, const double* __restrict B,
-                                                                  Eigen::Index columns, double* __restrict product) {
+                                                                  Eigen::Index rows, Eigen::Index columns,
+                                                                  double* __restrict product) {
   for (Eigen::Index j = 0; j < m; ++j) {
-    const double* const a = A + j * stride;
     double* const sum = product + j * columns;
-    for (Eigen::Index c = 0; c < columns; ++c) {
-      double more = 0.0;
-      for (Eigen::Index r = 0; r < kRowsAtOnce; ++r) more += a[r] * B[r * columns + c];
-      sum[c] += more;
+    for (Eigen::Index row = 0; row < rows; row += kRowsAtOnce) {
+      const double* const a = A + j * stride + row;
+      const double* const b = B + row * columns;
+      for (Eigen::Index c = 0; c < columns; ++c) {
+        double more = 0.0;
+        for (Eigen::Index r = 0; r < kRowsAtOnce; ++r) more += a[r] * b[r * columns + c];
+        sum[c] += more;
+      }
     }
   }
 }
@@ -57,16 +61,18 @@ constexpr Eigen::Index kRowsAtOnce = 8;  // so many rows of B stay in the first-
 }  // namespace
 
 RunsByRow TransposedProduct(const Eigen::Ref<const Eigen::MatrixXd>& A, const RunsByRow& B) {
+  constexpr Eigen::Index kFew = 16;  // so many columns of B stay in the cache whole, and A is read as it lies
   RunsByRow product = RunsByRow::Zero(A.cols(), B.cols());
   const Eigen::Index whole = A.rows() / kRowsAtOnce * kRowsAtOnce, rest = A.rows() - whole;
-  for (Eigen::Index row = 0; row < whole; row += kRowsAtOnce)
-    AddRows(A.data() + row, A.outerStride(), A.cols(), B.row(row).data(), B.cols(), product.data());
+  const Eigen::Index step = B.cols() <= kFew ? std::max(whole, kRowsAtOnce) : kRowsAtOnce;
+  for (Eigen::Index row = 0; row < whole; row += step)
+    AddRows(A.data() + row, A.outerStride(), A.cols(), B.row(row).data(), step, B.cols(), product.data());
   if (rest == 0) return product;
   Eigen::MatrixXd last_A = Eigen::MatrixXd::Zero(kRowsAtOnce, A.cols());
   RunsByRow last_B = RunsByRow::Zero(kRowsAtOnce, B.cols());
   last_A.topRows(rest) = A.bottomRows(rest);
   last_B.topRows(rest) = B.bottomRows(rest);
-  AddRows(last_A.data(), kRowsAtOnce, A.cols(), last_B.data(), B.cols(), product.data());
+  AddRows(last_A.data(), kRowsAtOnce, A.cols(), last_B.data(), kRowsAtOnce, B.cols(), product.data());
   return product;
 }
 

@@ -14,6 +14,11 @@ double Sign(double value) {
   return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0;
 }
 
+/// Of a pair of signals from that of amplitude 1 at the phase of this sine and cosine.
+double PhaseError_rad(double y, double x, double sine, double cosine) {
+  return std::atan2(y * cosine - x * sine, x * cosine + y * sine);
+}
+
 }  // namespace
 
 SignalContext ContextOf(const Schedule& s, const Eigen::VectorXd& device_rad, const DeviceSettings& device) {
@@ -141,11 +146,12 @@ Eigen::MatrixXd Relaxation(const SignalContext& context, double settles_over_rad
 }
 
 Eigen::VectorXd SignalError_rad(const Eigen::VectorXd& phase_rad, const SignalFaults& f) {
-  return phase_rad.unaryExpr([&f](double p) {
-    const double y = (1.0 + f.ratio) * std::sin(p + f.quadrature_rad) + f.offset_sin,
-                 x = std::cos(p) + f.offset_cos;
-    return std::remainder(std::atan2(std::clamp(y, -f.level, f.level), std::clamp(x, -f.level, f.level)) - p,
-                          units::turn);
+  const double in_phase = (1.0 + f.ratio) * std::cos(f.quadrature_rad),
+               across = (1.0 + f.ratio) * std::sin(f.quadrature_rad);
+  return phase_rad.unaryExpr([&](double p) {
+    const double sine = std::sin(p), cosine = std::cos(p);
+    const double y = in_phase * sine + across * cosine + f.offset_sin, x = cosine + f.offset_cos;
+    return PhaseError_rad(std::clamp(y, -f.level, f.level), std::clamp(x, -f.level, f.level), sine, cosine);
   });
 }
 
@@ -153,8 +159,7 @@ Eigen::VectorXd ClippingError_rad(const Eigen::VectorXd& phase_rad, double level
   return phase_rad.unaryExpr([level](double p) {
     const double sine = std::sin(p), cosine = std::cos(p);
     if (std::max(std::abs(sine), std::abs(cosine)) <= level) return 0.0;
-    const double y = std::clamp(sine, -level, level), x = std::clamp(cosine, -level, level);
-    return std::atan2(y * cosine - x * sine, x * cosine + y * sine);  // of the cut-off pair from the whole one
+    return PhaseError_rad(std::clamp(sine, -level, level), std::clamp(cosine, -level, level), sine, cosine);
   });
 }
 
