@@ -172,6 +172,8 @@ values = ['[]', '[{name = "eccentricity"}]']
   MakeTable("t.sqlite", {});
   EXPECT_EQ(Ask("t.sqlite", "SELECT verdict FROM trials WHERE trial = 0"), "none");
   EXPECT_THAT(Ask("t.sqlite", "SELECT verdict FROM trials WHERE trial = 1"), testing::AnyOf("named", "tie"));
+  EXPECT_EQ(Ask("t.sqlite", "SELECT trial FROM results WHERE name LIKE 'diagnosis.%.probability'"), "1");
+  EXPECT_EQ(Ask("t.sqlite", "SELECT abs(value - 0.01) < 4.0 * u FROM results WHERE name = 'diagnosis.eccentricity[0].amplitude_deg'"), "1");
 }
 
 TEST_F(CampaignProgram, WritesALineATrial) {

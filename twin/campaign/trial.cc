@@ -1,8 +1,11 @@
 #include "twin/campaign/trial.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <exception>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
@@ -43,6 +46,18 @@ std::vector<TrialResult> WithStandards(const Scenario& scenario, const std::func
   return results;
 }
 
+/// Which causes, how probable and how large, beside the other numbers; several of one effect and place by their order.
+void AddCauses(const std::vector<diagnose::Cause>& causes, TrialRow& row) {
+  std::map<std::string, int> told;
+  for (const diagnose::Cause& cause : causes) {
+    const std::string of_place = cause.where.empty() ? cause.effect : cause.effect + " " + cause.where;
+    const std::string name = fmt::format("diagnosis.{}[{}].", of_place, told[of_place]++);
+    row.results.push_back({name + "probability", cause.probability, kNaN, kNaN});
+    for (const diagnose::ParameterEstimate& p : cause.parameters)
+      row.results.push_back({name + p.name + (p.unit == "1" ? "" : "_" + p.unit), p.value / p.to_SI, p.u / p.to_SI, kNaN});
+  }
+}
+
 /// @param believed  By evaluation and diagnosis; what a study hides is in `scenario` alone.
 void CarryOut(const Study& study, const Scenario& scenario, const Scenario& believed, TrialRow& row) {
   const Bench& bench = BenchOf(scenario);
@@ -62,9 +77,12 @@ void CarryOut(const Study& study, const Scenario& scenario, const Scenario& beli
     const std::vector<TrialResult> scored = study.standards ? WithStandards(believed, score) : ResultsOf(score(believed));
     row.results.insert(row.results.end(), scored.begin(), scored.end());
   }
+  if (study.diagnosis) {
+    const diagnose::Diagnosis found = diagnose::Diagnose(readings, believed).diagnosis;
+    row.verdict = diagnose::VerdictName(found.verdict);
+    AddCauses(found.causes, row);
+  }
   std::ranges::stable_sort(row.results, {}, &TrialResult::name);
-  if (study.diagnosis)
-    row.verdict = diagnose::VerdictName(diagnose::Diagnose(readings, believed).diagnosis.verdict);
 }
 
 Scenario Drawn(const Study& study, Scenario scenario, std::int64_t trial) {
