@@ -137,7 +137,7 @@ TEST_F(ResumedRun, BehindReadingsOfTwoStatesIsRefused) {
   Process run(At(""), Measure("jumped"));
   run.Await(4);
   run.Kill();
-  RunRecord::Continue(At("jumped"))->AttemptFailed(40, {}, "implausible", std::string("measure again, ") + procedure::kInAnotherRun);
+  RunRecord::Continue(At("jumped"))->AttemptFailed(40, {}, "changed", "measure again, in another run");
   EXPECT_THAT(Refusal(Measure("jumped")), testing::HasSubstr("measure again, in another run"));
 }
 

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "twin/core/device_fault.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
-#include "twin/procedure/attempts.h"
 
 namespace twinbench::tools {
 namespace {
@@ -122,7 +122,7 @@ void TakeUp(const BegunRun& begun, const std::string& identity) {
   if (source != identity)
     throw BenchError(fmt::format("the run was begun on \"{}\" and this is \"{}\"", source, identity));
   for (const FailedAttempt& failed : begun.record->FailedAttempts())
-    if (failed.text.find(procedure::kInAnotherRun) != std::string::npos)
+    if (failed.fault == FaultName(FaultKind::kChanged))
       throw InputError("--resume", failed.text, "another folder, for a run without the readings that are kept in this one");
   const int kept = static_cast<int>(begun.readings.size());
   const Time last = begun.readings.empty() ? Time{} : begun.readings.back().time;

@@ -6,7 +6,6 @@
 
 #include "twin/core/device_fault.h"
 #include "twin/core/state_unknown.h"
-#include "twin/procedure/attempts.h"
 
 namespace twinbench::tools {
 namespace {
@@ -23,7 +22,8 @@ std::string Reason(const std::exception& why) {
 void TellStopped(const std::exception& why, const std::string& what, const std::function<procedure::Standstill()>& stop) {
   const auto* stopped = dynamic_cast<const procedure::StoppedRun*>(&why);
   const procedure::Standstill stands = stopped ? stopped->stands() : stop();
-  const bool goes_on = std::string(why.what()).find(procedure::kInAnotherRun) == std::string::npos;
+  const auto* fault = dynamic_cast<const DeviceFault*>(&why);
+  const bool goes_on = !fault || fault->kind() != FaultKind::kChanged;
   const std::string kept = std::string("every reading so far is kept") + (goes_on ? ". Go on with --resume" : "");
   if (!stands.is_sure)
     throw StateUnknown(fmt::format("{}. STATE UNKNOWN - USE THE EMERGENCY STOP. WHETHER THE {} STAND STILL IS NOT KNOWN: "

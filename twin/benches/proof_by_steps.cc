@@ -118,7 +118,7 @@ std::function<void(const Reading&)> WayOf(const std::function<void(const Reading
     try {
       proof(reading);
     } catch (const DeviceFault& fault) {
-      if (fault.kind() != FaultKind::kMoved && fault.kind() != FaultKind::kImplausible) throw;
+      if (fault.kind() != FaultKind::kMoved && fault.kind() != FaultKind::kImplausible && fault.kind() != FaultKind::kChanged) throw;
     }
   };
 }

@@ -60,7 +60,7 @@ struct BenchFormat {
   std::optional<TableNames> tables;    // whose errors a file may give; nothing: it has no such tables
   bool has_fixtures = false;           // things may stand in its light: [[fixture]]
   std::vector<ReadingColumn> columns;  // of readings.csv, in the order of writing
-  void (*agree_on_signs)(std::vector<Reading>&) = nullptr;  // of a file that was read; null: signs are fixed
+  void (*into_frame)(std::vector<Reading>&) = nullptr;  // signs and origin that a file leaves open; null: they are fixed
   std::vector<DesiredColumn> desired;
   std::optional<ComparedColumns> compared;
   /// The largest size that a converter can give in a column [SI]; 0 where none is known. Null: of no column.

@@ -25,11 +25,12 @@ enum class FaultKind {
   kMoved,         // it did not stand at its stop while a reading was taken
   kLimit,         // outside the limits, or on a switch
   kImplausible,   // an angle or voltage that cannot be
+  kChanged,       // the bench is another than it was for readings that are kept: no run goes on behind them
   kClock,         // clocks of computer and device part
   kDisk,          // the record cannot be kept safe
   kStopped        // the operator said stop
 };
-inline constexpr int kFaultKinds = 20;
+inline constexpr int kFaultKinds = 21;
 const char* FaultName(FaultKind kind);  // "timeout", "dropped", "channel_slip", ...
 
 /// A device failed in a way that has a name. What to do about it is the procedure's business.

@@ -185,7 +185,7 @@ std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name,
     CheckOrder(table, row, reading, readings.empty() ? Time::min() : readings.back().time, numbers);
     readings.push_back(reading);
   }
-  if (format.agree_on_signs) format.agree_on_signs(readings);
+  if (format.into_frame) format.into_frame(readings);
   return readings;
 }
 

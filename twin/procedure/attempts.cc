@@ -23,6 +23,7 @@ bool IsWorthAnotherAttempt(FaultKind kind) {
     case FaultKind::kFollowing:
     case FaultKind::kLimit:
     case FaultKind::kImplausible:
+    case FaultKind::kChanged:
     case FaultKind::kDisk:
     case FaultKind::kStopped:
       return false;

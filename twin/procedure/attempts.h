@@ -5,9 +5,6 @@
 
 namespace twinbench::procedure {
 
-/// In the text of a fault that was found behind readings of two states: no run goes on behind them.
-inline constexpr const char* kInAnotherRun = "in another run";
-
 /// Whether the same again may end otherwise without a hand at the bench.
 bool IsWorthAnotherAttempt(FaultKind kind);
 

@@ -8,7 +8,6 @@
 
 #include "twin/core/device_fault.h"
 #include "twin/core/distributions.h"
-#include "twin/procedure/attempts.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -93,13 +92,13 @@ void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& read
       const double scatter = std::sqrt((one.squares + other.squares) / static_cast<double>(all - 2));
       if (!(jump > std::max(AllowedAtPlace(claim), kTimesScatter * scatter))) return;
       throw DeviceFault(
-          FaultKind::kImplausible, "instruments",
+          FaultKind::kChanged, "instruments",
           fmt::format(
               "show {} by {:.4g} (SI) otherwise against the pass before at the places of readings {} to {} than at "
               "the others: a zero, a mirror or the mounting jumped, in this pass or the one before; measure "
               "mounting "
-              "{} again, {}",
-              claim.column.name, jump, repeats[first].reading, repeats[end - 1].reading, reading.setup, kInAnotherRun));
+              "{} again, in another run",
+              claim.column.name, jump, repeats[first].reading, repeats[end - 1].reading, reading.setup));
     };
     for (std::size_t first = kFewest; first + kFewest <= all; ++first) require(first, all);
     if (all < kFewestAboutThatCameBack) continue;
@@ -125,11 +124,11 @@ void RequireNotReversed(const ClaimedColumn& a, const ClaimedColumn* less, const
   const double noise = std::sqrt(2.0 * kPlaces) * std::hypot(a.noise, less ? less->noise : 0.0);
   if (!(std::sqrt(differs) > std::max(kTimes * std::sqrt(adds), kTimesNoise * noise))) return;
   throw DeviceFault(
-      FaultKind::kImplausible, "instruments",
+      FaultKind::kChanged, "instruments",
       fmt::format(
           "show {} at the places of the last {} readings the other way round than in the pass before: was a wire "
-          "exchanged or its sign, in this pass or that one? Measure mounting {} again, {}",
-          less ? a.column.name + " less " + less->column.name : a.column.name, kPlaces, reading.setup, kInAnotherRun));
+          "exchanged or its sign, in this pass or that one? Measure mounting {} again, in another run",
+          less ? a.column.name + " less " + less->column.name : a.column.name, kPlaces, reading.setup));
 }
 
 void Closing::Took(const Reading& reading) {
@@ -168,12 +167,12 @@ void Closing::Require(const Reading& again) const {
     const double scatter = ScatterBefore(RepeatsOf(left, taken_.back(), taken_));
     if (!(claim.noise > 0.0) || !(off > std::max(AllowedAtPlace(claim), kTimesScatter * scatter))) continue;
     throw DeviceFault(
-        FaultKind::kImplausible, "instruments",
+        FaultKind::kChanged, "instruments",
         fmt::format("showed {} = {} at reading {} and show {} at its place, come to from the same side, behind the "
                     "passes: a zero, a mirror or the mounting jumped, or it had not come to rest; measure mounting "
-                    "{} again, {}",
+                    "{} again, in another run",
                     claim.column.name, claim.column.print(then), then.reading, claim.column.print(again),
-                    then.setup, kInAnotherRun));
+                    then.setup));
   }
 }
 

@@ -10,7 +10,7 @@ namespace twinbench::procedure {
 
 /// Of a reading at a place where the pass before in its set-up has one, too, and all between them.
 /// @param kept  All before it.
-/// @throws DeviceFault kImplausible where what a column shows at places that were come to one behind the other
+/// @throws DeviceFault kChanged where what a column shows at places that were come to one behind the other
 /// differs
 ///         from pass to pass by another amount than at the others: a zero, a mirror or a mounting has jumped,
 ///         perhaps there and back. What differs by the same everywhere may be the reversal of what is measured.
@@ -18,7 +18,7 @@ void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& read
                    const std::vector<Reading>& kept);
 
 /// Of the same readings and a column, or one less another that shows nearly the same: two spots of one grating.
-/// @throws DeviceFault kImplausible where at the last six places it is what it was in the pass before, but the
+/// @throws DeviceFault kChanged where at the last six places it is what it was in the pass before, but the
 ///         other way round, by ten times the noise: a sign is another, or one was plugged in where the other was.
 ///         What is the same everywhere counts for nothing.
 void RequireNotReversed(const ClaimedColumn& a, const ClaimedColumn* less, const Reading& reading,
@@ -39,7 +39,7 @@ class Closing {
   /// The reading that is to be shown again now; none: nullptr.
   const Reading* Asks() const;
   /// @param again  Shown where the last was taken, come to from the side of Asks().
-  /// @throws DeviceFault kImplausible where a column shows something else than then: by more than RequireAsBefore
+  /// @throws DeviceFault kChanged where a column shows something else than then: by more than RequireAsBefore
   /// allows and by eight times what
   ///         the differences from pass to pass scatter (median, about their median), which a steady drift makes,
   ///         too.

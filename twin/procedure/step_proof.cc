@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "twin/core/device_fault.h"
-#include "twin/procedure/attempts.h"
 #include "twin/procedure/machine_watch.h"
 #include "twin/procedure/watch.h"
 #include "twin/procedure/whereabouts.h"
@@ -106,11 +105,11 @@ void StepProof::RequireSteady(const std::vector<ColumnInStep>& columns, double s
     const double last = all.tail(kLast).mean(), off = std::abs(last - before.mean());
     if (!(off > std::max(allowed, stands ? kMuchWhereItStands : kMuchWhereItGoes))) continue;
     throw DeviceFault(
-        FaultKind::kImplausible, "instruments",
+        FaultKind::kChanged, "instruments",
         fmt::format("beside the last {} readings {} went {:.4g} of a short step, and {:.4g} beside those "
                     "before: has a gain or a roll changed? What was measured since is to be measured "
-                    "again, {}",
-                    kLast, column.name, last, before.mean(), kInAnotherRun));
+                    "again, in another run",
+                    kLast, column.name, last, before.mean()));
   }
 }
 

@@ -31,7 +31,7 @@ class StepProof {
   explicit StepProof(bool learns) : learns_(learns) {}
   /// @throws DeviceFault kMoved where a column did not what it should, or is not what it was behind coming back: by
   /// a quarter of the
-  ///         step that shows most, or the other way. kImplausible where the last four went otherwise than all
+  ///         step that shows most, or the other way. kChanged where the last four went otherwise than all
   ///         before.
   void Require(std::vector<ColumnInStep> columns);
 

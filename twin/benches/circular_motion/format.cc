@@ -12,7 +12,7 @@ const BenchFormat& Format() {
     f.add_keys = AddKeys;
     f.check_together = CheckTogether;
     f.columns = Columns();
-    f.agree_on_signs = AboutItsCentre;  // where a circle stands is no more its own than a sign
+    f.into_frame = AboutItsCentre;
     // Of the bar and its encoder, or of the two axes of the grid: the deviation from the commanded point.
     f.channels = f.points = {"radial", "tangential"};
     f.angles = {"commanded"};

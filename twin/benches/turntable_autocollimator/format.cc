@@ -26,7 +26,7 @@ const BenchFormat& Format() {
     f.check_together = CheckTogether;
     f.tables = TableNames{"turntable", "multitooth", TableOf};
     f.columns = Columns();
-    f.agree_on_signs = CountBothTheSameWay;
+    f.into_frame = CountBothTheSameWay;
     f.channels = {"x", "y"};
     f.points = {"x", "y"};
     f.angles = {"turntable", "multitooth"};
