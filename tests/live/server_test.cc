@@ -144,6 +144,19 @@ TEST_F(Live, APortThatIsTakenIsRefused) {
   EXPECT_THROW((Server{{server_.port(), kMarkup, [] {}}}), InputError);
 }
 
+TEST_F(Live, HearsAStopHoweverManyPagesListen) {
+  std::vector<std::unique_ptr<Client>> pages;
+  int listening = 0;
+  for (int k = 0; k < 60; ++k) {
+    pages.push_back(std::make_unique<Client>(server_.port()));
+    pages.back()->Say(Asking("GET", Target("/events")));
+    listening += pages.back()->HearUntil("\r\n\r\n").starts_with("HTTP/1.1 200") ? 1 : 0;
+  }
+  EXPECT_EQ(listening, 40);
+  EXPECT_THAT(Ask(Asking("POST", Target("/stop"))), StartsWith("HTTP/1.1 202"));
+  EXPECT_EQ(stops_, 1);
+}
+
 /// Strangers who say half a request, pages that listen and never read, and the one who must be heard.
 TEST_F(Live, TwoHundredConnectionsDelayNeitherReadingsNorAStop) {
   server_.Begin("{}");

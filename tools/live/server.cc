@@ -39,6 +39,7 @@ using std::chrono::seconds;
 constexpr std::uint32_t kHeader_B = 8 * 1024;  // of a request
 constexpr std::uint64_t kBody_B = 1024;        // no request has one
 constexpr std::size_t kConnections = 48;
+constexpr std::size_t kListeners = 40;         // of them: a stop always finds a place
 constexpr auto kRequestWithin = seconds(5);
 constexpr auto kIdle = seconds(30);          // between two requests of a connection that has shown the token
 constexpr auto kTakenWithin = seconds(10);   // a piece of an answer by the browser
@@ -71,6 +72,7 @@ struct Shared {
   std::function<void()> stop;
   std::function<void(bool)> pause;
   Feed feed{kKept};
+  std::size_t listeners = 0;
 };
 
 template <class Body>
@@ -109,6 +111,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
   void Close() {
+    if (listens_ && !closed_) --shared_.listeners;
     closed_ = true;
     beast::error_code ignored;
     stream_.socket().shutdown(tcp::socket::shutdown_both, ignored);
@@ -117,6 +120,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   bool closed() const { return closed_; }
   bool knows_token() const { return knows_token_; }
+  bool listens() const { return listens_; }
   bool IsToldAll() const { return closed_ || !listens_ || (!writes_ && next_ >= shared_.feed.end()); }
 
  private:
@@ -173,6 +177,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// The answer has no end: events follow it.
   void Listen(std::uint64_t next) {
+    if (shared_.listeners >= kListeners) return Refuse({503, "as many pages as there may be are open", true}, true);
+    ++shared_.listeners;
     next_ = next;
     http::response<http::empty_body> head{http::status::ok, 11};
     SetHeaders(head, shared_);
@@ -269,14 +275,16 @@ struct Server::State {
     });
   }
 
-  /// Strangers make room, the oldest first; whoever has shown the token is never sent away.
+  /// Strangers make room, the oldest first, then whoever has shown the token and rests between two requests. A page
+  /// that listens is never sent away.
   void Welcome(tcp::socket socket) {
     connections.remove_if([](const auto& c) { return c->closed(); });
     if (connections.size() >= kConnections) {
-      const auto stranger = std::ranges::find_if(connections, [](const auto& c) { return !c->knows_token(); });
-      if (stranger == connections.end()) return;
-      (*stranger)->Close();
-      connections.erase(stranger);
+      auto leaves = std::ranges::find_if(connections, [](const auto& c) { return !c->knows_token(); });
+      if (leaves == connections.end())
+        leaves = std::ranges::find_if(connections, [](const auto& c) { return !c->listens(); });
+      (*leaves)->Close();
+      connections.erase(leaves);
     }
     connections.push_back(std::make_shared<Connection>(std::move(socket), shared));
     connections.back()->Read();
