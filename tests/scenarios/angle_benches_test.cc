@@ -95,6 +95,14 @@ TEST(TurntableAutocollimator, ErrsFarLessThanEquation5AtItsPolesAndIsCompensated
   EXPECT_LE(largest_after, 2.0) << "of 144 checks";
 }
 
+/// One shift of the teeth counts them as the turntable's, whatever their certificate says.
+TEST(TurntableAutocollimator, KnowsItsTeethNoBetterThanItsScenarioSaysTheyErr) {
+  for (const char* errs : {"multitooth.tooth_rms_arcsec=2", "multitooth.random.ez_arcsec=2"}) {
+    const test::BenchRun run = Turntable("turntable_autocollimator.toml", {errs});
+    EXPECT_LT(MeanChi2(Analysed(run).separation->turntable, run.truth.at("turntable")), 3.0) << errs;
+  }
+}
+
 TEST(TurntableShifts, SeparateTurntableAndTeethWithinTheirUncertainties) {
   const test::BenchRun run = Turntable("turntable_shifts.toml");
   const TurntableAnalysis a = Analysed(run);
@@ -160,9 +168,10 @@ TEST(HobTransmission, FindsTheEncoderOverTenSeedsAndAgreesAtRestToTheNoiseWithAP
   }
 }
 
-/// Steps of the ring that are alike at every visit of a stop.
+/// Steps of both rings that are alike at every visit of a stop.
 TEST(HobTransmission, KnowsItsEncoderAtRestNoBetterThanInItsSteps) {
-  for (const char* steps : {"table_encoder.interpolation=7", "table_encoder.interpolation=50"}) {
+  for (const char* steps : {"table_encoder.interpolation=1", "table_encoder.interpolation=7",
+                            "table_encoder.interpolation=50", "hob_encoder.lines=100"}) {
     const test::BenchRun run = Machine("hob_transmission.toml", {steps, "mechanics.fidelity=kinematic"});
     const auto scored = benches::hob::ScoreRun(run.scenario, run.readings, run.truth, Estimator::kRigorous).json;
     const double chi2 = scored.at("interferometer at rest").at("amplitude").at("mean_chi2").get<double>();

@@ -47,7 +47,7 @@ std::vector<Claim> OfATurntable(const TurntableSettings& s) {
   const TurntableProcedureSettings& p = s.turntable_procedure;
   const double readings = static_cast<double>(p.passes.size()) * p.SetUps();
   return {
-      {"turntable", std::hypot(s.multitooth.u_tooth_rad, s.ReadingNoise_rad() / std::sqrt(readings)),
+      {"turntable", std::hypot(s.Tooth_rad(), s.ReadingNoise_rad() / std::sqrt(readings)),
        "multitooth.u_tooth_arcsec with what the turntable leaves added in squares: the results' u grows with it"}};
 }
 

@@ -19,7 +19,8 @@ constexpr int kFewestFaces = 3;
 void AddMultitooth(Keys& keys, MultitoothSettings& s) {
   Table t(keys, "multitooth");
   t.Add("teeth", kPure, {3, 100000}, &s.teeth, "per turn");
-  t.Add("tooth_rms", kArcsec, UpTo(3600), &s.tooth_rms_rad, "of errors that differ from tooth to tooth");
+  t.Add("tooth_rms", kArcsec, UpTo(3600), &s.tooth_rms_rad,
+        "of errors that differ from tooth to tooth; u is no less");
   t.Add("u_tooth", kArcsec, UpTo(3600), &s.u_tooth_rad, "stated standard uncertainty of a tooth");
   t.Add("index_time", kSecond, Positive(3600), &s.index_time_s, "to lift it, turn it and seat it again");
 }

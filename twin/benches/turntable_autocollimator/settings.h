@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -106,6 +107,12 @@ struct TurntableSettings {
   /// Of one reading.
   double ReadingNoise_rad() const { return autocollimator.noise_rad / std::sqrt(collimator.frames); }
   bool HasPolygon() const { return polygon.faces > 0; }
+  /// Standard uncertainty of a tooth: no less than what teeth are said to err at random.
+  double Tooth_rad() const {
+    return std::max(multitooth.u_tooth_rad,
+                    std::hypot(multitooth.tooth_rms_rad,
+                               multitooth_table.random_rms[static_cast<std::size_t>(Component::kEz)]));
+  }
   /// Places, a turn, to which what stands on the turntable turns its mirror: teeth or faces.
   int Seats() const { return HasPolygon() ? polygon.faces : multitooth.teeth; }
   double Pitch_rad() const { return units::turn / Seats(); }

@@ -106,21 +106,31 @@ HarmonicSeries WithCalibrator(HarmonicSeries series, double u_calibrator_rad) {
   return series;
 }
 
-/// Adds what the table encoder's steps repeat whenever a stop is read: the stops are the same in every turn.
-void AddRoundingAtStops(const std::vector<HobSample>& at_rest, const RingEncoderSettings& ring, HobAnalysis& analysis) {
-  std::vector<double> seen_rad;
+/// Adds what the steps of both encoders repeat whenever a stop is read: the stops are the same in every turn. Where
+/// an encoder stood between its steps, the other one and the interferometer say.
+void AddRoundingAtStops(const std::vector<HobSample>& at_rest, const TransmissionOptions& options,
+                        const RingEncoderSettings& ring, HobAnalysis& analysis) {
+  Eigen::VectorXd th_rad(std::ssize(at_rest)), table_rad = th_rad, hob_rad = th_rad;
+  Eigen::Index rows = 0;
   for (const HobSample& s : at_rest) {
     if (!std::isfinite(s.interferometer_rad)) continue;
-    double shown_rad = s.interferometer_rad;  // and what the ring errs there, as its heads have told
+    const double at_rad =
+        s.table_encoder_rad - (options.zero == EncoderZero::kTableOrigin ? s.head_rad : 0.0);  // of the ring
+    double deviation_rad = s.interferometer_rad;  // and what the ring errs there, as its heads have told
     for (int k = 1; k <= analysis.encoder.Highest(); ++k) {
       const Complex c = analysis.encoder.At(k).value;
-      if (std::isfinite(c.real())) shown_rad += (c * std::polar(1.0, k * (s.interferometer_rad - s.head_rad))).real();
+      if (std::isfinite(c.real())) deviation_rad += (c * std::polar(1.0, k * at_rad)).real();
     }
-    seen_rad.push_back(shown_rad);
+    th_rad[rows] = at_rad;
+    table_rad[rows] = options.table_turns_per_hob_turn * s.hob_encoder_rad + deviation_rad;
+    hob_rad[rows++] = s.table_encoder_rad - deviation_rad;
   }
-  const Eigen::Map<const Eigen::VectorXd> place_rad(seen_rad.data(), std::ssize(seen_rad));
-  const Eigen::MatrixXd waves = RoundingWaves(place_rad, units::turn / ring.lines / ring.interpolation, 0.0);
-  analysis.encoder_rounding_rad2 = AddRounding(place_rad, waves, analysis.encoder_by_interferometer);
+  const Eigen::MatrixXd of_table =
+      RoundingWaves(table_rad.head(rows), units::turn / ring.lines / ring.interpolation, 0.0);
+  const Eigen::MatrixXd of_hob = RoundingWaves(hob_rad.head(rows), options.hob_step_rad, 0.0);
+  Eigen::MatrixXd waves(rows, of_table.cols() + of_hob.cols());
+  waves << of_table, of_hob;
+  analysis.encoder_rounding_rad2 = AddRounding(th_rad.head(rows), waves, analysis.encoder_by_interferometer);
 }
 
 void AddDirections(const std::vector<HobSample>& samples, const TransmissionOptions& options,
@@ -145,7 +155,7 @@ void AddEncoder(const std::vector<HobSample>& samples, const TransmissionOptions
   const double u_calibrator_rad = own.interferometer.u_calibrator_rad;
   std::vector<PositionError> seen = MeasurePositions(samples, Uncounted(options), Signal::kEncodersMinusInterferometer);
   analysis.encoder_by_interferometer = WithCalibrator(EncoderByInterferometer(seen), u_calibrator_rad);
-  if (analysis.is_interferometer_at_rest) AddRoundingAtStops(samples, own.table_encoder, analysis);
+  if (analysis.is_interferometer_at_rest) AddRoundingAtStops(samples, options, own.table_encoder, analysis);
   analysis.by_interferometer = seen;
   analysis.encoder_against_interferometer =
       CompareEncoder(*analysis.separation, analysis.encoder_by_interferometer, orders);

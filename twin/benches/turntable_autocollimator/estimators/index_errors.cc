@@ -73,7 +73,7 @@ IndexErrors TurntableIndexErrors(const Scenario& scenario, const std::vector<Rea
   }
   IndexErrors errors = MeansByPlace(values);
   errors.table = "turntable";
-  errors.u_place_rad = own.multitooth.u_tooth_rad;
+  errors.u_place_rad = own.Tooth_rad();
   errors.u_between_rad = RollError_rad(analysis.separation->roll, tilts);
   errors.commanded = own.turntable.compensation;
   return errors;

@@ -100,7 +100,7 @@ void AddCheck(const std::vector<Reading>& readings, const Scenario& scenario, Tu
   const IndexingSeparation& separation = *analysis.separation;
   // The published way knows no roll; its check was done with instruments levelled with care.
   analysis.check = CheckModel(*analysis.model, stops, separation.roll,
-                              {separation.noise.u_x_rad, TurntableOf(scenario).multitooth.u_tooth_rad});
+                              {separation.noise.u_x_rad, TurntableOf(scenario).Tooth_rad()});
 }
 
 }  // namespace
@@ -135,7 +135,7 @@ TurntableAnalysis AnalyseTurntable(const std::vector<Reading>& as_read, const Sc
   const int positions = TurntableOf(scenario).turntable_procedure.positions;
   IndexingOptions options;
   options.positions = positions;
-  options.u_multitooth_rad = TurntableOf(scenario).multitooth.u_tooth_rad;
+  options.u_multitooth_rad = TurntableOf(scenario).Tooth_rad();
   analysis.separation = SeparateIndexing(stops, options);
   const StopGrid grid = FindGrid(stops, positions);
   if (const auto pair = PairForEquation5(grid, Collect(stops, grid)))
