@@ -200,7 +200,9 @@ Calibration Calibrate(const std::vector<Reading>& readings, const BenchGeometry&
   if (sweep.points.size() >= 3) {
     calibration = Summary(sweep, FitSweep(sweep, geometry));
   } else {
-    calibration.notes.push_back("no calibration readings: gains are 1 ± 2 %, rolls 0 ± 20 mrad");
+    calibration.notes.push_back(
+        "no calibration readings: gains are 1 ± 2 %, rolls 0 ± 20 mrad; both y channels reversed would fit as "
+        "well, and ex, ey and dy hold as the wires do");
   }
   calibration.published_l1_m = PublishedDistance(readings, geometry);
   return calibration;
