@@ -1,16 +1,11 @@
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <map>
-#include <ostream>
-
 #include "hw_bridge/ad/block_checks.h"
 #include "hw_bridge/ad/lost_word.h"
 #include "hw_bridge/ad/negotiation.h"
 #include "tests/core/input_error.h"
 #include "tests/support/served_run.h"
 #include "tests/support/twin_run.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/sim/ad_sampler.h"
 
 /// Faults of real benches, each struck on a served twin while the real procedure drives it through the real

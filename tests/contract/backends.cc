@@ -1,14 +1,9 @@
 #include <gtest/gtest.h>
 
-#include "hw_bridge/open_bench.h"
 #include "hw_bridge/replay/replay_bench.h"
 #include "tests/contract/rotary_bench.h"
 #include "tests/core/input_error.h"
 #include "tests/support/served_run.h"
-#include "twin/benches/names.h"
-#include "twin/benches/rotary_4dof/settings.h"
-#include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/core/run_record.h"
 
 namespace twinbench::test {
 namespace {

@@ -1,11 +1,5 @@
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <ostream>
-#include <string>
-#include <vector>
-
 #include "twin/core/devices.h"
 #include "twin/core/scenario.h"
 

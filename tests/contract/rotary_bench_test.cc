@@ -1,14 +1,8 @@
 #include "tests/contract/rotary_bench.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
 
 #include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
-#include "twin/core/errors.h"
 
 /// The contract of twin/core/devices.h. Every backend of a rotary bench goes through the same tests; a new one adds
 /// a line to Backends() in backends.cc.

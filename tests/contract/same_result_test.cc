@@ -1,9 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <ostream>
-
 #include "tests/support/served_run.h"
-#include "twin/benches/rotary_4dof/settings.h"
 
 /// Same scenario, same seed, same result, whatever the bench is reached by.
 namespace twinbench::test {
@@ -35,13 +32,6 @@ TEST_P(SameResult, ThroughTheRealBackendsAsInThisProgram) {
     EXPECT_EQ(run.Readings(), InProcess(scenario)) << fidelity;
     EXPECT_TRUE(run.log.attempts.empty());
   }
-}
-
-TEST_P(SameResult, ASecondTimeOnTheSameServer) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  const std::string first = RunServed(served, scenario, options_).Readings();
-  EXPECT_EQ(RunServed(served, scenario, options_).Readings(), first);
 }
 
 TEST_P(SameResult, WithServosThatSettleSlowly) {

@@ -1,24 +1,28 @@
 #pragma once
 
-#include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <string>
 
 #include "twin/core/errors.h"
 
 namespace twinbench {
 
-/// @return the message of the InputError that `action` throws, or a text that no test expects.
-inline std::string MessageOf(const std::function<void()>& action) {
+/// @return the message of the error that `action` throws, or a text that no test expects.
+template <class Error = InputError>
+std::string MessageOf(const std::function<void()>& action) {
   try {
     action();
-  } catch (const InputError& error) {
+  } catch (const Error& error) {
     return error.what();
   }
-  return "(no InputError was thrown)";
+  return "(no such error was thrown)";
+}
+
+inline std::string Contents(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
 }
 
 /// Where nobody waits for a disk, if there is such a place and TMPDIR names no other: a record is flushed behind

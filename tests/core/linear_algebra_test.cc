@@ -1,10 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "twin/core/linear_algebra.h"
 

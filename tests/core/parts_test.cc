@@ -1,8 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cmath>
-#include <limits>
 #include <random>
 
 #include "tests/core/input_error.h"
@@ -12,7 +9,6 @@
 #include "twin/core/happened_once.h"
 #include "twin/core/number_text.h"
 #include "twin/core/toml_bounds.h"
-#include "twin/core/units.h"
 
 namespace twinbench {
 namespace {

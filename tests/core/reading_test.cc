@@ -1,17 +1,9 @@
-#include "twin/core/reading.h"
-
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <random>
-#include <sstream>
 
 #include "tests/core/any_reading.h"
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
 #include "twin/benches/names.h"
 #include "twin/core/bench_format.h"
-#include "twin/core/reading_column.h"
 #include "twin/core/units.h"
 
 namespace twinbench {

@@ -2,15 +2,11 @@
 
 #include <gmock/gmock.h>
 
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "tests/support/kept_text.h"
 
 namespace twinbench {
 
-/// A text that must be refused, and the line of its file that is to be named.
+/// A text that must be refused, and the line of its file that is to be named (0: none).
 struct Refused {
   int line;
   std::string text;
@@ -22,7 +18,8 @@ inline void ExpectRefused(const std::string& file, const std::function<std::stri
                           const std::vector<Refused>& cases) {
   for (const Refused& refused : cases) {
     const std::string message = message_of(refused.text);
-    EXPECT_THAT(message, testing::StartsWith(file + ":" + std::to_string(refused.line) + ": ")) << refused.text;
+    const std::string line = refused.line > 0 ? std::to_string(refused.line) + ": " : "";
+    EXPECT_THAT(message, testing::StartsWith(file + ":" + line)) << refused.text;
     EXPECT_KEPT(message);
   }
 }

@@ -2,16 +2,7 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <signal.h>
 #include <sqlite3.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <bit>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <map>
 
 #include "tests/core/any_reading.h"
 #include "tests/core/input_error.h"

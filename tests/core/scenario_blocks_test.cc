@@ -1,15 +1,10 @@
-#include <gmock/gmock.h>
-
-#include <cmath>
 
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
 #include "twin/core/reading.h"
-#include "twin/core/scenario.h"
 #include "twin/core/scenario_uncertainty.h"
 #include "twin/core/schema_table.h"
 #include "twin/core/toml_reader.h"
-#include "twin/core/units.h"
 
 /// [[effect]] blocks named "signal": structure that no cause of the catalogue has.
 namespace twinbench {

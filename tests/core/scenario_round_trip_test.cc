@@ -1,9 +1,6 @@
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <cmath>
 #include <random>
-#include <set>
 
 #include "tests/core/input_error.h"
 #include "twin/benches/circular_motion/settings.h"
@@ -12,10 +9,6 @@
 #include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
-#include "twin/core/bench_format.h"
-#include "twin/core/effect_catalogue.h"
-#include "twin/core/reading.h"
-#include "twin/core/scenario.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/core/signal_effect.h"
 

@@ -1,21 +1,13 @@
-#include "twin/core/scenario.h"
 
-#include <gmock/gmock.h>
-
-#include <cmath>
 #include <fmt/ranges.h>
-#include <set>
 
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
-#include "tests/support/kept_text.h"
 #include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/bench_format.h"
-#include "twin/core/effect_catalogue.h"
 #include "twin/core/nearest_key.h"
-#include "twin/core/units.h"
 
 namespace twinbench {
 namespace {

@@ -3,10 +3,7 @@
 #include <Random123/philox.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <vector>
 
 #include "twin/core/stream_kernel_math.h"
 

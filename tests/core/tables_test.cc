@@ -1,9 +1,4 @@
-#include <gtest/gtest.h>
-
 #include <random>
-#include <sstream>
-#include <utility>
-#include <vector>
 
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"

@@ -2,20 +2,16 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <optional>
-
-#include "hw_bridge/ad/ad_source.h"
 #include "hw_bridge/ad/negotiation.h"
 #include "tests/hw_ad/blocks.h"
+#include "tests/support/faults.h"
 #include "tests/support/kept_text.h"
 #include "twin/core/device_fault.h"
-#include "twin/core/errors.h"
 
 namespace twinbench::hw {
 namespace {
 
-using test::ExpectSameBlock, test::kNoise_V;
+using test::kNoise_V;
 using ::testing::AllOf, ::testing::HasSubstr;
 
 /// A card whose answers and blocks a test writes down.
@@ -30,7 +26,6 @@ class ScriptedSource : public AdSource {
     std::string serial = "S1";
     std::optional<CalibrationPolynomial> calibration;
     AdBlock block;
-    std::optional<FaultKind> fault;
   };
   explicit ScriptedSource(Script& script) : script_(script) {}
 
@@ -50,10 +45,7 @@ class ScriptedSource : public AdSource {
     }
     return n;
   }
-  AdBlock Take(int /*scans*/) override {
-    if (script_.fault) throw DeviceFault(*script_.fault, "scripted card", "as told");
-    return script_.block;
-  }
+  AdBlock Take(int /*scans*/) override { return script_.block; }
 
  private:
   Script& script_;
@@ -81,21 +73,7 @@ class AdConverterTest : public ::testing::Test {
   }
   /// The fault that making the converter ends in.
   DeviceFault Refusal() {
-    try {
-      Make();
-    } catch (const DeviceFault& fault) {
-      return fault;
-    }
-    return {FaultKind::kDisk, "nobody", "was not refused"};
-  }
-  FaultKind FaultOfBlock(const std::vector<std::int16_t>& raw) {
-    script_.block.raw = raw;
-    try {
-      Make()->Acquire(static_cast<int>(raw.size() / kChannels), true);
-    } catch (const DeviceFault& fault) {
-      return fault.kind();
-    }
-    return FaultKind::kDisk;  // none
+    return test::FaultOf([this] { Make(); }).value();
   }
 
   AdSettings settings_ = Settings("iio");
@@ -103,19 +81,6 @@ class AdConverterTest : public ::testing::Test {
   ScriptedSource::Script script_;
   StandingClock clock_;
 };
-
-TEST_F(AdConverterTest, GivesTheTwinsBitsForTheTwinsCodes) {
-  for (const double level_V : {0.4, 9.99, -12.0}) {
-    sim::AdInput input = test::FourLevels(kNoise_V);
-    input.channel[1].level_V = level_V;  // within the range, now and then at its end, beyond it
-    Stream noise(7, "test.block");
-    clock_.now = Time(std::chrono::seconds(3));
-    const Acquisition twin =
-        sim::TakeBlock(adc_, input, {.n_samples = 500, .keep_raw = true}, noise).ToAcquisition(clock_.now);
-    script_.block.raw = twin.raw;
-    ExpectSameBlock(Make()->Acquire(500, false), twin);
-  }
-}
 
 TEST_F(AdConverterTest, AsksForTheChannelsInScanOrderAndGivesThemInChannelOrder) {
   adc_.scan_list = {"psd_b_x", "psd_a_x", "psd_b_y", "psd_a_y"};
@@ -139,30 +104,6 @@ TEST_F(AdConverterTest, HasNoNumbersWithoutLightButKeepsTheCounts) {
     for (const ChannelBlock& channel : block.channel)
       EXPECT_TRUE(std::isnan(channel.mean_V) && std::isnan(channel.max_V));
   }
-}
-
-TEST_F(AdConverterTest, FaultsASlipAFloatingAndAStuckChannel) {
-  const auto clean = test::RawBlock(test::FourLevels(kNoise_V), 100, 1);
-  EXPECT_EQ(FaultOfBlock(clean), FaultKind::kDisk) << "none";
-  auto slipped = clean;
-  test::LoseAWord(slipped, 200);
-  EXPECT_EQ(FaultOfBlock(slipped), FaultKind::kChannelSlip);
-  auto stuck = clean, floating = clean;
-  for (std::size_t scan = 0; scan < 100; ++scan) {
-    stuck[4 * scan] = 77;
-    floating[4 * scan] = static_cast<std::int16_t>(30000 + 9 * scan);
-  }
-  EXPECT_EQ(FaultOfBlock(stuck), FaultKind::kStuck);
-  EXPECT_EQ(FaultOfBlock(floating), FaultKind::kSignalLost);
-}
-
-TEST_F(AdConverterTest, PassesOnWhatTheSourceThrowsAndWorksAgain) {
-  auto converter = Make();
-  script_.block.raw = test::RawBlock(test::FourLevels(kNoise_V), 100, 1);
-  script_.fault = FaultKind::kGap;
-  EXPECT_THROW(converter->Acquire(100, false), DeviceFault);
-  script_.fault.reset();
-  EXPECT_EQ(converter->Acquire(100, false).status, ReadingStatus::kOk);
 }
 
 TEST_F(AdConverterTest, FaultsACardWhoseClockJumps) {

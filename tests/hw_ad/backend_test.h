@@ -1,20 +1,11 @@
 #pragma once
 
 #include <asio.hpp>
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <cstdlib>
-#include <functional>
-#include <string>
 
 #include "hw_bridge/ad/ad_converter.h"
 #include "tests/hw_ad/blocks.h"
-#include "tests/hw_control/faults.h"
-#include "tests/support/rotary_scenario.h"
+#include "tests/support/faults.h"
 #include "tests/support/served_twin.h"
-#include "twin/benches/rotary_4dof/settings.h"
-#include "twin/core/devices.h"
 
 /// A served twin whose time a client holds, and that client's clock.
 namespace twinbench::test {

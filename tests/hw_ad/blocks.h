@@ -2,12 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <bit>
-#include <cstdint>
-#include <vector>
-
-#include "twin/core/devices.h"
 #include "twin/sim/ad_sampler.h"
 
 /// Blocks of the twin's converter, for tests of what is looked for in them.

@@ -1,7 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "hw_bridge/ad/channel_slip.h"
 #include "hw_bridge/ad/lost_word.h"
 #include "tests/hw_ad/blocks.h"

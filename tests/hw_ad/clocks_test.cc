@@ -1,11 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <vector>
-
 #include "hw_bridge/ad/clock_watch.h"
 #include "hw_bridge/ad/scan_stamps.h"
-#include "tests/hw_control/faults.h"
+#include "tests/support/faults.h"
 
 namespace twinbench::hw {
 namespace {
@@ -79,9 +76,8 @@ TEST(ScanStamps, CountWhatIsMissingAndWhere) {
 
 TEST(ScanStamps, MayJitterByLessThanHalfAPeriodAndRunFast) {
   auto stamps_ns = Stamps(1000, 62.5e3);
-  for (std::size_t s = 0; s < stamps_ns.size(); ++s) {
+  for (std::size_t s = 0; s < stamps_ns.size(); ++s)
     stamps_ns[s] += (s % 2 == 0 ? 3900 : 0) + std::llround(static_cast<double>(stamps_ns[s]) * 1e-3);
-  }
   EXPECT_EQ(JudgeStamps(stamps_ns, 62.5e3).lost_scans, 0);
   EXPECT_EQ(JudgeStamps(stamps_ns, 62.5e3).first_back, -1);
 }

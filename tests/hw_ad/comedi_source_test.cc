@@ -1,7 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <algorithm>
-
 #include "hw_bridge/numbers/comedi_numbers.h"
 #include "tests/core/input_error.h"
 #include "tests/hw_ad/backend_test.h"

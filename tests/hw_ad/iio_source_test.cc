@@ -1,4 +1,3 @@
-#include <asio.hpp>
 #include <gmock/gmock.h>
 
 #include <regex>
@@ -6,10 +5,7 @@
 #include "hw_bridge/numbers/iio_numbers.h"
 #include "tests/core/input_error.h"
 #include "tests/hw_ad/backend_test.h"
-#include "tests/hw_control/faults.h"
 #include "tests/support/kept_text.h"
-#include "tests/support/rotary_scenario.h"
-#include "twin/core/device_fault.h"
 
 /// By libiio, of the devices that a served rotary bench shows.
 namespace twinbench::hw {

@@ -2,10 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <fstream>
-#include <sstream>
-
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"
 
@@ -134,12 +130,10 @@ TEST(BenchFile, ThatIsWrongIsRefusedWithPlaceAndWhatWouldBeRight) {
 }
 
 TEST(BenchFile, EveryKeyStandsInTheDocumentation) {
-  std::ifstream in(std::string(TWINBENCH_SOURCE_DIR) + "/docs/hardware.md");
-  std::ostringstream text;
-  text << in.rdbuf();
+  const std::string text = Contents(TWINBENCH_SOURCE_DIR "/docs/hardware.md");
   BenchFile file;
   for (const ScenarioKey& key : KeysOf(file))
-    EXPECT_THAT(text.str(), HasSubstr("`" + key.Name() + "`")) << key.Path();
+    EXPECT_THAT(text, HasSubstr("`" + key.Name() + "`")) << key.Path();
 }
 
 }  // namespace

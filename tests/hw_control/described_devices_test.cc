@@ -3,19 +3,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <thread>
-#include <utility>
-
 #include "hw_bridge/control/instrument_box.h"
 #include "tests/core/input_error.h"
 #include "tests/hw_control/fake_controller.h"
-#include "tests/hw_control/faults.h"
+#include "tests/support/faults.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/rotary_4dof/settings.h"
-#include "twin/core/units.h"
 
 /// Instruments by their ready dialogues, each against a counterpart of its own on a serial line, and what a
 /// dialogue can say besides.

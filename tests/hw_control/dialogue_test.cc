@@ -1,15 +1,8 @@
-#include "hw_bridge/control/dialogue.h"
-
 #include <gmock/gmock.h>
-
-#include <atomic>
-#include <memory>
-#include <optional>
-#include <thread>
 
 #include "hw_bridge/control/device_line.h"
 #include "tests/hw_control/fake_controller.h"
-#include "tests/hw_control/faults.h"
+#include "tests/support/faults.h"
 
 namespace twinbench::hw {
 namespace {

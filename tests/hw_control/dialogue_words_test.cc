@@ -1,32 +1,15 @@
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <fstream>
-#include <iterator>
-#include <set>
-#include <sstream>
-
 #include "hw_bridge/bench_file.h"
 #include "hw_bridge/control/absent.h"
-#include "hw_bridge/control/dialogue_words.h"
 #include "hw_bridge/control/host_clock.h"
 #include "hw_bridge/control/operator_devices.h"
 #include "tests/core/input_error.h"
-#include "tests/hw_control/faults.h"
-#include "tests/support/kept_text.h"
-#include "twin/core/errors.h"
-#include "twin/core/units.h"
+#include "tests/core/refusals.h"
+#include "tests/support/faults.h"
 
 namespace twinbench::hw {
 namespace {
 
-using testing::HasSubstr, testing::StartsWith;
-
-/// What is wrong with a text is kept, and where in `file` it is; line 0: in the text as a whole.
-void ExpectRefused(const std::string& message, const std::string& file, int line) {
-  EXPECT_THAT(message, StartsWith(file + (line > 0 ? ":" + std::to_string(line) + ": " : ":")));
-  EXPECT_KEPT(message);
-}
+using testing::HasSubstr;
 
 constexpr const char* kWhole = R"(title = "autocollimator of the cellar"
 [read]
@@ -45,16 +28,14 @@ TEST(DialogueWords, AWholeOneIsTakenAsItStands) {
 
 TEST(DialogueWords, WhatIsWrongIsToldWithFileLineAndTheNearestRightThing) {
   const std::string whole = kWhole;
-  const std::pair<int, std::string> cases[] = {
+  ExpectRefused("my.toml", [](const auto& text) { return MessageOf([&] { ParseDialogue(text, "my.toml"); }); }, {
       {6, whole + "unitts = 3\n"}, {1, "[raed]\nask = \"A?\"\n"},
       {4, "[read]\nask = \"A?\"\nfields = [\"x\"]\nunits = [\"arcsecs\"]\n"},
       {4, "[read]\nask = \"A?\"\nfields = [\"x\", \"y\"]\nvalid = [\"4\"]\n"}, {1, "[read]\nfields = [\"x\"]\n"},
       {2, "[move]\ncommand = \"GOTO {toth}\"\n"}, {0, whole + "[latch]\narm = \"ARM {samples}\"\n"},
       {7, whole + "[line]\nends = \"LFCR\"\n"}, {7, whole + "[line]\nseparator = \"\"\n"},
       {0, "title = \"mute\"\n"},
-  };
-  for (const auto& [line, text] : cases)
-    ExpectRefused(MessageOf([&] { ParseDialogue(text, "my.toml"); }), "my.toml", line);
+  });
 }
 
 /// Each is tried against its counterpart: the served ones in tests/contract and tests/machine, the others in
@@ -71,8 +52,7 @@ TEST(DialogueWords, ReadyOnesAreTheseAndAllAreWhole) {
 }
 
 TEST(DialogueWords, EveryKeyStandsInTheDocumentation) {
-  std::ifstream in(TWINBENCH_SOURCE_DIR "/docs/hardware.md");
-  const std::string whole{std::istreambuf_iterator<char>(in), {}};
+  const std::string whole = Contents(TWINBENCH_SOURCE_DIR "/docs/hardware.md");
   const auto begin = whole.find("## An instrument in words");
   ASSERT_NE(begin, std::string::npos);
   const std::string section = whole.substr(begin, whole.find("\n## ", begin + 1) - begin);
@@ -113,15 +93,13 @@ TEST(BenchFileWithDialogue, FindsAReadyOneAndAFileBesideTheBenchFile) {
 
 TEST(BenchFileWithDialogue, SaysWhichKeyIsWrongAndWhatWouldBeRight) {
   const std::string begin = "[autocollimator]\naddress = \"tcp:c:1\"\nkind = \"dialogue\"\n";
-  const std::pair<int, std::string> cases[] = {
+  ExpectRefused("bench.toml", [](const auto& table) { return MessageOf([&] { ParseWithTable(table, "/nowhere"); }); }, {
       {11, begin}, {14, begin + "dialogue = \"elcomatt\"\n"}, {14, begin + "dialogue = \"mine.toml\"\n"},
       {14, begin + "dialogue = \"heidenhain_nd287\"\n"},
       {15, begin + "dialogue = \"elcomat\"\nidentity = \"ELCOMAT\"\n"},
       {15, begin + "dialogue = \"elcomat\"\ntoken = \"abc\"\n"},
       {14, "[thermometer]\nkind = \"scpi\"\naddress = \"tcp:c:1\"\ndialogue = \"elcomat\"\n"},
-  };
-  for (const auto& [line, table] : cases)
-    ExpectRefused(MessageOf([&] { ParseWithTable(table, "/nowhere"); }), "bench.toml", line);
+  });
 }
 
 using test::KindOf;

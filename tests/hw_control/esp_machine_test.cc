@@ -3,15 +3,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <array>
-#include <cmath>
-#include <mutex>
-
 #include "hw_bridge/control/esp_words.h"
 #include "tests/hw_control/fake_controller.h"
-#include "tests/hw_control/faults.h"
-#include "twin/core/number_text.h"
-#include "twin/core/units.h"
+#include "tests/support/faults.h"
 
 namespace twinbench::hw {
 namespace {

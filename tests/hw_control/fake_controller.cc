@@ -3,12 +3,8 @@
 #include <arpa/inet.h>
 #include <poll.h>
 #include <pty.h>
-#include <sys/socket.h>
-#include <termios.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <stdexcept>
 
 namespace twinbench::test {
 namespace {

@@ -1,11 +1,8 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <mutex>
-#include <string>
 #include <thread>
-#include <vector>
 
 namespace twinbench::test {
 

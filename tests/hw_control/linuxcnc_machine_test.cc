@@ -3,14 +3,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <map>
-#include <mutex>
-
 #include "tests/hw_control/fake_controller.h"
-#include "tests/hw_control/faults.h"
+#include "tests/support/faults.h"
 #include "tests/support/kept_text.h"
 
 namespace twinbench::hw {

@@ -1,15 +1,8 @@
 #include <gmock/gmock.h>
 #include <poll.h>
 #include <pty.h>
-#include <termios.h>
-#include <unistd.h>
 
-#include <array>
-#include <atomic>
-#include <cstdint>
-#include <functional>
 #include <thread>
-#include <vector>
 
 #include "hw_bridge/numbers/number_source.h"
 #include "twin/core/device_fault.h"

@@ -1,20 +1,12 @@
 #include <gmock/gmock.h>
 
-#include <atomic>
-#include <cmath>
-#include <thread>
-
 #include "hw_bridge/ad/ad_source.h"
 #include "hw_bridge/control/scpi.h"
 #include "hw_bridge/control/served_clock.h"
-#include "hw_bridge/open_bench.h"
 #include "hw_bridge/watched_adc.h"
 #include "tests/hw_control/fake_controller.h"
-#include "tests/hw_control/faults.h"
-#include "tests/support/rotary_scenario.h"
+#include "tests/support/faults.h"
 #include "tests/support/served_twin.h"
-#include "twin/core/device_fault.h"
-#include "twin/core/units.h"
 
 namespace twinbench::hw {
 namespace {
@@ -171,20 +163,12 @@ std::optional<FaultKind> HowABlockEnds(CreepingTable& target) {
   return KindOf([&] { watched.Acquire(100, false); });
 }
 
-TEST(WatchedAdc, SeesATableThatLeavesItsStopInTheMiddleOfABlock) {
-  CreepingTable creeping(3, 0.06 * units::arcsec);
+TEST(WatchedAdc, SeesATableThatLeavesItsStopOrRestartsInTheMiddleOfABlockAndTellsWhatALookFailedOf) {
+  CreepingTable creeping(3, 0.06 * units::arcsec), restarted(3, kNaN), silent(1, 0.0);
+  silent.fails = true;
   EXPECT_EQ(HowABlockEnds(creeping), FaultKind::kMoved);
   EXPECT_GE(creeping.looks, 3);
-}
-
-TEST(WatchedAdc, SeesAControllerThatRestartsInTheMiddleOfABlock) {
-  CreepingTable restarted(3, kNaN);
   EXPECT_EQ(HowABlockEnds(restarted), FaultKind::kRestarted);
-}
-
-TEST(WatchedAdc, TellsWhatALookFailedOf) {
-  CreepingTable silent(1, 0.0);
-  silent.fails = true;
   EXPECT_EQ(HowABlockEnds(silent), FaultKind::kTimeout);
 }
 

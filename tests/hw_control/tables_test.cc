@@ -1,17 +1,11 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <map>
-#include <mutex>
-
 #include "hw_bridge/control/esp_table.h"
 #include "hw_bridge/control/scpi.h"
 #include "hw_bridge/control/scpi_table.h"
 #include "tests/hw_control/fake_controller.h"
-#include "tests/hw_control/faults.h"
-#include "twin/core/number_text.h"
-#include "twin/core/units.h"
+#include "tests/support/faults.h"
 
 namespace twinbench::hw {
 namespace {
@@ -114,21 +108,6 @@ class ScpiTables : public testing::Test {
   FakeController controller_{[this](const std::string& line) { return model_(line); }};
   Dialogue dialogue_{ParseAddress(controller_.Address()).value(), kScpiIdentity, "maker"};
 };
-
-/// Of one controller.
-template <class Table>
-void ExpectTwoAxesKeepTheirAngles(Table target, Table reference) {
-  target.StartMove(0.5);
-  reference.StartMove(-0.25);
-  EXPECT_TRUE(target.Settles(kSecond));
-  EXPECT_NEAR(target.State().encoder_rad, 0.5, 1e-15);  // 17 digits of text: at most one rounding off
-  EXPECT_NEAR(reference.State().encoder_rad, -0.25, 1e-15);
-}
-
-TEST_F(ScpiTables, TwoAxesOfOneControllerShareOneConnectionAndKeepTheirAngles) {
-  ExpectTwoAxesKeepTheirAngles(Table(1), Table(2));
-  EXPECT_EQ(controller_.Connections(), 1);
-}
 
 TEST_F(ScpiTables, ASoftLimitRefusesBeforeAnythingIsSent) {
   ScpiTable table = Table(1, {.lower_rad = -1.0, .upper_rad = 1.0});
@@ -237,11 +216,6 @@ class EspTables : public testing::Test {
   FakeController controller_{[this](const std::string& line) { return model_(line); }};
   Dialogue dialogue_{ParseAddress(controller_.Address()).value(), kEspIdentity, "ESP301"};
 };
-
-TEST_F(EspTables, TwoAxesOfOneControllerShareOneConnectionAndKeepTheirAngles) {
-  ExpectTwoAxesKeepTheirAngles(Table(1), Table(2));
-  EXPECT_EQ(controller_.Connections(), 1);
-}
 
 TEST_F(EspTables, AnAxisIsDrivenInDegrees) {
   model_.unit = 9;  // radian

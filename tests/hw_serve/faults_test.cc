@@ -1,9 +1,4 @@
-#include "hw_bridge/serve/faults.h"
-
 #include <gmock/gmock.h>
-
-#include <algorithm>
-#include <chrono>
 
 #include "tests/hw_serve/serving.h"
 #include "tests/hw_serve/virtual_bench.h"
@@ -27,12 +22,6 @@ class OnDemand : public testing::Test {
   Scans Spoilt(const std::string& fault) {
     Demand("adc," + fault);
     return adc.Read(kScans);
-  }
-  /// @return how many bytes of a block are announced; its mask is taken.
-  static std::string Begin(TcpClient& iiod) {
-    std::string bytes = iiod.Ask("READBUF psd-adc16 6400");
-    iiod.Line();
-    return bytes;
   }
   std::int16_t Of(const Scans& scans, int scan, int channel) const { return scans.raw[scan * kChannels + channel]; }
 
@@ -121,22 +110,12 @@ TEST_F(OnDemand, AClockThatSteppedIsASecondOffAndOneThatRunsFastIsAheadByItsShar
   EXPECT_EQ(adc.Read(kScans).stamps_ns[0], 1'000'050'000);
 }
 
-TEST_F(OnDemand, ADroppedBlockEndsInTheMiddleAndAStalledOneNeverGoesOn) {
-  for (const std::string fault : {"stall", "drop"}) {
-    Demand("adc," + fault);
-    BufferClient client(served.at().iiod_port, kScans);
-    EXPECT_EQ(Begin(client.socket()), "6400");
-    client.socket().Bytes(3200);
-    EXPECT_TRUE(fault == "stall" ? client.socket().Silent(std::chrono::milliseconds(200)) : client.socket().Ends())
-        << fault;
-  }
-}
-
 TEST_F(OnDemand, AShortBlockIsHalfAndThenNothing) {
   TcpClient& iiod = adc.socket();
   for (const auto& [fault, rest] : {std::pair{"adc,short", "0"}, std::pair{"adc,error", "-5"}}) {
     Demand(fault);
-    EXPECT_EQ(Begin(iiod), "3200");
+    EXPECT_EQ(iiod.Ask("READBUF psd-adc16 6400"), "3200");
+    iiod.Line();  // its mask
     iiod.Bytes(3200);
     EXPECT_EQ(iiod.Line(), rest);
   }
@@ -166,20 +145,6 @@ TEST_F(OnDemand, ALateAnswerComesAfterThreeSeconds) {
   late.Ask("SIM:FAUL controller,late;*OPC?");
   EXPECT_EQ(late.Ask("ROT1:ANGL?"), "0");
   EXPECT_EQ(bench.Wall_s(), 3.0);
-}
-
-TEST_F(OnDemand, APartialAnswerHasNoEnd) {
-  scpi.Ask("ROT1:ANGL 12.5;SETT? 60");
-  Demand("target,partial");
-  esp.Send("1TP\n");
-  EXPECT_EQ(esp.Bytes(3), "12.");
-  EXPECT_TRUE(esp.Silent(std::chrono::milliseconds(100)));
-}
-
-TEST_F(OnDemand, ADisconnectTakesThePlaceOfAnAnswer) {
-  Demand("controller,disconnect");
-  esp.Send("2TP\n");
-  EXPECT_TRUE(esp.Ends());
 }
 
 TEST_F(OnDemand, ARestartedControllerShowsZeroAndHasNoOriginUntilItIsHomedOrTheBenchStartedAgain) {

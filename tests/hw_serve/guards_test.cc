@@ -1,13 +1,8 @@
 #include <gmock/gmock.h>
 
-#include <cerrno>
-#include <thread>
-
-#include "hw_bridge/bench_file.h"
 #include "hw_bridge/serve/esp_commands.h"
 #include "hw_bridge/serve/esp_machine_conversation.h"
 #include "hw_bridge/serve/scpi_commands.h"
-#include "hw_bridge/serve/watchdog.h"
 #include "tests/hw_serve/serving.h"
 #include "tests/hw_serve/virtual_bench.h"
 

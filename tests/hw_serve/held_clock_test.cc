@@ -1,12 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cmath>
-
 #include "tests/hw_serve/serving.h"
-#include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
-#include "twin/core/number_text.h"
 
 /// While a client holds the clock, every request is one call of the bench: the answers are those of the same calls
 /// on a twin in this process, bit for bit.

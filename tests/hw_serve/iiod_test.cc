@@ -1,12 +1,7 @@
 #include <gmock/gmock.h>
 
-#include <cstdlib>
-
 #include "tests/core/input_error.h"
 #include "tests/hw_serve/serving.h"
-#include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
-#include "twin/core/number_text.h"
 
 namespace twinbench::test {
 namespace {

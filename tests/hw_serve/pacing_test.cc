@@ -1,9 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <chrono>
-#include <thread>
-
 #include "tests/hw_serve/serving.h"
 #include "tests/hw_serve/virtual_bench.h"
 

@@ -1,13 +1,8 @@
 #include <gmock/gmock.h>
-#include <signal.h>
-#include <unistd.h>
-
-#include <cstdio>
 
 #include "tests/core/input_error.h"
 #include "tests/hw_control/fake_controller.h"
 #include "tests/hw_serve/serving.h"
-#include "tests/support/rotary_scenario.h"
 
 /// Programs that nobody here wrote, as they are installed. Those that are not are skipped.
 namespace twinbench::test {

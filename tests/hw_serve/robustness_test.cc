@@ -1,10 +1,7 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
-#include <cerrno>
-#include <chrono>
 #include <filesystem>
-#include <memory>
 
 #include "hw_bridge/serve/iiod_buffer.h"
 #include "tests/hw_serve/serving.h"

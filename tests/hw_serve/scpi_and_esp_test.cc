@@ -2,7 +2,6 @@
 
 #include "hw_bridge/serve/scpi_text.h"
 #include "tests/hw_serve/serving.h"
-#include "tests/support/rotary_scenario.h"
 
 namespace twinbench::test {
 namespace {

@@ -1,13 +1,7 @@
 #include "tests/hw_serve/serving.h"
 
 #include <arpa/inet.h>
-#include <netinet/in.h>
 #include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
-#include <cstring>
-#include <stdexcept>
 
 namespace twinbench::test {
 namespace {
@@ -22,9 +16,8 @@ TcpClient::TcpClient(int port, int receive_buffer) : socket_(socket(AF_INET, SOC
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
+  if (connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
     throw std::runtime_error("no connection");
-  }
 }
 
 TcpClient::~TcpClient() {
@@ -81,9 +74,8 @@ bool TcpClient::Ends(std::chrono::milliseconds within) {
 }
 
 BufferClient::BufferClient(int port, int scans) : socket_(port) {
-  if (socket_.Ask("OPEN psd-adc16 " + std::to_string(scans) + " 0000001f") != "0") {
+  if (socket_.Ask("OPEN psd-adc16 " + std::to_string(scans) + " 0000001f") != "0")
     throw std::runtime_error("the buffer does not open");
-  }
 }
 
 Scans BufferClient::Read(int scans) {

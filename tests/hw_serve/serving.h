@@ -1,11 +1,5 @@
 #pragma once
 
-#include <chrono>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "tests/support/served_twin.h"
 
 /// Clients of a served twin that are nothing but a socket.

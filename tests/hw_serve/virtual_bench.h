@@ -1,14 +1,9 @@
 #pragma once
 
-#include <algorithm>
-#include <stdexcept>
-#include <string>
-
 #include "hw_bridge/serve/esp_conversation.h"
 #include "hw_bridge/serve/scpi_conversation.h"
 #include "hw_bridge/serve/server.h"
 #include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 
 /// A served bench without sockets and threads, on a wall clock that moves only where somebody waits.

@@ -1,11 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "tests/machine/benches.h"
 #include "tests/support/machine_run.h"
-#include "twin/benches/registry.h"
 #include "twin/procedure/machine_watch.h"
 
 /// The contract of twin/core/machine.h: the twins of the benches with a machine, and benches that are written in Python.

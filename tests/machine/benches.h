@@ -1,18 +1,10 @@
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <ostream>
-#include <string>
-#include <vector>
-
+#include "tests/support/faults.h"
 #include "tests/support/memory_log.h"
 #include "twin/benches/circular_motion/settings.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/registry.h"
-#include "twin/core/device_fault.h"
-#include "twin/core/machine.h"
-#include "twin/core/scenario.h"
 #include "twin/procedure/machine_options.h"
 
 /// Short runs of the benches with a machine, with effects that remember; what they are, tests/data/machine/ says.
@@ -63,13 +55,9 @@ struct DrivenTwin {
   /// In which that ends; "": it was carried out.
   std::string Fault() { return FaultOn(bench); }
   std::string FaultOn(MachineBench& other) {
-    try {
-      DriveOn(other);
-    } catch (const DeviceFault& fault) {
-      said = fault.what();
-      return FaultName(fault.kind());
-    }
-    return "";
+    const std::optional<DeviceFault> fault = FaultOf([&] { DriveOn(other); });
+    if (fault) said = fault->what();
+    return fault ? FaultName(fault->kind()) : "";
   }
 
   const Scenario scenario;

@@ -1,23 +1,14 @@
 #include "twin/benches/claims.h"
 
-#include <gmock/gmock.h>
-
-#include <nlohmann/json.hpp>
-
 #include "hw_bridge/in_position.h"
-#include "hw_bridge/machine_file.h"
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
 #include "tests/machine/benches.h"
-#include "tests/support/kept_text.h"
 #include "tests/support/machine_run.h"
 #include "twin/benches/circular_motion/procedure.h"
 #include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/freeform_five_axis/procedure.h"
 #include "twin/benches/freeform_five_axis/twin/twin.h"
-#include "twin/benches/registry.h"
-#include "twin/core/estimator.h"
-#include "twin/core/run_record.h"
 #include "twin/report/evaluation.h"
 
 /// What results claim of the places of axes, what a bench file may allow there, and when readings are due.
@@ -295,12 +286,7 @@ class OpenMachine : public testing::Test {
   }
   static std::vector<ReadingColumn> Columns() { return InstrumentColumns(FormatOf(kCircularBench).columns); }
   static std::string Refusal(const std::string& text, const std::vector<MachineAxis>& axes = {{"x"}, {"y"}}) {
-    try {
-      Open(text, axes);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "";
+    return MessageOf<std::runtime_error>([&] { Open(text, axes); });
   }
 
   const ServedMachineTwin served_{ShortCircles()};

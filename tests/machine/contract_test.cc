@@ -1,16 +1,11 @@
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "tests/core/input_error.h"
 #include "tests/machine/benches.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/machine_run.h"
-#include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/twin/driven.h"
-#include "twin/benches/circular_motion/twin/live.h"
-#include "twin/sim/driven_machine.h"
 
 /// Same scenario, same seed, same readings: on the twin in this program and through the network.
 namespace twinbench::test {
@@ -64,14 +59,6 @@ TEST_P(MachineContract, ARecordOfAnotherBenchIsNotGoneOnWith) {
   before[1].time += Duration(1);
   const ServedMachineTwin served(scenario_);
   EXPECT_THROW(RunServedMachine(served, scenario_, served.BenchFile(), {}, before), InputError);
-}
-
-TEST_P(MachineContract, RunsInRealTimeAsWithoutAny) {
-  // At 2000 times real time the pacing waits for every step: some minutes of bench time a quarter of a second.
-  const ServedMachineTwin served(scenario_, 2000.0);
-  const MachineRun run = RunServedMachine(served, scenario_, served.BenchFile());
-  EXPECT_EQ(run.stopped_by, "") << run.said;
-  EXPECT_EQ(TextOf(run.log.readings, scenario_), TextOf(in_process_, scenario_));
 }
 
 /// Those whose axes go along lines and arcs.

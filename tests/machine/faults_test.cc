@@ -1,11 +1,7 @@
 #include <gmock/gmock.h>
 
-#include <atomic>
-#include <thread>
-
 #include "tests/machine/benches.h"
 #include "tests/support/machine_run.h"
-#include "tests/support/sanitized.h"
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/core/sample_text.h"

@@ -1,10 +1,5 @@
 #include "tests/support/foreign_bench.h"
 
-#include <gmock/gmock.h>
-
-#include <map>
-#include <numeric>
-
 #include "hw_bridge/numbers/number_source.h"
 #include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"

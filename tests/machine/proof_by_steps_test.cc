@@ -9,7 +9,6 @@
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/core/bench_format.h"
 
 /// Instruments and tables that become others in the middle of a run, on twins that do not say that they are ones.
 namespace twinbench::test {
@@ -263,13 +262,8 @@ RunEnd EndOfTables(int good, const ChangesVolts& changes, TableShares shares, co
   procedure::Options options;
   options.log = &log;
   options.prove = ProofBySteps(bench, scenario, options);
-  std::string fault;
-  try {
-    procedure::CarryOut(bench, scenario, log, {}, options);
-  } catch (const DeviceFault& caught) {
-    fault = FaultName(caught.kind());
-  }
-  return {fault, log.readings.size()};
+  const auto kind = KindOf([&] { procedure::CarryOut(bench, scenario, log, {}, options); });
+  return {kind ? FaultName(*kind) : "", log.readings.size()};
 }
 
 const std::vector<ChangesVolts>& WrongVolts() {

@@ -7,7 +7,6 @@
 #include "tests/support/kept_text.h"
 #include "tests/support/machine_run.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
-#include "twin/benches/rotary_4dof/twin/twin.h"
 
 /// Recordings of benches that cannot begin again: machine_serve_test.cc plays those of simulated ones.
 namespace twinbench::test {
@@ -44,11 +43,8 @@ std::vector<Reading> Recorded(const Scenario& scenario, const std::string& folde
     options.log = record.get();
     options.kept = record->Readings();
     options.stop_requested = [&] { return record->Readings().size() >= kept; };
-    try {
-      BenchOf(scenario).drive(devices, scenario, *record, {}, options);
-    } catch (const DeviceFault& fault) {
-      EXPECT_EQ(fault.kind(), FaultKind::kStopped) << fault.what();
-    }
+    const auto kind = KindOf([&] { BenchOf(scenario).drive(devices, scenario, *record, {}, options); });
+    EXPECT_EQ(kind.value_or(FaultKind::kStopped), FaultKind::kStopped);
   }
   record->Finish();
   return record->Readings();
@@ -124,12 +120,7 @@ TEST(ReplayMachine, ARecordThatEndsTooEarlyOrHasNoCallsOrNoAnswersToThemSaysSo) 
   Recorded(scenario, early.path(), {});
   Scenario longer = scenario;
   EncoderOf(longer).encoder_procedure.mounting_rad.push_back(1.0);  // a third one was not recorded
-  try {
-    Replayed(longer, early.path());
-    ADD_FAILURE() << "it was replayed";
-  } catch (const BenchError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("the recording ends before \"fixture: mount 2"));
-  }
+  EXPECT_THAT(MessageOf<BenchError>([&] { Replayed(longer, early.path()); }), HasSubstr("the recording ends before \"fixture: mount 2"));
   RunRecord::Create(uncalled.path(), {"test", "import: readings.csv", 1, "", scenario.bench})
       ->Append(Reading{}, {});
   EXPECT_KEPT(MessageOf([&] { Replayed(scenario, uncalled.path()); }));

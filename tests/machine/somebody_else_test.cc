@@ -1,12 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <map>
-#include <sstream>
-
 #include "tests/machine/benches.h"
 #include "tests/support/troubled_bench.h"
 #include "twin/benches/hob_transmission/settings.h"
-#include "twin/core/bench_format.h"
 #include "twin/procedure/doubted_instruments.h"
 
 /// Somebody else - a pendant, another program - stops or moves the machine in the middle of a run. The twin does not say that it is

@@ -1,11 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <sstream>
-
 #include "optics/irradiance.h"
 #include "optics/stl.h"
 #include "tests/core/input_error.h"
@@ -65,12 +59,7 @@ TEST(IrradianceMaps, HavePositiveVAtTheTop) {
 }
 
 std::string MessageOfReading(const std::string& path) {
-  try {
-    ReadIrradianceMaps(path);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "no error";
+  return MessageOf<std::runtime_error>([&] { ReadIrradianceMaps(path); });
 }
 
 TEST(IrradianceMaps, NameTheFileThatCannotBeReadOrIsCutShortOrHasNegativeLight) {
@@ -92,9 +81,7 @@ std::string WithHeader(const std::string& before, std::size_t behind, const std:
   const TemporaryFolder folder;
   const std::string path = folder.File("header.exr");
   WriteIrradianceMaps(path, {SpotMap("psd", 0, 0)});
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  std::string file = text.str();
+  std::string file = Contents(path);
   file.replace(file.find(before) + before.size() + behind, bytes.size(), bytes);
   std::ofstream(path, std::ios::binary) << file;
   return MessageOfReading(path);
@@ -152,19 +139,13 @@ class StlFile : public ::testing::Test {
   }
   /// What is said about the file, without its path.
   std::string ErrorOf(const std::string& bytes) {
-    try {
-      Read(bytes);
-    } catch (const std::runtime_error& error) {
-      const std::string what = error.what();
-      EXPECT_THAT(what, testing::StartsWith(path_ + ":"));
-      return what.substr(path_.size());
-    }
-    return "(no error)";
+    const std::string what = MessageOf<std::runtime_error>([&] { Read(bytes); });
+    EXPECT_THAT(what, testing::StartsWith(path_ + ":"));
+    return what.substr(path_.size());
   }
-  ~StlFile() override { std::filesystem::remove(path_); }
 
-  std::string path_ =
-      testing::TempDir() + "twinbench_" + testing::UnitTest::GetInstance()->current_test_info()->name() + ".stl";
+  const TemporaryFolder folder_;
+  const std::string path_ = folder_.File("file.stl");
 };
 
 void ExpectSameTriangles(const TriangleMesh& read, const TriangleMesh& written, double unit_m) {

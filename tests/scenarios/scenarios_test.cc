@@ -1,18 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <set>
-
+#include "tests/core/input_error.h"
 #include "tests/support/angle_benches.h"
-#include "tests/support/twin_run.h"
 #include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
-#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/rotary_4dof/estimators/stability.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/plan/next_run.h"
 
 // What happens in a run as a newcomer types it: docs/architecture.md, events and functions of time.
@@ -85,9 +76,7 @@ std::vector<std::string> ScenarioNames() {
 class EveryScenario : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EveryScenario, OpensWithItsQuestionAndTheAnswerExpected) {
-  std::ifstream in(test::ScenarioPath(GetParam()));
-  std::string head(600, '\0');
-  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  const std::string head = Contents(test::ScenarioPath(GetParam())).substr(0, 600);
   EXPECT_EQ(head.rfind("# Question: ", 0), 0u);
   EXPECT_NE(head.find("\n# Answer:"), std::string::npos);
 }

@@ -1,24 +1,17 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/circular_motion/circle_run.h"
 #include "tests/support/twin_run.h"
-#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
 #include "twin/benches/hob_transmission/procedure.h"
-#include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/twin.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
 #include "twin/benches/turntable_autocollimator/procedure.h"
-#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
-#include "twin/core/effect_catalogue.h"
-#include "twin/core/machine.h"
 #include "twin/core/run_record.h"
 #include "twin/procedure/machine_options.h"
 

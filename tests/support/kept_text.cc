@@ -1,13 +1,9 @@
 #include "tests/support/kept_text.h"
 
-#include <fcntl.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <fstream>
-#include <map>
 #include <regex>
-#include <vector>
 
 namespace twinbench::test {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 namespace twinbench::test {
 
 /// Compares what people are told with tests/data/texts.txt, which keeps all such texts in order under the names of the tests that ask

@@ -1,71 +1,31 @@
 #pragma once
 
-#include <functional>
-#include <limits>
-#include <map>
-#include <memory>
-#include <sstream>
-#include <string>
-#include <thread>
-
-#include "hw_bridge/control/line_link.h"
 #include "hw_bridge/open_machine.h"
-#include "hw_bridge/serve/server.h"
-#include "tests/support/memory_log.h"
+#include "tests/support/served_twin.h"
 #include "tests/support/troubled_bench.h"
 #include "twin/benches/registry.h"
-#include "twin/core/device_fault.h"
 #include "twin/procedure/machine_options.h"
 
 /// Runs of the real procedures of benches with a machine: on the twin, and on a served twin through the network.
 namespace twinbench::test {
 
-/// A machine's twin that is served from a thread, until this goes.
-class ServedMachineTwin {
+struct MachineTwin {
+  std::unique_ptr<MachineDevices> devices;
+  std::vector<ReadingColumn> columns;
+};
+
+class ServedMachineTwin : MachineTwin, public RunningServer {
  public:
   explicit ServedMachineTwin(const Scenario& scenario, double speed = std::numeric_limits<double>::infinity())
-      : devices_(BenchOf(scenario).make_devices(scenario)),
-        columns_(InstrumentColumns(BenchOf(scenario).format->columns)),
-        server_(devices_->Devices(), columns_, scenario, OnAnyPort(speed)),
-        thread_([this] { server_.Run(); }) {}
-  ~ServedMachineTwin() {
-    server_.Stop();
-    thread_.join();
-  }
+      : MachineTwin{BenchOf(scenario).make_devices(scenario), InstrumentColumns(BenchOf(scenario).format->columns)},
+        RunningServer(devices->Devices(), columns, scenario, OnFreePorts(speed)) {}
 
-  hw::ServedAddresses at() const { return server_.Addresses(); }
   /// The bench file that drives it, as `serve --write-bench` writes it.
   std::string BenchFile(const std::string& machine = "esp") const {
     std::vector<std::string> fields = {"time_ns", "status"};
-    for (const ReadingColumn& column : columns_) fields.push_back(column.name);
-    return hw::WriteServedMachineFile(at(), machine, fields, devices_->Devices().indexer != nullptr);
+    for (const ReadingColumn& column : columns) fields.push_back(column.name);
+    return hw::WriteServedMachineFile(at(), machine, fields, devices->Devices().indexer != nullptr);
   }
-  /// One answer of its SCPI port.
-  std::string Ask(const std::string& line) const {
-    const auto address = hw::ParseAddress("tcp:" + at().host + ":" + std::to_string(at().scpi_port));
-    hw::OpenedLink opened = hw::OpenLink(address.value(), std::chrono::seconds(5));
-    if (!opened.link) throw BenchError("no connection: " + opened.why);
-    opened.link->Send(line + "\n", std::chrono::seconds(5));
-    return opened.link->ReadLine(std::chrono::seconds(5)).line;
-  }
-  /// Asks it to suffer: "machine,limit".
-  void Inject(const std::string& fault) const {
-    const std::string answer = Ask("SIM:FAUL " + fault + ";SYST:ERR?");
-    if (!answer.starts_with("0,")) throw BenchError("fault " + fault + ": " + answer);
-  }
-
- private:
-  static hw::ServeOptions OnAnyPort(double speed) {
-    hw::ServeOptions options;
-    options.iiod_port = options.scpi_port = options.esp_port = 0;
-    options.speed = speed;
-    return options;
-  }
-
-  std::unique_ptr<MachineDevices> devices_;
-  std::vector<ReadingColumn> columns_;
-  hw::Server server_;
-  std::thread thread_;
 };
 
 struct MachineRun {
@@ -94,20 +54,6 @@ inline MachineRun RunServedMachine(const ServedMachineTwin& served, const Scenar
                                    const std::string& bench_file, std::map<int, std::string> faults = {},
                                    const std::vector<Reading>& kept = {},
                                    const TroubledMachine::Trouble& before_call = {}) {
-  class Sink : public ReadingSink {
-   public:
-    Sink(MachineRun& run, std::function<void(int)> on_kept) : run_(run), on_kept_(std::move(on_kept)) {
-      on_kept_(0);
-    }
-    void Append(const Reading& reading, const Acquisition& block) override {
-      run_.log.Append(reading, block);
-      on_kept_(static_cast<int>(run_.log.readings.size()));
-    }
-
-   private:
-    MachineRun& run_;
-    std::function<void(int)> on_kept_;
-  };
   MachineRun run;
   run.log.readings = kept;
   try {
@@ -122,12 +68,7 @@ inline MachineRun RunServedMachine(const ServedMachineTwin& served, const Scenar
     options.axes = opened->Limits();
     options.log = &run.log;
     options.kept = kept;
-    Sink sink(run, [&](int now) {
-      while (!faults.empty() && faults.begin()->first <= now) {
-        served.Inject(faults.begin()->second);
-        faults.erase(faults.begin());
-      }
-    });
+    InjectingSink sink(served, std::move(faults), run.log);
     whole.drive(bench, scenario, sink, {}, options);
   } catch (const DeviceFault& fault) {
     run.stopped_by = FaultName(fault.kind());

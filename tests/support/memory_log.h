@@ -1,10 +1,5 @@
 #pragma once
 
-#include <map>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "twin/benches/names.h"
 #include "twin/core/run_record.h"
 

@@ -2,9 +2,6 @@
 
 #include <array>
 #include <map>
-#include <numbers>
-#include <string>
-#include <vector>
 
 #include "twin/core/csv.h"
 

@@ -2,7 +2,6 @@
 
 #include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"
-#include "twin/core/scenario.h"
 
 namespace twinbench::test {
 

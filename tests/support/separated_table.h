@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "twin/benches/rotary_4dof/estimators/separate.h"
 
 /// What was separated of the rotary bench's tables, beside what is true.

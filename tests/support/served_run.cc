@@ -1,11 +1,6 @@
 #include "tests/support/served_run.h"
 
-#include <cstdlib>
-
 #include "hw_bridge/ad/ad_source.h"
-#include "hw_bridge/control/line_link.h"
-#include "hw_bridge/open_bench.h"
-#include "twin/core/device_fault.h"
 
 namespace twinbench::test {
 namespace {
@@ -18,31 +13,6 @@ void UseComedi(const ServedTwin& served, hw::AdSettings& adc) {
   adc.channels = {"0", "1", "2", "3"};
   adc.light = "1";
 }
-
-/// Asks for faults at their readings, once each.
-class Injecting : public ReadingSink {
- public:
-  Injecting(const ServedTwin& served, std::map<int, std::string> faults, MemoryLog& log)
-      : served_(served), faults_(std::move(faults)), log_(log) {
-    InjectAt(0);
-  }
-  void Append(const Reading& reading, const Acquisition& block) override {
-    log_.Append(reading, block);
-    InjectAt(static_cast<int>(log_.readings.size()));
-  }
-
- private:
-  void InjectAt(int kept) {
-    const auto fault = faults_.find(kept);
-    if (fault == faults_.end()) return;
-    Inject(served_, fault->second);
-    faults_.erase(fault);
-  }
-
-  const ServedTwin& served_;
-  std::map<int, std::string> faults_;
-  MemoryLog& log_;
-};
 
 procedure::Options CarefulOptions(const hw::BenchFile& file, ServedRun& run, const ServedRun* before) {
   procedure::Options options;
@@ -77,16 +47,6 @@ hw::BenchFile BenchFileOf(const ServedTwin& served, const RunOptions& options) {
   return file;
 }
 
-void Inject(const ServedTwin& served, const std::string& fault) {
-  const auto address = hw::ParseAddress(served.ScpiAddress());
-  const auto patience = std::chrono::seconds(5);
-  hw::OpenedLink opened = hw::OpenLink(address.value(), patience);
-  if (!opened.link) throw BenchError("no connection to inject a fault: " + opened.why);
-  opened.link->Send("SIM:FAUL " + fault + ";SYST:ERR?\n", patience);
-  const std::string answer = opened.link->ReadLine(patience).line;
-  if (!answer.starts_with("0,")) throw BenchError("fault " + fault + ": " + answer);
-}
-
 std::string ServedRun::Readings() const {
   return TextOf(log.readings);
 }
@@ -100,7 +60,7 @@ ServedRun RunServed(const ServedTwin& served, const Scenario& scenario, const Ru
     RotaryBench bench = opened->Bench();
     bench.simulation->Restart();
     const procedure::Options careful = CarefulOptions(file, run, before);
-    Injecting sink(served, options.faults, run.log);
+    InjectingSink sink(served, options.faults, run.log);
     procedure::CarryOut(bench, scenario, sink, {}, careful);
   } catch (const DeviceFault& fault) {
     run.stopped_by = FaultName(fault.kind());

@@ -1,20 +1,10 @@
 #pragma once
 
-#include <functional>
-#include <map>
-#include <string>
-
-#include "hw_bridge/bench_file.h"
-#include "tests/support/memory_log.h"
-#include "tests/support/rotary_scenario.h"
 #include "tests/support/served_twin.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 
 /// Runs of the real procedure on a served twin, through the real backends, with faults on the way.
 namespace twinbench::test {
-
-/// Asks the served twin to suffer: "adc,drop", "target,lost_step,2".
-void Inject(const ServedTwin& served, const std::string& fault);
 
 struct ServedRun {
   MemoryLog log;

@@ -1,14 +1,13 @@
 #pragma once
 
-#include <limits>
-#include <string>
 #include <thread>
 
+#include "hw_bridge/control/line_link.h"
 #include "hw_bridge/open_bench.h"
 #include "hw_bridge/serve/server.h"
+#include "tests/support/memory_log.h"
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/sanitized.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 
 namespace twinbench::test {
@@ -31,31 +30,68 @@ inline std::unique_ptr<hw::OpenBench> OpenHardware(const hw::BenchFile& file, co
   return hw::OpenHardware(file, own.adc, scenario.noise_free ? 0.0 : own.amplifier.noise_V);
 }
 
-/// A twin that is served from a thread, until this goes.
-class ServedTwin {
+/// A server that runs on a thread of its own, until this goes.
+class RunningServer {
  public:
-  explicit ServedTwin(const hw::ServeOptions& options, const Scenario& scenario = RotaryScenario())
-      : twin_(scenario),
-        server_(twin_.Bench(), scenario, RotaryOf(scenario).adc, options),
-        thread_([this] { server_.Run(); }) {}
-  explicit ServedTwin(const Scenario& scenario, double speed = std::numeric_limits<double>::infinity())
-      : ServedTwin(OnFreePorts(speed), scenario) {}
-  ~ServedTwin() {
+  template <class... Shown>
+  explicit RunningServer(const Shown&... shown) : server_(shown...), thread_([this] { server_.Run(); }) {}
+  ~RunningServer() {
     server_.Stop();
     thread_.join();
   }
-  ServedTwin(const ServedTwin&) = delete;
-  ServedTwin& operator=(const ServedTwin&) = delete;
+  RunningServer(const RunningServer&) = delete;
+  RunningServer& operator=(const RunningServer&) = delete;
 
   hw::ServedAddresses at() const { return server_.Addresses(); }
   std::string ScpiAddress() const { return "tcp:" + at().host + ":" + std::to_string(at().scpi_port); }
-  std::string EspAddress() const { return "tcp:" + at().host + ":" + std::to_string(at().esp_port); }
-  std::string TerminalAddress() const { return "serial:" + at().pty; }
+  /// One answer of its SCPI port.
+  std::string Ask(const std::string& line) const {
+    constexpr auto kPatience = std::chrono::seconds(5);
+    hw::OpenedLink opened = hw::OpenLink(hw::ParseAddress(ScpiAddress()).value(), kPatience);
+    if (!opened.link) throw BenchError("no connection: " + opened.why);
+    opened.link->Send(line + "\n", kPatience);
+    return opened.link->ReadLine(kPatience).line;
+  }
+  /// Asks it to suffer: "adc,drop", "target,lost_step,2".
+  void Inject(const std::string& fault) const {
+    const std::string answer = Ask("SIM:FAUL " + fault + ";SYST:ERR?");
+    if (!answer.starts_with("0,")) throw BenchError("fault " + fault + ": " + answer);
+  }
 
  private:
-  sim::Twin twin_;
   hw::Server server_;
   std::thread thread_;
+};
+
+class ServedTwin : sim::Twin, public RunningServer {
+ public:
+  explicit ServedTwin(const hw::ServeOptions& options, const Scenario& scenario = RotaryScenario())
+      : sim::Twin(scenario), RunningServer(Bench(), scenario, RotaryOf(scenario).adc, options) {}
+  explicit ServedTwin(const Scenario& scenario, double speed = std::numeric_limits<double>::infinity())
+      : ServedTwin(OnFreePorts(speed), scenario) {}
+};
+
+/// Has a served twin suffer when so many readings are kept, once each.
+class InjectingSink : public ReadingSink {
+ public:
+  InjectingSink(const RunningServer& served, std::map<int, std::string> faults, MemoryLog& log)
+      : served_(served), faults_(std::move(faults)), log_(log) {
+    InjectAt(0);
+  }
+  void Append(const Reading& reading, const Acquisition& block) override {
+    log_.Append(reading, block);
+    InjectAt(static_cast<int>(log_.readings.size()));
+  }
+
+ private:
+  void InjectAt(int kept) {
+    for (; !faults_.empty() && faults_.begin()->first <= kept; faults_.erase(faults_.begin()))
+      served_.Inject(faults_.begin()->second);
+  }
+
+  const RunningServer& served_;
+  std::map<int, std::string> faults_;
+  MemoryLog& log_;
 };
 
 }  // namespace twinbench::test

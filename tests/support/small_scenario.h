@@ -1,8 +1,6 @@
 #pragma once
 
 #include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
-#include "twin/core/scenario.h"
 
 namespace twinbench::test {
 

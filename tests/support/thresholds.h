@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "tests/core/input_error.h"
 #include "twin/diagnose/diagnose.h"
 

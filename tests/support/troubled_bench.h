@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "twin/core/device_call.h"
 #include "twin/core/machine_call.h"
 

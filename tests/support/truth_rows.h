@@ -2,7 +2,6 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "twin/core/table_errors.h"
 #include "twin/core/units.h"

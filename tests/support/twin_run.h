@@ -1,11 +1,7 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "twin/benches/encoder_comparison/procedure.h"
 #include "twin/benches/encoder_comparison/twin/twin.h"
-#include "twin/benches/rotary_4dof/estimators/measure.h"
 #include "twin/benches/rotary_4dof/estimators/separate.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"

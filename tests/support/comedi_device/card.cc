@@ -2,13 +2,9 @@
 
 #include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <utility>
 
 namespace twinbench::test {
@@ -65,9 +61,8 @@ bool HasArguments(comedi_cmd& c, unsigned least_convert_ns) {
 bool HasChannels(const comedi_cmd& c) {
   if (c.chanlist == nullptr) return true;
   bool good = c.chanlist_len == kInputs;
-  for (unsigned k = 0; k < c.chanlist_len; ++k) {
+  for (unsigned k = 0; k < c.chanlist_len; ++k)
     good = CR_CHAN(c.chanlist[k]) == k && CR_RANGE(c.chanlist[k]) == kWanted && good;
-  }
   return good;
 }
 

@@ -2,9 +2,6 @@
 
 #include <comedi.h>
 
-#include <atomic>
-#include <cstdint>
-#include <memory>
 #include <thread>
 
 #include "tests/support/comedi_device/iiod_twin.h"

@@ -1,16 +1,10 @@
 #include "tests/support/comedi_device/iiod_twin.h"
 
 #include <arpa/inet.h>
-#include <netinet/in.h>
 #include <netinet/tcp.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-#include <array>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
-#include <stdexcept>
 
 namespace twinbench::test {
 namespace {

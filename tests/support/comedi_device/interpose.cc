@@ -1,14 +1,9 @@
 #include <fcntl.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
 #include <cstdarg>
 #include <cstring>
 #include <map>
-#include <memory>
 #include <mutex>
 
 #include "tests/support/comedi_device/card.h"

@@ -1,33 +1,34 @@
 #pragma once
 
 #include <optional>
-#include <ostream>
-#include <string>
 
 #include "twin/core/device_fault.h"
 
 namespace twinbench::test {
 
-/// Which fault a call ends in; nothing if it does not.
+/// The fault that a call ends in; nothing if it does not.
 template <class Call>
-std::optional<FaultKind> KindOf(Call call) {
+std::optional<DeviceFault> FaultOf(Call call) {
   try {
     call();
   } catch (const DeviceFault& fault) {
-    return fault.kind();
+    return fault;
   }
   return std::nullopt;
 }
 
-/// What the fault says; empty without one.
+/// Which that is.
+template <class Call>
+std::optional<FaultKind> KindOf(Call call) {
+  const std::optional<DeviceFault> fault = FaultOf(call);
+  return fault ? std::optional(fault->kind()) : std::nullopt;
+}
+
+/// What it says; empty without one.
 template <class Call>
 std::string TextOf(Call call) {
-  try {
-    call();
-  } catch (const DeviceFault& fault) {
-    return fault.what();
-  }
-  return {};
+  const std::optional<DeviceFault> fault = FaultOf(call);
+  return fault ? fault->what() : "";
 }
 
 /// The same without the address of the device at its end, which is another in every run.
