@@ -1,13 +1,8 @@
 #include "twin/procedure/jumps.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
+#include "tests/support/faults.h"
 #include "tests/support/kept_text.h"
 #include "twin/core/bench_format.h"
-#include "twin/core/device_fault.h"
-#include "twin/procedure/doubted_instruments.h"
 #include "twin/procedure/plausible.h"
 #include "twin/procedure/step_proof.h"
 
@@ -45,11 +40,7 @@ int PassUntilNoticed(const Alters& alter, const Requires& require) {
   for (int k = 0; k < 2 * kPlaces; ++k) {
     Reading r = NumberOf(k);
     alter(r);
-    try {
-      require(r, kept);
-    } catch (const DeviceFault&) {
-      return k;
-    }
+    if (test::FaultOf([&] { require(r, kept); })) return k;
     kept.push_back(r);
   }
   return 2 * kPlaces;
@@ -87,22 +78,14 @@ std::string Closed(const ShownLater& later) {
   for (int k = 0; k < 4 * kPlaces; ++k) {
     Reading r = NumberOf(k);
     r.autocollimator_yaw_rad += later(k);
-    try {
-      RequireNoJump({X()}, r, closing.taken());
-    } catch (const DeviceFault&) {
-      return came + "jump";
-    }
+    if (test::FaultOf([&] { RequireNoJump({X()}, r, closing.taken()); })) return came + "jump";
     closing.Took(r);
     const Reading* const then = closing.Asks();
     if (!then) continue;
     came += fmt::format("{}->{} ", k, then->reading);
     Reading again = NumberOf(then->reading);
     again.autocollimator_yaw_rad += later(k + 0.5);
-    try {
-      closing.Require(again);
-    } catch (const DeviceFault& fault) {
-      return came + std::string(FaultName(fault.kind()));
-    }
+    if (const auto kind = test::KindOf([&] { closing.Require(again); })) return came + FaultName(*kind);
   }
   return came;
 }
@@ -189,20 +172,16 @@ std::string Measured(const Shows::Fault& fault, double noise = kNoiseOfOne) {
   for (int place = 0; place < 12; ++place) {
     shows.place = 1e-4 * std::sin(1.0 + place);
     for (int attempt = 0; attempt < 3; ++attempt) {
-      try {
-        if (std::abs(doubted.Read().autocollimator_yaw_rad - shows.place) > 3.0 * kNoiseOfOne) ++wrong;
-        break;
-      } catch (const DeviceFault& caught) {
-        ++faults;
-        if (said.empty()) said = std::string(FaultName(caught.kind())) + ", " + caught.what();
-      }
+      const auto caught = test::FaultOf([&] { wrong += std::abs(doubted.Read().autocollimator_yaw_rad - shows.place) > 3.0 * kNoiseOfOne; });
+      if (!caught) break;
+      ++faults;
+      if (said.empty()) said = std::string(FaultName(caught->kind())) + ", " + caught->what();
     }
   }
-  try {
+  const auto in_motion = test::KindOf([&] {
     for (int look = 0; look < 3; ++look) doubted.Latched();
-  } catch (const DeviceFault& caught) {
-    said += std::string("; in motion ") + FaultName(caught.kind());
-  }
+  });
+  if (in_motion) said += std::string("; in motion ") + FaultName(*in_motion);
   return fmt::format("{} wrong, {} faults: {}", wrong, faults, said);
 }
 
@@ -226,13 +205,12 @@ int Steady(double x_from_the_tenth, double y_from_the_tenth) {
   for (int k = 0; k < 16; ++k) {
     const double chance = 0.01 * std::sin(17.0 * k);
     const double x = k < 10 ? 0.95 : x_from_the_tenth, y = k < 10 ? 0.005 : y_from_the_tenth;
-    try {
-      const double step = k % 3 == 0 ? -1e-4 : 1e-4;
+    const double step = k % 3 == 0 ? -1e-4 : 1e-4;
+    const auto kind = test::KindOf([&] {
       proof.Require({{"x", step, step * (x + chance), 1e-7}, {"y", 0.0, step * (y + 0.1 * chance), 1e-7}});
-    } catch (const DeviceFault& fault) {
-      EXPECT_EQ(fault.kind(), FaultKind::kChanged) << fault.what();
-      return k;
-    }
+    });
+    EXPECT_EQ(kind.value_or(FaultKind::kChanged), FaultKind::kChanged);
+    if (kind) return k;
   }
   return 16;
 }

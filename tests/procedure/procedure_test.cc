@@ -2,10 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
 
 namespace twinbench::procedure {
 namespace {

@@ -1,9 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "tests/procedure/troubled_run.h"
-#include "twin/benches/rotary_4dof/settings.h"
 
 /// Faults, stops and resumed runs on the twin: whatever happens on the way, the readings are those of a run
 /// without.

@@ -1,13 +1,10 @@
 #include "twin/procedure/rest.h"
 
-#include <gtest/gtest.h>
-
+#include "tests/support/faults.h"
 #include "tests/support/kept_text.h"
-#include "twin/core/device_fault.h"
 #include "twin/core/nothing_moves.h"
 #include "twin/procedure/machine_watch.h"
 #include "twin/procedure/turning.h"
-#include "twin/procedure/whereabouts.h"
 
 /// What counts as rest, and what axes that turn or were sent somewhere are held to.
 namespace twinbench::procedure {
@@ -209,11 +206,8 @@ TEST_P(TurningShaft, IsHeldToItsSpeed) {
   turning.Told(at(0.0), at(0.0), 10.0 * units::deg, std::chrono::seconds(2));
   for (double s = 0.5; s < 20.0 && fault.empty(); s += 0.5) {
     const double told_deg = s < 2.0 ? 2.5 * s * s : 10.0 * (s - 1.0);
-    try {
-      turning.Look(axis, GetParam().shows_deg(told_deg) * units::deg, at(s), at(s));
-    } catch (const DeviceFault& error) {
-      fault = FaultName(error.kind());
-    }
+    const auto kind = test::KindOf([&] { turning.Look(axis, GetParam().shows_deg(told_deg) * units::deg, at(s), at(s)); });
+    if (kind) fault = FaultName(*kind);
   }
   EXPECT_EQ(fault, GetParam().fault);
 }

@@ -1,15 +1,10 @@
 #include "twin/procedure/stood.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/procedure/troubled_run.h"
 #include "tests/support/kept_text.h"
-#include "twin/core/device_fault.h"
-#include "twin/core/number_text.h"
-#include "twin/core/units.h"
 #include "twin/procedure/step_proof.h"
 
-/// Where tables stand while a reading is taken, and whether what is shown goes as they go.
+/// Where tables stand while a reading is taken; whether what is shown goes as they go, tests/machine/proof_by_steps_test.cc asks.
 namespace twinbench::procedure {
 namespace {
 
@@ -20,13 +15,8 @@ TEST(Stood, SaysHowFarOffItsStopAnAxisWasAndWhen) {
   EXPECT_NEAR(x.Off(), 3e-6, 1e-15);
   EXPECT_NO_THROW(RequireStood(x));
   x.tolerance = 2e-6;
-  try {
-    RequireStood(x);
-    FAIL() << "3 um are more than 2";
-  } catch (const DeviceFault& fault) {
-    EXPECT_EQ(fault.kind(), FaultKind::kMoved);
-    EXPECT_KEPT(fault.what());
-  }
+  EXPECT_EQ(test::KindOf([&] { RequireStood(x); }), FaultKind::kMoved) << "3 um are more than 2";
+  EXPECT_KEPT(test::TextOf([&] { RequireStood(x); }));
 }
 
 TEST(Stood, WhatNobodyLookedAtIsNeitherEnteredNorWrong) {
@@ -84,13 +74,10 @@ TEST(Stood, ACreepThatIsAllowedIsInTheReading) {
 
 TEST(RequireOnWay, AnAxisThatHasBeenSentIsBetweenBothEndsOfItsWayAndNotWhereItsZeroWas) {
   const auto is_on_way = [](double from, double to, double at, double took_s = 1.0) {
-    try {
-      RequireOnWay({"x", true}, from, to, at, took_s);
-    } catch (const DeviceFault& fault) {
-      EXPECT_EQ(fault.kind(), took_s < 1.0 ? FaultKind::kImplausible : FaultKind::kMoved);
-      return false;
-    }
-    return true;
+    const FaultKind expected = took_s < 1.0 ? FaultKind::kImplausible : FaultKind::kMoved;
+    const auto kind = test::KindOf([&] { RequireOnWay({"x", true}, from, to, at, took_s); });
+    EXPECT_EQ(kind.value_or(expected), expected);
+    return !kind;
   };
   for (const double at : {0.9, 1.0, 1.5, 2.0, 2.1}) EXPECT_TRUE(is_on_way(1.0, 2.0, at)) << at;
   EXPECT_FALSE(is_on_way(1.0, 2.0, 0.0));
@@ -103,59 +90,31 @@ TEST(RequireOnWay, AnAxisThatHasBeenSentIsBetweenBothEndsOfItsWayAndNotWhereItsZ
   EXPECT_FALSE(is_on_way(1.0, 0.0, 0.0, kShort_s));  // it says that it has arrived
 }
 
-/// x goes by `x` where it should go by 1, y by `y` where it should stand; no noise but a hundredth.
-std::vector<ColumnInStep> Went(double x, double y, double should = 1.0) {
-  return {{"x", should, x, 0.01}, {"y", 0.0, y, 0.01}};
-}
-
-bool IsProved(StepProof& proof, const std::vector<ColumnInStep>& columns) {
-  try {
-    proof.Require(columns);
-  } catch (const DeviceFault& fault) {
-    EXPECT_EQ(fault.kind(), FaultKind::kMoved);
-    return false;
-  }
-  return true;
-}
-
-TEST(StepProof, WhatIsShownGoesAsFarAsItShouldAndNothingElseGoes) {
-  StepProof proof(false);
-  EXPECT_TRUE(IsProved(proof, Went(1.2, 0.2)));
-  EXPECT_FALSE(IsProved(proof, Went(0.0, 0.0)));  // it stands
-  EXPECT_FALSE(IsProved(proof, Went(-1.0, 0.0)));
-  EXPECT_FALSE(IsProved(proof, Went(0.0, 1.0)));  // channels are exchanged
-  EXPECT_FALSE(IsProved(proof, Went(1e-3, 0.0)));
-  EXPECT_FALSE(IsProved(proof, Went(206.0 / 1000.0, 0.0)));  // microradians for arc seconds
-  EXPECT_FALSE(IsProved(proof, Went(kNaN, 0.0)));
-  EXPECT_TRUE(IsProved(proof, Went(1.0, 0.0)));
+/// x goes by `x` where it should go by `should`, y by `y` where it should stand; no noise but a hundredth.
+bool IsProved(StepProof& proof, double x, double y, double should = 1.0) {
+  return !test::FaultOf([&] { proof.Require({{"x", should, x, 0.01}, {"y", 0.0, y, 0.01}}); });
 }
 
 TEST(StepProof, SignsAndGainsOfWiresAreWhatTheFirstStepSaysThatNeitherStandsNorIsExchanged) {
   StepProof proof(true);
-  EXPECT_FALSE(IsProved(proof, Went(0.0, 0.0)));
-  EXPECT_FALSE(IsProved(proof, Went(0.0, 1.0)));
-  EXPECT_FALSE(IsProved(proof, Went(1e-3, 0.0)));
-  EXPECT_TRUE(IsProved(proof, Went(-0.5, 0.1)));
-  EXPECT_TRUE(IsProved(proof, Went(0.5, -0.1, -1.0)));  // the other way
-  EXPECT_FALSE(IsProved(proof, Went(0.5, 0.1)));
-  EXPECT_FALSE(IsProved(proof, Went(-1.0, 0.1)));
+  EXPECT_FALSE(IsProved(proof, 0.0, 0.0));
+  EXPECT_FALSE(IsProved(proof, 0.0, 1.0));
+  EXPECT_FALSE(IsProved(proof, 1e-3, 0.0));
+  EXPECT_TRUE(IsProved(proof, -0.5, 0.1));
+  EXPECT_TRUE(IsProved(proof, 0.5, -0.1, -1.0));  // the other way
+  EXPECT_FALSE(IsProved(proof, 0.5, 0.1));
+  EXPECT_FALSE(IsProved(proof, -1.0, 0.1));
 }
 
-TEST(StepProof, BehindComingBackAllIsShownAsBefore) {
-  StepProof proof(false);
-  const auto came_back = [](double off) { return std::vector<ColumnInStep>{{"x", 1.0, 1.0, 0.01, true, off}, {"y", 0.0, 0.0, 0.01}}; };
-  EXPECT_TRUE(IsProved(proof, came_back(0.3)));
-  EXPECT_FALSE(IsProved(proof, came_back(1.0)));
-  EXPECT_FALSE(IsProved(proof, came_back(-0.5)));
-  EXPECT_FALSE(IsProved(proof, came_back(kNaN)));
-}
-
-TEST(StepProof, OfASizeThatNobodyKnowsTheSignIsSureWhereNoiseLeavesIt) {
-  StepProof proof(false);
-  const auto went = [](double did) { return std::vector<ColumnInStep>{{"x", 1.0, did, 0.01, false}}; };
-  EXPECT_TRUE(IsProved(proof, went(20.0)));
-  EXPECT_TRUE(IsProved(proof, went(-0.1)));
-  EXPECT_FALSE(IsProved(proof, went(-0.2)));
+TEST(StepProof, AFifthOfAStepTooMuchIsNothingAndHalfOfOneIsSomethingElse) {
+  const auto is_proved = [](double x, double y, double back, bool is_of_size = true) {
+    StepProof proof(false);
+    return !test::FaultOf([&] { proof.Require({{"x", 1.0, x, 0.01, is_of_size, back}, {"y", 0.0, y, 0.01}}); });
+  };
+  EXPECT_TRUE(is_proved(1.2, 0.2, -0.2));
+  EXPECT_FALSE(is_proved(0.5, 0.0, 0.0) || is_proved(1.0, 0.5, 0.0) || is_proved(1.0, 0.0, -0.5) || is_proved(kNaN, 0.0, 0.0) || is_proved(1.0, 0.0, kNaN));
+  EXPECT_TRUE(is_proved(-0.1, 0.0, 0.0, false)) << "noise of 0.01 hides a sign of so much";
+  EXPECT_FALSE(is_proved(-0.2, 0.0, 0.0, false));
 }
 
 }  // namespace

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <string>
-
+#include "tests/support/faults.h"
 #include "tests/support/memory_log.h"
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/troubled_bench.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/core/device_fault.h"
 
 /// Runs with faults, and how they ended.
 namespace twinbench::procedure {
@@ -30,12 +28,8 @@ inline test::TroubledBench::Trouble FailsIf(
 /// "gap of adc", or "none".
 template <class Action>
 std::string FaultIn(const Action& action) {
-  try {
-    action();
-  } catch (const DeviceFault& fault) {
-    return std::string(FaultName(fault.kind())) + " of " + fault.device();
-  }
-  return "none";
+  const std::optional<DeviceFault> fault = test::FaultOf(action);
+  return fault ? std::string(FaultName(fault->kind())) + " of " + fault->device() : "none";
 }
 
 /// Carries out the scenario's procedure on this bench.

@@ -4,7 +4,6 @@
 
 #include "tests/procedure/troubled_run.h"
 #include "tests/support/kept_text.h"
-#include "twin/benches/rotary_4dof/settings.h"
 
 /// What is noticed while tables move, with tables that lie, and how a real bench is brought back.
 namespace twinbench::procedure {

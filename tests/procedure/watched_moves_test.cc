@@ -2,11 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <optional>
-
 #include "tests/fuzz/plain_bench.h"
-#include "twin/core/device_fault.h"
+#include "tests/support/faults.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -29,12 +26,9 @@ class WayOfAxis : public testing::Test {
     way_.Begins({0.0}, {kWay}, {axis.At(0.0)}, begin_, Duration(0));
     double t_s = 0.0;
     for (; axis.At(t_s) < kWay; t_s += kLook_s) {
-      try {
-        way_.Shows({axis.At(t_s)}, begin_ + FromSeconds(t_s), kStall_s);
-      } catch (const DeviceFault& fault) {
-        EXPECT_EQ(fault.kind(), FaultKind::kStalled);
-        return t_s;
-      }
+      const auto kind = test::KindOf([&] { way_.Shows({axis.At(t_s)}, begin_ + FromSeconds(t_s), kStall_s); });
+      EXPECT_EQ(kind.value_or(FaultKind::kStalled), FaultKind::kStalled);
+      if (kind) return t_s;
     }
     way_.HasEnded();
     begin_ += FromSeconds(t_s);
