@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <chrono>
-#include <thread>
 
 #include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"

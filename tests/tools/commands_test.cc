@@ -1,5 +1,4 @@
 #include <regex>
-#include <sstream>
 
 #include "tests/support/night.h"
 #include "tests/tools/program_here.h"

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
 #include "twin/core/units.h"

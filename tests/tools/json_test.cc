@@ -1,6 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <set>
 
 #include "tests/tools/program_here.h"
 

@@ -1,6 +1,3 @@
-#include <cstdio>
-#include <cstdlib>
-
 #include "tests/tools/served_program.h"
 #include "twin/core/run_record.h"
 #include "twin/core/stream.h"

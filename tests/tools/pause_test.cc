@@ -1,9 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <string>
-#include <thread>
-#include <vector>
 
 #include "tools/twinbench/alarm_text.h"
 #include "tools/twinbench/live_judge.h"
@@ -11,7 +8,6 @@
 #include "tools/twinbench/pause.h"
 #include "tools/twinbench/terminal.h"
 #include "twin/benches/registry.h"
-#include "twin/core/errors.h"
 
 /// A run that is held between two readings.
 namespace twinbench::tools {

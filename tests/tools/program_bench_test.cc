@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "tests/tools/program_here.h"
 #include "twin/core/reading_column.h"
 #include "twin/core/run_record.h"

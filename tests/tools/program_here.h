@@ -1,11 +1,6 @@
 #pragma once
 
 #include <gmock/gmock.h>
-#include <unistd.h>
-
-#include <cstdio>
-#include <functional>
-#include <iostream>
 
 #include "tests/support/kept_text.h"
 #include "tests/tools/program.h"

@@ -1,13 +1,7 @@
-#include <gmock/gmock.h>
-
-#include <cstdlib>
 #include <random>
-#include <set>
 
-#include "tests/core/input_error.h"
 #include "tests/tools/program_here.h"
 #include "tools/twinbench/measured_run.h"
-#include "twin/core/run_record.h"
 #include "twin/procedure/attempts.h"
 
 /// Runs that are broken off at any moment and taken up again by another process.
@@ -109,22 +103,6 @@ TEST_F(ResumedRun, CountsAnAttemptAtTheReadingThatWasUnderWayAndIsEvaluatedAndNo
   EXPECT_EQ(attempts[0].fault, "interrupted");
 }
 
-TEST_F(ResumedRun, AfterCtrlCGoesOnWhereItWasStopped) {
-  {
-    Process run(At(""), Measure("stopped"));
-    run.Await(4);
-    run.Signal(SIGINT);
-    const Outcome outcome = run.Wait();
-    EXPECT_EQ(outcome.exit_code, 1);
-    EXPECT_THAT(outcome.err, testing::HasSubstr("stopped"));
-    EXPECT_THAT(outcome.err, testing::HasSubstr("--resume"));
-  }
-  EXPECT_LT(Kept("stopped"), std::size_t{kReadings});
-  EXPECT_EQ(RunRecord::Open(At("stopped"))->FailedAttempts().back().fault, "stopped");
-  Succeed(Measure("stopped"));
-  EXPECT_EQ(ReadingsOf("stopped"), readings_);
-}
-
 TEST_F(ResumedRun, OfAnotherScenarioOrWithoutResumeIsRefusedAndTheFolderNotTouched) {
   auto words = Measure("undisturbed");
   ExpectRefused({words.begin(), words.end() - 1});
@@ -151,17 +129,6 @@ TEST_F(ResumedRun, IsNeverWrittenByTwo) {
   }
   first.Wait();
   EXPECT_EQ(ReadingsOf("shared"), readings_);
-}
-
-TEST_F(ResumedRun, PlaysARecordingBackToTheSameReadings) {
-  Write("replay.toml", "kind = \"replay\"\nrecord = \"undisturbed\"\n");
-  Succeed({"measure", "long.toml", "--bench", "replay.toml", "-o", "played"});
-  EXPECT_EQ(ReadingsOf("played"), readings_);
-  const Outcome other =
-      Call({"measure", "long.toml", "--bench", "replay.toml", "-o", "other", "--set", "procedure.dwell_s=[3.0]"});
-  EXPECT_EQ(other.exit_code, 1);
-  EXPECT_THAT(other.err, testing::HasSubstr("is not in the recording"));
-  EXPECT_THAT(other.err, testing::Not(testing::HasSubstr("stand")));  // nothing was asked of tables
 }
 
 // How long ago a run began, told by a record and by what a computer's clocks show when it is taken up again.

@@ -1,9 +1,4 @@
-#include <gmock/gmock.h>
 #include <pty.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cstdlib>
 
 #include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
