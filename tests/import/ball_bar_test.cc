@@ -1,13 +1,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <numbers>
 
 #include "tests/import/importing.h"
-#include "twin/core/reading_column.h"
 
 // Recordings of ball bars as people have them: other names, units, marks and orders of the same circle.
 namespace twinbench::imports {

@@ -1,12 +1,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
 
 #include "tests/import/importing.h"
-#include "twin/core/reading_column.h"
 
 // What software of ball bars exports: tags, then the values of each run, one a line.
 namespace twinbench::imports {

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <sstream>
-
 #include "tests/import/importing.h"
 #include "tests/support/kept_text.h"
 #include "twin/core/reading_clock.h"

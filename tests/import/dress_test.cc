@@ -1,7 +1,4 @@
-#include <fmt/format.h>
 #include <gmock/gmock.h>
-
-#include <cmath>
 
 #include "tests/import/importing.h"
 #include "tests/import/raw_files.h"

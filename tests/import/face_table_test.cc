@@ -1,15 +1,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
 
 #include "tests/import/importing.h"
 #include "twin/benches/evaluated.h"
-#include "twin/core/estimator.h"
-#include "twin/report/evaluation.h"
 
 // Tables of a certified polygon under an autocollimator: other names, orders, units and ways of saying the direction.
 namespace twinbench::imports {

@@ -1,14 +1,8 @@
-#include "twin/import/import.h"
-
 #include <gmock/gmock.h>
 
-#include <cmath>
-
-#include "tests/core/input_error.h"
 #include "tests/import/importing.h"
 #include "tests/import/raw_files.h"
 #include "tests/support/kept_text.h"
-#include "twin/core/units.h"
 
 namespace twinbench::imports {
 namespace {

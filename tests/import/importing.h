@@ -3,9 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
 
 #include "tests/core/input_error.h"
 #include "twin/core/units.h"

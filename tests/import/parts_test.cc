@@ -1,19 +1,13 @@
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <map>
-
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"
 #include "twin/core/units.h"
 #include "twin/import/array.h"
 #include "twin/import/blocks.h"
 #include "twin/import/clock.h"
-#include "twin/import/course.h"
 #include "twin/import/expression.h"
 #include "twin/import/follows.h"
-#include "twin/import/text.h"
-#include "twin/import/unit_names.h"
 
 namespace twinbench::imports {
 namespace {

@@ -1,12 +1,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
 
 #include "tests/import/importing.h"
-#include "twin/core/reading_column.h"
 
 // Tables of poses as R-tests and probes write them: other names, units and orders of the same readings.
 namespace twinbench::imports {

@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <random>
-#include <string>
-#include <vector>
 
 /// An axis under a reference and a device that errs, made with nothing of the program's: the raw files of these
 /// tests are printed from it.

@@ -1,17 +1,14 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "tests/import/importing.h"
 #include "tests/support/kept_text.h"
-#include "twin/core/reading_column.h"
 
 /// Records in JSON, in the shapes in which programs write them.
 namespace twinbench::imports {
 namespace {
 
-using testing::HasSubstr;
+using testing::Contains, testing::HasSubstr;
 
 double Goal_rad(int i) {
   return 1.5 * std::sin(0.02 * i);
@@ -134,6 +131,52 @@ TEST_F(XyLog, HasCentreRadiusFeedAndDirectionOfTheCommandedCircle) {
 
 TEST_F(XyLog, MayBeOfOtherPlanes) {
   Expect(Take(Log("time [s];commanded Y (mm);commanded Z (mm);actual Y (mm);actual Z (mm)", 10.0, 300.0)));
+}
+
+// All that goes before, between and behind the circles is in such logs too.
+
+/// Rows of a tool that goes from angle to angle on 40 mm about (-160, 75) mm, all of them one after the other.
+class DriveLog : public Importing {
+ protected:
+  void Arc(double from_rad, double to_rad, double feed_mm_min) {
+    constexpr double radius_mm = 40.0, step_s = 0.004;
+    const double rate = feed_mm_min / 60.0 / radius_mm, way = std::abs(to_rad - from_rad);
+    for (double gone = 0.0; gone < way; gone += rate * step_s) {
+      const double at = from_rad + std::copysign(gone, to_rad - from_rad);
+      const double x = -160.0 + radius_mm * std::cos(at), y = 75.0 + radius_mm * std::sin(at);
+      text_ += fmt::format("{:.4f}\t{:.6f}\t{:.6f}\t{:.6f}\t{:.6f}\n", time_s_ += step_s, x, y,
+                           x + 0.001 * std::cos(2.0 * at), y);
+    }
+  }
+  /// At a steadily changing feed.
+  void Ramp(double at_rad, double from_mm_min, double to_mm_min, int sense) {
+    double angle = at_rad;
+    for (int k = 0; k < 30; ++k) {
+      const double feed = from_mm_min + (to_mm_min - from_mm_min) * k / 30.0,
+                   next = angle + sense * feed / 60.0 / 40.0 * 0.004;
+      Arc(angle, next, feed);
+      angle = next;
+    }
+  }
+  std::string text_ = "Zeit [s]\tSoll Y [mm]\tSoll Z [mm]\tIst Y [mm]\tIst Z [mm]\n";
+  double time_s_ = 0.0;
+};
+
+TEST_F(DriveLog, MayHaveSeveralFeedsOneAfterTheOther) {
+  for (const double feed_mm_min : {1000.0, 4000.0}) {
+    for (const int sense : {1, -1}) {
+      Ramp(0.0, 10.0, feed_mm_min, sense);
+      Arc(0.0, sense * units::turn, feed_mm_min);
+    }
+  }
+  const Imported taken = Take(text_);
+  EXPECT_THAT(taken.story, HasSubstr("taken as --map xy_log"));
+  EXPECT_THAT(taken.set, Contains("circular_procedure.feeds_mm_min=[1000, 4000]"));
+  EXPECT_THAT(taken.set, Contains(HasSubstr("instrument=\"drive\"")));
+  const Quantity feed_m_s{"feed_mm_min"};
+  std::set<std::pair<int, long>> passes;
+  for (const Reading& r : taken.readings) passes.insert({r.direction, std::lround(feed_m_s(r) * 60.0 / units::mm)});
+  EXPECT_EQ(passes, (std::set<std::pair<int, long>>{{-1, 1000}, {-1, 4000}, {1, 1000}, {1, 4000}}));
 }
 
 }  // namespace

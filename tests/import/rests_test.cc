@@ -1,10 +1,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numeric>
 #include <random>
 
 #include "tests/import/importing.h"

@@ -1,12 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "tests/core/input_error.h"
 #include "twin/benches/evaluated.h"
-#include "twin/core/estimator.h"
 #include "twin/import/import.h"
-#include "twin/report/evaluation.h"
 
 // The shipped samples, to what the programs beside them hid.
 namespace twinbench::imports {

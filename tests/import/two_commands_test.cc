@@ -1,7 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <set>
-
 #include "tests/import/raw_files.h"
 #include "tests/tools/program.h"
 
