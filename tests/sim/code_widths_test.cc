@@ -1,10 +1,5 @@
 #include "twin/sim/code_widths.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <map>
-
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
 #include "tests/support/small_scenario.h"

@@ -1,15 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
-
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
-#include "twin/benches/names.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/effect.h"
 #include "twin/core/effect_catalogue.h"
-#include "twin/core/errors.h"
 
 namespace twinbench::sim {
 namespace {

@@ -1,10 +1,6 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "tests/support/twin_run.h"
-#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
 #include "twin/core/effect_catalogue.h"
 

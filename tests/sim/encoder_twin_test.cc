@@ -1,15 +1,8 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <complex>
 #include <nlohmann/json.hpp>
 
 #include "tests/core/input_error.h"
 #include "tests/sim/encoder_run.h"
 #include "tests/support/kept_text.h"
-#include "twin/benches/encoder_comparison/settings.h"
-#include "twin/benches/encoder_comparison/twin/twin.h"
-#include "twin/core/errors.h"
 
 namespace twinbench {
 namespace {

@@ -1,13 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
-
 #include "tests/core/input_error.h"
 #include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/core/stream.h"
 #include "twin/model/local_level.h"
 #include "twin/sim/environment.h"
 

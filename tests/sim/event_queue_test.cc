@@ -2,13 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <map>
-#include <memory>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include "twin/core/stream.h"
 #include "twin/sim/schedule.h"
 

@@ -1,13 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <cmath>
-
 #include "tests/support/angle_benches.h"
-#include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/follow.h"
 #include "twin/benches/hob_transmission/twin/world.h"
-#include "twin/benches/names.h"
 
 // The hobbing machine's twin on the course of a record says what the readings should have been.
 namespace twinbench {

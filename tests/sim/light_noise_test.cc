@@ -1,13 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/support/night.h"
 #include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/twin/psd_noise.h"
 #include "twin/benches/rotary_4dof/twin/speckle.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/core/units.h"
 #include "twin/sim/beam_wander.h"
 #include "twin/sim/flicker_noise.h"
 #include "twin/sim/low_pass.h"

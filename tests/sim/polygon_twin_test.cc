@@ -1,12 +1,6 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/core/input_error.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/kept_text.h"
-#include "twin/benches/names.h"
-#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/follow.h"
 
 // A polygon on the turntable: each face is nulled by turning the table, and the encoder is read.

@@ -1,15 +1,9 @@
 #include "twin/sim/restlessness.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/table_stack.h"
-#include "twin/sim/axes.h"
 
 namespace twinbench::sim {
 namespace {

@@ -1,18 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
-#include <functional>
 
 #include "optics/irradiance.h"
 #include "tests/core/input_error.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/small_scenario.h"
-#include "tests/support/twin_run.h"
-#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/encoder_comparison/twin/follow.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/follow.h"
 
 namespace twinbench::sim {
@@ -181,15 +175,6 @@ TEST_P(RotaryFollowEffect, IsFollowed) {
       RotaryOf(s).target.harmonics = RotaryOf(s).reference.harmonics = {};
     EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m) << effect.name << " " << where;
   }
-}
-
-// At 20 Hz a block of 16 ms holds 0.84 of a tone's amplitude, a sixth of a turn later than at its begin.
-TEST(RotaryFollow, AveragesAToneOverTheBlock) {
-  Scenario s = RichBench();
-  RotaryOf(s).adc.samples = 1000;
-  s.effects = {{"tone", "all", {{"amplitude", 1e-6}, {"frequency", 20.0}, {"phase", 0.3}}, "test"}};
-  constexpr double kMultiplexer_m = 2e-9;  // channels are converted up to 12 us one after the other
-  EXPECT_LT(Apart_m(test::RunTwin(s)), kMultiplexer_m);
 }
 
 TEST(RotaryFollow, DoesNotForeseeSingleOutliers) {

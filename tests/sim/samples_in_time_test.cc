@@ -1,11 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
-
 #include "tests/core/input_error.h"
 #include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 
 /// What happens during an A/D block is in the block. Expected are sums over the converter's instants, written here

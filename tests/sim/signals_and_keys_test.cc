@@ -1,17 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/support/angle_benches.h"
 #include "tests/support/small_scenario.h"
-#include "tests/support/twin_run.h"
-#include "twin/benches/names.h"
-#include "twin/benches/registry.h"
-#include "twin/benches/rotary_4dof/settings.h"
-#include "twin/core/bench_format.h"
-#include "twin/core/reading_column.h"
 #include "twin/sim/changed_keys.h"
-#include "twin/sim/empirical_signal.h"
 #include "twin/sim/own_tables.h"
 
 // What holds of the twin of every bench that has few readings.

@@ -1,10 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/support/angle_benches.h"
-#include "twin/benches/names.h"
-#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/effects/effects.h"
 #include "twin/benches/turntable_autocollimator/twin/follow.h"
 #include "twin/sim/table_motion.h"

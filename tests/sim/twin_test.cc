@@ -1,16 +1,9 @@
 #include "twin/benches/rotary_4dof/twin/twin.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
 #include "optics/irradiance.h"
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
-#include "twin/core/errors.h"
 
 namespace twinbench::sim {
 namespace {
