@@ -2,12 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <pugixml.hpp>
-#include <sstream>
 
 #include "twin/report/certificate/xml_text.h"
 

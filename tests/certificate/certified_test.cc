@@ -1,14 +1,9 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
 
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/certified_parts.h"
-#include "twin/core/errors.h"
-#include "twin/report/certificate/certified.h"
 #include "twin/report/certificate/laboratory.h"
 
 namespace twinbench::certificate {

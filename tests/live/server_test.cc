@@ -4,12 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <asio.hpp>
-#include <atomic>
-#include <chrono>
 #include <thread>
 
 #include "tests/core/input_error.h"
-#include "twin/core/errors.h"
 
 /// The server as a browser meets it, and as those do who are none.
 namespace twinbench::live {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/estimators/grating_model.h"
 #include "twin/benches/rotary_4dof/estimators/measure.h"

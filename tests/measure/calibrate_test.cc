@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
 #include "tests/measure/bench.h"
 
 namespace twinbench::measure {

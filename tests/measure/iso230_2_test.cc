@@ -1,18 +1,9 @@
-#include "twin/benches/encoder_comparison/estimators/iso230_2.h"
-
 #include <gmock/gmock.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
-#include <vector>
 
 #include "tests/support/kept_text.h"
 #include "twin/benches/encoder_comparison/estimators/vdi3441.h"
 #include "twin/core/csv.h"
 #include "twin/core/stream.h"
-#include "twin/core/units.h"
 
 namespace twinbench::measure {
 namespace {

@@ -1,10 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <Eigen/LU>
-
 #include "tests/measure/bench.h"
-#include "twin/benches/rotary_4dof/estimators/measure.h"
 #include "twin/benches/rotary_4dof/estimators/published_motion.h"
 
 namespace twinbench::measure {

@@ -1,8 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <stdexcept>
-
 #include "tests/measure/bench.h"
 #include "twin/benches/rotary_4dof/estimators/stability.h"
 #include "twin/benches/rotary_4dof/estimators/verification.h"

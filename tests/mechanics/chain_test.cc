@@ -1,10 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
-#include <stdexcept>
 
-#include "mechanics/chain.h"
 #include "mechanics/error_motion.h"
 #include "mechanics/sag.h"
 #include "tests/mechanics/plant_runs.h"

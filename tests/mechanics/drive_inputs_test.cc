@@ -1,8 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "mechanics/base_response.h"
 #include "mechanics/drive_loads.h"
 #include "mechanics/servo.h"

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <complex>
-
 #include "mechanics/feed_course.h"
 #include "tests/mechanics/plant_runs.h"
 

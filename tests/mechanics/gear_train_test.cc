@@ -2,14 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <complex>
-#include <functional>
-#include <memory>
-#include <stdexcept>
-#include <vector>
-
 #include "tests/mechanics/plant_runs.h"
 
 namespace twinbench::mechanics {

@@ -1,12 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-
 #include "mechanics/plant.h"
-#include "mechanics/stack.h"
 
 /// Units of the room's tests, and what those of plants share and compare.
 namespace twinbench::mechanics {

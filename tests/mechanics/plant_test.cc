@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <stdexcept>
-#include <vector>
-
 #include "mechanics/sag.h"
 #include "tests/mechanics/plant_runs.h"
 

@@ -2,12 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <complex>
-#include <functional>
-#include <stdexcept>
-#include <utility>
-
 #include "mechanics/encoder_signal.h"
 #include "tests/mechanics/plant_runs.h"
 

@@ -1,14 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <vector>
-
 #include "mechanics/adaptive_stack.h"
-#include "mechanics/linear_model.h"
-#include "mechanics/profile.h"
-#include "mechanics/servo.h"
 #include "tests/mechanics/plant_runs.h"
 
 namespace twinbench::mechanics {

@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <cmath>
-#include <stdexcept>
 
 #include "mechanics/sag.h"
 #include "tests/mechanics/plant_runs.h"

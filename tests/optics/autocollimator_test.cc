@@ -2,13 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numbers>
-#include <stdexcept>
-
 #include "optics/collimator_pupil.h"
 #include "tests/optics/example_bench.h"
 

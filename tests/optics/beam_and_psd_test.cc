@@ -1,11 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
-#include <vector>
-
-#include "optics/beam.h"
-#include "optics/psd.h"
 #include "tests/optics/example_bench.h"
 
 namespace twinbench::optics {

@@ -1,10 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <numbers>
-
-#include "optics/bench.h"
 #include "optics/element_scene.h"
 #include "tests/optics/example_bench.h"
 #include "tests/support/oracle_poses.h"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <numbers>
-
 #include "optics/bench.h"
 
 namespace twinbench::optics {

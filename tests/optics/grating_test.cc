@@ -2,11 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
 #include <random>
 
-#include "optics/grating_form.h"
 #include "tests/optics/example_bench.h"
 
 namespace twinbench::optics {

@@ -2,14 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numbers>
 #include <random>
-#include <set>
-#include <string>
 
 #include "optics/kernels.h"
 

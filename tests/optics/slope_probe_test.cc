@@ -2,11 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numbers>
-
 #include "optics/quadrant_detector.h"
 #include "optics/triangulation.h"
 

@@ -1,12 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
 #include <random>
 
 #include "optics/polarisation.h"
-#include "optics/surface.h"
-#include "optics/window.h"
 #include "tests/optics/example_bench.h"
 
 namespace twinbench::optics {

@@ -1,14 +1,9 @@
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "tests/core/input_error.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/expected.h"
-#include "twin/core/units.h"
-#include "twin/plausible/check.h"
 
 namespace twinbench::plausible {
 namespace {

@@ -1,13 +1,7 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "tests/diagnose/found_causes.h"
 #include "tests/report/page_lines.h"
 #include "tests/support/kept_text.h"
-#include "twin/core/units.h"
 #include "twin/diagnose/words.h"
-#include "twin/report/diagnosis_text.h"
 #include "twin/report/text_table.h"
 #include "twin/report/verdict_line.h"
 

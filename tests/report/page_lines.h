@@ -1,7 +1,6 @@
 #pragma once
 
 #include <sstream>
-#include <string>
 #include <vector>
 
 namespace twinbench::report::test {

@@ -1,8 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
-#include <utility>
-
 #include "twin/report/plan_text.h"
 #include "twin/report/sound.h"
 #include "twin/report/spoken_keys.h"

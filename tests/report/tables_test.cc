@@ -1,13 +1,8 @@
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <limits>
-#include <nlohmann/json.hpp>
-
 #include "tests/core/input_error.h"
 #include "tests/report/page_lines.h"
 #include "tests/support/kept_text.h"
-#include "twin/core/units.h"
 #include "twin/report/compensation_text.h"
 #include "twin/report/controller_tables.h"
 #include "twin/report/curve_score.h"

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <variant>
-#include <vector>
-
 #include "twin/report/page/figure.h"
 
 namespace twinbench::report::test {

@@ -2,9 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-#include <numbers>
 #include <random>
 
 #include "twin/report/page/circles.h"

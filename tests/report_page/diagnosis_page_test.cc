@@ -1,13 +1,10 @@
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
-
 #include "tests/report_page/blocks.h"
 #include "twin/report/page/causes.h"
 #include "twin/report/page/diagnosis_page.h"
 #include "twin/report/page/investigation_page.h"
 #include "twin/report/page/plan_page.h"
-#include "twin/report/page/run_page.h"
 
 namespace twinbench::report {
 namespace {

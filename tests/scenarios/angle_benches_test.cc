@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/turntable_autocollimator/bench.h"
 

@@ -1,13 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <numbers>
-
 #include "tests/support/angle_benches.h"
 #include "twin/benches/circular_motion/analysis.h"
-#include "twin/benches/registry.h"
 #include "twin/report/evaluation.h"
 
 // The answers that the scenarios of the circles promise.

@@ -2,8 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "tests/separate/index_spectrum.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/night.h"

@@ -1,9 +1,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "tests/support/twin_run.h"
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/estimators/device_error.h"

@@ -1,14 +1,10 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "tests/support/angle_benches.h"
 #include "tests/support/night.h"
 #include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/benches/turntable_autocollimator/estimators/polygon_analysis.h"
-#include "twin/diagnose/diagnosis.h"
 #include "twin/separate/compensation.h"
 
 // The answer that the scenario of the polygon promises, and what the other commands make of such a run.

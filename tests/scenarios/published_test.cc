@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/support/twin_run.h"
-#include "twin/benches/rotary_4dof/analysis.h"
 #include "twin/benches/rotary_4dof/tables.h"
 
 // The published equations state an uncertainty that holds, or say that their result is not one.
