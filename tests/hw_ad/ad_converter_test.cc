@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "hw_bridge/ad/negotiation.h"
+#include "tests/fuzz/plain_bench.h"
 #include "tests/hw_ad/blocks.h"
 #include "tests/support/faults.h"
 #include "tests/support/kept_text.h"
@@ -51,14 +52,6 @@ class ScriptedSource : public AdSource {
   Script& script_;
 };
 
-/// Stands still until told.
-class StandingClock : public Clock {
- public:
-  Time Now() const override { return now; }
-  void Wait(Duration duration) override { now += duration; }
-  Time now{};
-};
-
 AdSettings Settings(const std::string& kind) {
   AdSettings settings;
   settings.kind = kind;
@@ -79,7 +72,7 @@ class AdConverterTest : public ::testing::Test {
   AdSettings settings_ = Settings("iio");
   AdcSettings adc_;
   ScriptedSource::Script script_;
-  StandingClock clock_;
+  fuzz::PlainClock clock_;
 };
 
 TEST_F(AdConverterTest, AsksForTheChannelsInScanOrderAndGivesThemInChannelOrder) {
@@ -174,7 +167,7 @@ TEST_F(AdConverterTest, MeasuresWithTheCalibrationOfTheCard) {
 }
 
 TEST(MakeAdConverter, RefusesABackendThatThereIsNot) {
-  StandingClock clock;
+  fuzz::PlainClock clock;
   EXPECT_THROW(MakeAdConverter(Settings("telepathy"), {}, clock), InputError);
 }
 

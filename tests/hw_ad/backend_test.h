@@ -1,7 +1,5 @@
 #pragma once
 
-#include <asio.hpp>
-
 #include "hw_bridge/ad/ad_converter.h"
 #include "tests/hw_ad/blocks.h"
 #include "tests/support/faults.h"
@@ -14,20 +12,11 @@ class HeldTwin : public Clock {
  public:
   /// @param iiod_port  0: any that is free.
   explicit HeldTwin(const Scenario& scenario, int iiod_port = 0) : served_(At(iiod_port), scenario) {
-    scpi_.connect({asio::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(served_.at().scpi_port)});
-    scpi_.set_option(asio::ip::tcp::no_delay(true));
     Ask("CLOC:HOLD ON;:SIM:PACE OFF;:SIM:REST;*OPC?");
   }
 
   int iiod_port() const { return served_.at().iiod_port; }
-  /// Sends one SCPI line; returns the answer if it ends in a question mark.
-  std::string Ask(const std::string& line) const {
-    asio::write(scpi_, asio::buffer(line + "\n"));
-    if (line.back() != '?') return "";
-    std::string answer;
-    asio::read_until(scpi_, asio::dynamic_buffer(answer), '\n');
-    return answer.substr(0, answer.size() - 1);
-  }
+  std::string Ask(const std::string& line) const { return scpi_.Ask(line); }
   /// The next block suffers `kind`.
   void Inject(const std::string& kind) const { Ask("SIM:FAUL adc," + kind + ",1;*OPC?"); }
 
@@ -43,8 +32,7 @@ class HeldTwin : public Clock {
   }
 
   ServedTwin served_;
-  mutable asio::io_context io_;
-  mutable asio::ip::tcp::socket scpi_{io_};
+  mutable TcpClient scpi_{served_.at().scpi_port};
 };
 
 /// The kind of fault that a call ends in; "none".

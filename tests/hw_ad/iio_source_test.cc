@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <asio.hpp>
 #include <regex>
 
 #include "hw_bridge/numbers/iio_numbers.h"

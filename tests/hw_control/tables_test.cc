@@ -1,28 +1,20 @@
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "hw_bridge/control/esp_table.h"
 #include "hw_bridge/control/scpi.h"
 #include "hw_bridge/control/scpi_table.h"
-#include "tests/hw_control/fake_controller.h"
+#include "tests/hw_control/esp_model.h"
 #include "tests/support/faults.h"
 
 namespace twinbench::hw {
 namespace {
 
-using test::FakeController, test::KindOf, test::TextOf;
+using test::AxisModel, test::EspModel, test::FakeController, test::KindOf, test::TextOf;
 using testing::Contains, testing::HasSubstr, testing::Not, testing::StartsWith;
 using Reply = FakeController::Reply;
 
 constexpr Duration kTimeout = std::chrono::milliseconds(300);
 constexpr Duration kSecond = std::chrono::seconds(1);
-
-/// What a controller knows of one axis; moves are over at once.
-struct AxisModel {
-  double commanded_deg = 0.0, encoder_deg = 0.0;
-  bool referenced = true, motor_on = true;
-  double lower_deg = -200.0, upper_deg = 200.0;
-};
 
 /// A SCPI controller of two axes that can be spoiled. One thread answers, another asks: hence the lock.
 struct ScpiModel {
@@ -42,10 +34,10 @@ struct ScpiModel {
     if (verb.starts_with("ANGL ")) Move(a, verb.substr(5));
     if (verb == "HOME") a = AxisModel{};
     if (verb == "STAT?")
-      return {fmt::format("{},{},0,1,{:d},0,\"\"\n", a.commanded_deg, a.encoder_deg, a.referenced)};
+      return {fmt::format("{},{},0,1,{:d},0,\"\"\n", a.commanded, a.encoder, a.referenced)};
     if (verb.starts_with("SETT?")) return {"1\n"};
-    if (verb == "LIM:LOW?") return {fmt::format("{}\n", a.lower_deg)};
-    if (verb == "LIM:UPP?") return {fmt::format("{}\n", a.upper_deg)};
+    if (verb == "LIM:LOW?") return {fmt::format("{}\n", a.lower)};
+    if (verb == "LIM:UPP?") return {fmt::format("{}\n", a.upper)};
     return {};
   }
 
@@ -54,48 +46,7 @@ struct ScpiModel {
     if (!error.starts_with("0,")) return;
     if (restarts_at_move) a = AxisModel{.referenced = false};
     const double to_deg = ParseNumber(text).value();
-    a.commanded_deg = resolution_deg > 0.0 ? std::trunc(to_deg / resolution_deg) * resolution_deg : to_deg;
-    a.encoder_deg = a.commanded_deg;
-  }
-};
-
-/// The same in the ESP language; without MS?, as the ESP301, unless told otherwise.
-struct EspModel {
-  std::mutex mutex;
-  std::map<int, AxisModel> axis;
-  bool knows_status = false;
-  int switches = 0;  // of MS?: 2 the lower one, 4 the upper one
-  int unit = 7, error = 0;
-  int polls_until_done = 0;
-  int fastest_deg_s = 0;  // 0: it knows no VU?
-
-  Reply operator()(const std::string& line) {
-    const std::lock_guard lock(mutex);
-    if (line == "VE?") return {"ESP301 Version 3.0.1\r\n"};
-    if (line == "TB?") return {fmt::format("{}, 100, {}\r\n", std::exchange(error, 0), "text")};
-    if (line == "TS?") return {polls_until_done > 0 ? "Q\r\n" : "P\r\n"};
-    AxisModel& a = axis[line[0] - '0'];
-    const std::string verb = line.substr(1);
-    if (verb == "MS?" && knows_status) return {fmt::format("{}\r\n", (a.referenced ? 1 : 0) + switches)};
-    if (verb == "SN?") return {fmt::format("{}\r\n", unit)};
-    if (verb == "MO?") return {a.motor_on ? "1\r\n" : "0\r\n"};
-    if (verb == "MD?") return {polls_until_done-- > 0 ? "0\r\n" : "1\r\n"};
-    if (verb == "TP?") return {fmt::format("{}\r\n", a.encoder_deg)};
-    if (verb == "PA?") return {fmt::format("{}\r\n", a.commanded_deg)};
-    if (verb == "SL?") return {fmt::format("{}\r\n", a.lower_deg)};
-    if (verb == "SR?") return {fmt::format("{}\r\n", a.upper_deg)};
-    if (verb == "VU?" && fastest_deg_s > 0) return {fmt::format("{}\r\n", fastest_deg_s)};
-    Obey(a, verb);
-    return {};
-  }
-
-  void Obey(AxisModel& a, const std::string& verb) {
-    const bool is_move = verb.starts_with("PA"), is_unit = verb.starts_with("SN");
-    if (verb == "MO") a.motor_on = true;
-    if (is_unit) unit = 7;
-    if (is_move && !a.motor_on) error = 113;
-    if (is_move && a.motor_on) a.commanded_deg = a.encoder_deg = ParseNumber(verb.substr(2)).value();
-    if (!is_move && !is_unit && verb != "MO" && verb != "OR" && verb != "ST") error = 6;
+    a.Go(resolution_deg > 0.0 ? std::trunc(to_deg / resolution_deg) * resolution_deg : to_deg);
   }
 };
 
@@ -133,7 +84,7 @@ TEST_F(ScpiTables, LimitsThatSomebodyElseSetAreToldBeforeAnythingMoves) {
   ScpiTable table = Table(1);
   table.AgreeOnLimits();
   table.StartMove(0.5);
-  model_.axis[1].upper_deg += 1.0;
+  model_.axis[1].upper += 1.0;
   EXPECT_EQ(test::KindOf([&] { table.StartMove(0.25); }), FaultKind::kMoved);
   EXPECT_NEAR(table.State().encoder_rad, 0.5, 1e-15);
 }
@@ -164,7 +115,7 @@ TEST_F(ScpiTables, ARefusalOfTheControllerIsTold) {
 }
 
 TEST_F(ScpiTables, AControllerWithoutOriginGivesNoAnglesAndIsNotMoved) {
-  model_.axis[1] = {.commanded_deg = 0.0, .encoder_deg = 0.0, .referenced = false};
+  model_.axis[1] = {.referenced = false};
   ScpiTable table = Table(1);
   EXPECT_FALSE(table.State().referenced);
   EXPECT_TRUE(std::isnan(table.EncoderAngle_rad()));
@@ -260,12 +211,12 @@ TEST_F(EspTables, OfMsQueryTheLimitSwitchHasItsSide) {
 
 TEST_F(EspTables, LimitsAndAGreatestSpeedThatSomebodyElseSetAreToldBeforeAnythingMoves) {
   for (const int fastest_deg_s : {0, 40}) {
-    model_.fastest_deg_s = fastest_deg_s;
+    model_.fastest = fastest_deg_s;
     EspTable table = Table(1);
     table.AgreeOnLimits();
     table.StartMove(0.5);
-    model_.fastest_deg_s *= 2;
-    if (fastest_deg_s == 0) model_.axis[1].upper_deg += 1.0;
+    model_.fastest *= 2;
+    if (fastest_deg_s == 0) model_.axis[1].upper += 1.0;
     EXPECT_EQ(KindOf([&] { table.StartMove(0.25); }), FaultKind::kMoved);
     EXPECT_NEAR(table.State().encoder_rad, 0.5, 1e-9);
   }

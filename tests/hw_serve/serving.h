@@ -2,40 +2,9 @@
 
 #include "tests/support/served_twin.h"
 
-/// Clients of a served twin that are nothing but a socket.
 namespace twinbench::test {
 
 inline constexpr double kAtOnce = std::numeric_limits<double>::infinity();
-
-/// Every wait ends after some seconds with an exception, so that a test cannot hang.
-class TcpClient {
- public:
-  explicit TcpClient(int port, int receive_buffer = 0);
-  ~TcpClient();
-  TcpClient(const TcpClient&) = delete;
-  TcpClient& operator=(const TcpClient&) = delete;
-
-  /// @return false if the server has closed the connection.
-  bool Send(const std::string& text);
-  std::string Line();  // without its end
-  std::string Bytes(std::size_t n);
-  std::string Ask(const std::string& text) {
-    Send(text + "\n");
-    return Line();
-  }
-  long long AskNumber(const std::string& text) { return std::stoll(Ask(text)); }
-  /// Whether nothing comes within the time.
-  bool Silent(std::chrono::milliseconds time);
-  /// Whether the server closes the connection before `within`; what still comes is dropped.
-  bool Ends(std::chrono::milliseconds within = std::chrono::seconds(5));
-
- private:
-  bool Fill(std::chrono::milliseconds within);
-
-  int socket_;
-  std::string received_;
-  bool ended_ = false;
-};
 
 /// Scans of a buffer with all channels and the time stamp.
 struct Scans {
@@ -47,8 +16,28 @@ struct Scans {
 class BufferClient {
  public:
   static constexpr std::size_t kScanBytes = 16;
-  explicit BufferClient(int port, int scans);
-  Scans Read(int scans);
+  explicit BufferClient(int port, int scans) : socket_(port) {
+    if (socket_.Ask("OPEN psd-adc16 " + std::to_string(scans) + " 0000001f") != "0")
+      throw std::runtime_error("the buffer does not open");
+  }
+  Scans Read(int scans) {
+    const std::size_t bytes = static_cast<std::size_t>(scans) * kScanBytes;
+    if (socket_.AskNumber("READBUF psd-adc16 " + std::to_string(bytes)) != static_cast<long long>(bytes) ||
+        socket_.Line() != "0000001f") {
+      throw std::runtime_error("the block is not what was asked for");
+    }
+    const std::string data = socket_.Bytes(bytes);
+    Scans block;
+    for (std::size_t at = 0; at < bytes; at += kScanBytes) {
+      std::int16_t codes[kChannels];
+      std::int64_t stamp_ns = 0;
+      std::memcpy(codes, data.data() + at, sizeof codes);
+      std::memcpy(&stamp_ns, data.data() + at + sizeof codes, sizeof stamp_ns);
+      block.raw.insert(block.raw.end(), codes, codes + kChannels);
+      block.stamps_ns.push_back(stamp_ns);
+    }
+    return block;
+  }
   TcpClient& socket() { return socket_; }
 
  private:

@@ -3,50 +3,20 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <asio.hpp>
 #include <thread>
 
 #include "tests/core/input_error.h"
+#include "tests/support/tcp_client.h"
 
 /// The server as a browser meets it, and as those do who are none.
 namespace twinbench::live {
 namespace {
 
-using asio::ip::tcp, std::chrono::duration, std::chrono::milliseconds, std::chrono::steady_clock;
-using testing::HasSubstr, testing::Not, testing::StartsWith;
+using std::chrono::duration, std::chrono::milliseconds, std::chrono::steady_clock;
+using test::TcpClient, testing::HasSubstr, testing::Not, testing::StartsWith;
 
 constexpr const char* kMarkup =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'sha256-abc'\">page";
-
-class Client {
- public:
-  explicit Client(int port) : socket_(io_) {
-    socket_.connect({asio::ip::address_v4::loopback(), static_cast<unsigned short>(port)});
-  }
-  void Say(const std::string& text) { asio::write(socket_, asio::buffer(text)); }
-  /// Whether the server takes it all: it may have hung up before.
-  bool SayAsLongAsHeard(const std::string& text) {
-    asio::error_code error;
-    asio::write(socket_, asio::buffer(text), error);
-    return !error;
-  }
-  /// Until the server ends the connection.
-  std::string HearAll() {
-    std::string text;
-    asio::error_code error;
-    asio::read(socket_, asio::dynamic_buffer(text), error);
-    return text;
-  }
-  std::string HearUntil(const std::string& mark) {
-    std::string text;
-    asio::read_until(socket_, asio::dynamic_buffer(text), mark);
-    return text;
-  }
-
- private:
-  asio::io_context io_;
-  tcp::socket socket_;
-};
 
 class Live : public ::testing::Test {
  protected:
@@ -59,9 +29,9 @@ class Live : public ::testing::Test {
                        headers);
   }
   std::string Ask(const std::string& text) const {
-    Client client(server_.port());
-    client.Say(text);
-    return client.HearAll();
+    TcpClient client(server_.port());
+    client.Send(text);
+    return client.Rest();
   }
 
   std::atomic<int> stops_ = 0;
@@ -101,25 +71,25 @@ TEST_F(Live, PassesOnAPauseToWhoeverCanPause) {
   Server other({0, kMarkup, [] {}, [&](bool pauses) { wishes.push_back(pauses); }});
   const std::string query = other.address().substr(other.address().find('?'));
   for (const char* path : {"/pause", "/resume"}) {
-    Client client(other.port());
-    client.Say(fmt::format("POST {}{} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nConnection: close\r\n\r\n", path, query, other.port()));
-    EXPECT_THAT(client.HearAll(), StartsWith("HTTP/1.1 202"));
+    TcpClient client(other.port());
+    client.Send(fmt::format("POST {}{} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nConnection: close\r\n\r\n", path, query, other.port()));
+    EXPECT_THAT(client.Rest(), StartsWith("HTTP/1.1 202"));
   }
   EXPECT_EQ(wishes, (std::vector<bool>{true, false}));
 }
 
 TEST_F(Live, IsToldFromOtherThreadsToo) {
   std::jthread([this] { server_.Post("alarm", "1"); }).join();
-  Client client(server_.port());
-  client.Say(Asking("GET", Target("/events")));
-  EXPECT_THAT(client.HearUntil("data: 1\n\n"), HasSubstr("event: alarm"));
+  TcpClient client(server_.port());
+  client.Send(Asking("GET", Target("/events")));
+  EXPECT_THAT(client.Until("data: 1\n\n"), HasSubstr("event: alarm"));
 }
 
 TEST_F(Live, OversizedRequestsAreRefused) {
   EXPECT_THAT(Ask(Asking("POST", Target("/stop"), "Content-Length: 1000000\r\n")), StartsWith("HTTP/1.1 413"));
-  Client client(server_.port());
-  client.SayAsLongAsHeard(Asking("POST", Target("/stop"), "X: " + std::string(20000, 'x') + "\r\n"));
-  EXPECT_THAT(client.HearAll(), Not(HasSubstr("202")));
+  TcpClient client(server_.port());
+  client.Send(Asking("POST", Target("/stop"), "X: " + std::string(20000, 'x') + "\r\n"));
+  EXPECT_THAT(client.Rest(), Not(HasSubstr("202")));
   EXPECT_THAT(Ask("nonsense\r\n\r\n"), Not(HasSubstr("202")));
   EXPECT_EQ(stops_, 0);
 }
@@ -127,14 +97,14 @@ TEST_F(Live, OversizedRequestsAreRefused) {
 TEST_F(Live, TellsWhatHappensFromTheBeginningToWhoeverComesLater) {
   server_.Begin(R"({"bench":"any"})");
   for (int k = 0; k < 3; ++k) server_.Tell("reading", std::to_string(k));
-  Client client(server_.port());
-  client.Say(Asking("GET", Target("/events")));
-  const std::string heard = client.HearUntil("data: 2\n\n");
+  TcpClient client(server_.port());
+  client.Send(Asking("GET", Target("/events")));
+  const std::string heard = client.Until("data: 2\n\n");
   EXPECT_THAT(heard, HasSubstr("Content-Type: text/event-stream"));
   EXPECT_THAT(heard, HasSubstr("event: begin\ndata: {\"bench\":\"any\"}\n\nid: 0\nevent: reading\ndata: 0\n\n"));
   server_.Tell("end", "{}");
   server_.Finish();
-  EXPECT_THAT(client.HearUntil("event: end\n"), HasSubstr("id: 3"));
+  EXPECT_THAT(client.Until("event: end\n"), HasSubstr("id: 3"));
 }
 
 TEST_F(Live, APortThatIsTakenIsRefused) {
@@ -157,15 +127,15 @@ TEST_F(Live, HearsAStopHoweverManyPagesListen) {
 /// Strangers who say half a request, pages that listen and never read, and the one who must be heard.
 TEST_F(Live, TwoHundredConnectionsDelayNeitherReadingsNorAStop) {
   server_.Begin("{}");
-  std::vector<std::unique_ptr<Client>> pages, strangers;
+  std::vector<std::unique_ptr<TcpClient>> pages, strangers;
   for (int k = 0; k < 20; ++k) {
-    pages.push_back(std::make_unique<Client>(server_.port()));
-    pages.back()->Say(Asking("GET", Target("/events")));
+    pages.push_back(std::make_unique<TcpClient>(server_.port()));
+    pages.back()->Send(Asking("GET", Target("/events")));
   }
-  for (const auto& page : pages) page->HearUntil("event: begin");
+  for (const auto& page : pages) page->Until("event: begin");
   for (int k = 0; k < 180; ++k) {
-    strangers.push_back(std::make_unique<Client>(server_.port()));
-    strangers.back()->SayAsLongAsHeard("GET / HTTP/1.1\r\nHost: ");
+    strangers.push_back(std::make_unique<TcpClient>(server_.port()));
+    strangers.back()->Send("GET / HTTP/1.1\r\nHost: ");
   }
   const std::string reading(400, '1');
   duration<double, std::micro> longest{}, sum{};

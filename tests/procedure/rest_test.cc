@@ -1,5 +1,6 @@
 #include "twin/procedure/rest.h"
 
+#include "tests/fuzz/plain_bench.h"
 #include "tests/support/faults.h"
 #include "tests/support/kept_text.h"
 #include "twin/core/nothing_moves.h"
@@ -9,12 +10,6 @@
 /// What counts as rest, and what axes that turn or were sent somewhere are held to.
 namespace twinbench::procedure {
 namespace {
-
-struct CountingClock : Clock {
-  Time Now() const override { return now; }
-  void Wait(Duration duration) override { now += duration; }
-  Time now{};
-};
 
 /// An axis in mm whose controller does whatever the test wants, from the first stop and look on.
 struct ScriptedAxis {
@@ -52,18 +47,18 @@ class BringingToRest : public testing::TestWithParam<Stop> {};
 TEST_P(BringingToRest, EndsWhereRestIsSeenOrNobodyKnows) {
   ScriptedAxis axis;
   GetParam().is_so(axis);
-  CountingClock clock;
+  fuzz::PlainClock clock;
   const Standstill stands = BringToRest(clock, {axis.Part()});
   EXPECT_EQ(stands.is_sure, GetParam().is_at_rest) << stands.why_not;
   EXPECT_EQ(stands.is_sure, stands.why_not.empty());
   EXPECT_GE(axis.stops, GetParam().stops.first);
   EXPECT_LE(axis.stops, GetParam().stops.second);
   if (!stands.is_sure) {
-    EXPECT_LE(ToSeconds(clock.now), 5.0);
+    EXPECT_LE(ToSeconds(clock.Now()), 5.0);
   }
   if (stands.is_sure && axis.looks > 0) {
     EXPECT_GE(axis.looks, 3);
-    EXPECT_GE(ToSeconds(clock.now), 1.0);
+    EXPECT_GE(ToSeconds(clock.Now()), 1.0);
   }
 }
 
@@ -137,16 +132,16 @@ TEST(BringingToRest, TellsAllBeforeItLooksAtAnyAndSaysWhoMoves) {
     throw kMute;
   };
   moving.axis.moving = true;
-  CountingClock clock;
+  fuzz::PlainClock clock;
   EXPECT_KEPT(BringToRest(clock, {mute.Part(), moving.Part()}).why_not);
 }
 
 /// Seconds until a link is given up on which every word is waited for so long, and whether it was told that all rest.
 std::pair<double, bool> TriedFor(double timeout_s, int parts, double answers_from_s = 1e9) {
-  CountingClock clock;
+  fuzz::PlainClock clock;
   const auto ask = [&] {
-    if (ToSeconds(clock.now) >= answers_from_s) return;
-    clock.now += FromSeconds(timeout_s);
+    if (ToSeconds(clock.Now()) >= answers_from_s) return;
+    clock.Wait(FromSeconds(timeout_s));
     throw kMute;
   };
   std::vector<ScriptedAxis> axes(static_cast<std::size_t>(parts));
@@ -155,8 +150,8 @@ std::pair<double, bool> TriedFor(double timeout_s, int parts, double answers_fro
     axis.when_stopped = axis.when_looked_at = [&](ScriptedAxis&) { ask(); };
     all.push_back(axis.Part());
   }
-  const bool is_sure = BringToRest(clock, all, [&] { return HostTime(clock.now.time_since_epoch()); }).is_sure;
-  return {ToSeconds(clock.now), is_sure};
+  const bool is_sure = BringToRest(clock, all, [&] { return HostTime(clock.Now().time_since_epoch()); }).is_sure;
+  return {ToSeconds(clock.Now()), is_sure};
 }
 
 TEST(BringingToRest, OverADeadLinkIsGivenUpWithinFiveSecondsHoweverManyHangOnIt) {

@@ -72,36 +72,23 @@ TEST_F(WayOfAxis, WhereItSettlesNothingIsAsked) {
 }
 
 /// Stands, and is on a switch from the n-th look on.
-class AtSwitch : public MachineController {
+class AtSwitch : public fuzz::PlainMachine {
  public:
   explicit AtSwitch(int limit) : limit_(limit) {}
-  const std::vector<MachineAxis>& Axes() const override { return axes_; }
-  std::vector<AxisLimits> Travel() override { return {{}}; }
-  void StartMove(const std::vector<double>&, double) override {}
-  void StartArc(const Arc&) override {}
   bool Settles(Duration within) override { return asked += within, false; }
   std::vector<AxisState> State() override {
     AxisState state;
     state.commanded = 1.0, state.encoder = 0.5, state.limit = limit_;
     return {state};
   }
-  void Stop() override {}
-  void Home() override {}
   Duration asked{0};
 
  private:
   int limit_;
-  std::vector<MachineAxis> axes_ = {{"x", false}};
-};
-
-class StandingClock : public Clock {
- public:
-  Time Now() const override { return {}; }
-  void Wait(Duration) override {}
 };
 
 TEST(WatchedMachine, ComesBackAtOnceWhereItRunsOntoASwitchAndNotWhereItLeavesOne) {
-  const StandingClock clock;
+  const fuzz::PlainClock clock;
   const std::vector<AxisLimits> limits;
   const auto waited_s = [&](int limit) {
     AtSwitch machine(limit);

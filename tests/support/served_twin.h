@@ -2,12 +2,12 @@
 
 #include <thread>
 
-#include "hw_bridge/control/line_link.h"
 #include "hw_bridge/open_bench.h"
 #include "hw_bridge/serve/server.h"
 #include "tests/support/memory_log.h"
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/sanitized.h"
+#include "tests/support/tcp_client.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 
 namespace twinbench::test {
@@ -45,13 +45,7 @@ class RunningServer {
   hw::ServedAddresses at() const { return server_.Addresses(); }
   std::string ScpiAddress() const { return "tcp:" + at().host + ":" + std::to_string(at().scpi_port); }
   /// One answer of its SCPI port.
-  std::string Ask(const std::string& line) const {
-    constexpr auto kPatience = std::chrono::seconds(5);
-    hw::OpenedLink opened = hw::OpenLink(hw::ParseAddress(ScpiAddress()).value(), kPatience);
-    if (!opened.link) throw BenchError("no connection: " + opened.why);
-    opened.link->Send(line + "\n", kPatience);
-    return opened.link->ReadLine(kPatience).line;
-  }
+  std::string Ask(const std::string& line) const { return TcpClient(at().scpi_port).Ask(line); }
   /// Asks it to suffer: "adc,drop", "target,lost_step,2".
   void Inject(const std::string& fault) const {
     const std::string answer = Ask("SIM:FAUL " + fault + ";SYST:ERR?");

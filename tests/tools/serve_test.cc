@@ -1,3 +1,4 @@
+#include "tests/support/tcp_client.h"
 #include "tests/tools/served_program.h"
 #include "twin/core/run_record.h"
 
@@ -15,9 +16,7 @@ class Served : public ServedProgram {
   void Say(const std::string& command) {
     const std::string file = Read("bench.toml"), before = "kind = \"scpi\"\naddress = \"tcp:127.0.0.1:";
     const auto at = file.find(before) + before.size();
-    const std::string port = file.substr(at, file.find('"', at) - at);
-    Write("say.sh", "exec 3<>/dev/tcp/127.0.0.1/" + port + "; echo '" + command + ";*OPC?' >&3; read -r done <&3\n");
-    ASSERT_EQ(std::system(("bash " + At("say.sh")).c_str()), 0);
+    EXPECT_EQ(TcpClient(std::stoi(file.substr(at))).Ask(command + ";*OPC?"), "1");
   }
   /// @return what is said; nothing was begun.
   std::string ExpectRehearsalStops(const std::vector<std::string>& options, const std::string& said) {

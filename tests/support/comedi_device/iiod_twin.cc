@@ -1,10 +1,9 @@
 #include "tests/support/comedi_device/iiod_twin.h"
 
-#include <arpa/inet.h>
-#include <netinet/tcp.h>
-
 #include <cmath>
 #include <cstring>
+
+#include "tests/support/tcp_client.h"
 
 namespace twinbench::test {
 namespace {
@@ -12,49 +11,6 @@ namespace {
 constexpr const char* kDevice = "psd-adc16";
 constexpr const char* kMask = "0000001f";  // four inputs and the time stamp
 constexpr std::size_t kScanBytes = kInputs * sizeof(std::int16_t) + sizeof(std::int64_t);
-
-struct Ended : std::runtime_error {
-  Ended() : std::runtime_error("the twin has closed the connection") {}
-};
-
-class Connection {
- public:
-  explicit Connection(const std::string& address) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
-    const auto colon = address.find(':');
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(static_cast<std::uint16_t>(std::stoi(address.substr(colon + 1))));
-    inet_pton(AF_INET, address.substr(0, colon).c_str(), &to.sin_addr);
-    const int on = 1;
-    setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    if (connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0) return;
-    close(socket_);
-    throw Ended();
-  }
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-  ~Connection() { close(socket_); }
-  int socket_number() const { return socket_; }
-
-  void Send(const std::string& line) {
-    const std::string text = line + "\r\n";
-    if (send(socket_, text.data(), text.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(text.size())) throw Ended();
-  }
-  std::string Bytes(std::size_t n) {
-    std::string bytes(n, '\0');
-    if (recv(socket_, bytes.data(), n, MSG_WAITALL) != static_cast<ssize_t>(n)) throw Ended();
-    return bytes;
-  }
-  std::string Line() {
-    std::string line;
-    for (char c = Bytes(1)[0]; c != '\n'; c = Bytes(1)[0]) line += c;
-    return line;
-  }
-  long Number() { return std::stol(Line()); }
-
- private:
-  int socket_;
-};
 
 /// Scans out of bytes that come in any pieces; watches their time stamps.
 class Scans {
@@ -95,11 +51,10 @@ class Scans {
 }  // namespace
 
 std::string IiodTwin::Attribute(const std::string& name) {
-  Connection twin(address_);
-  twin.Send(std::string("READ ") + kDevice + " " + name);
-  const long length = twin.Number();
-  if (length < 0) throw Ended();
-  std::string text = twin.Bytes(static_cast<std::size_t>(length));
+  TcpClient twin(port_);
+  const auto length = twin.AskNumber(std::string("READ ") + kDevice + " " + name);
+  if (length < 0) throw std::runtime_error("the twin has no " + name);
+  const std::string text = twin.Bytes(static_cast<std::size_t>(length));
   return text.c_str();  // up to its NUL
 }
 
@@ -117,15 +72,15 @@ unsigned IiodTwin::Lines() {
 Ending IiodTwin::Acquire(int scans, const std::function<void(std::span<const std::int16_t, kInputs>)>& take) {
   try {
     Scans taken(kInputs * 1e9 / std::stod(Attribute("conversion_frequency")));
-    Connection twin(address_);
-    streaming_ = twin.socket_number();
-    if (aborted_) throw Ended();
-    twin.Send(std::string("OPEN ") + kDevice + " " + std::to_string(scans) + " " + kMask);
-    if (twin.Number() < 0) return Ending::kFifoFull;
+    TcpClient twin(port_);
+    streaming_ = twin.number();
+    if (aborted_) throw std::runtime_error("aborted");
+    if (twin.AskNumber(std::string("OPEN ") + kDevice + " " + std::to_string(scans) + " " + kMask) < 0)
+      return Ending::kFifoFull;
     std::size_t missing = static_cast<std::size_t>(scans) * kScanBytes;
-    twin.Send(std::string("READBUF ") + kDevice + " " + std::to_string(missing));
+    twin.Send(std::string("READBUF ") + kDevice + " " + std::to_string(missing) + "\n");
     for (bool first = true; missing > 0; first = false) {
-      const long n = twin.Number();
+      const long n = std::stol(twin.Line());
       if (n == 0) return Ending::kShort;
       if (n < 0) return Ending::kFifoFull;
       if (first) twin.Line();  // the mask
@@ -133,10 +88,9 @@ Ending IiodTwin::Acquire(int scans, const std::function<void(std::span<const std
       missing -= static_cast<std::size_t>(n);
     }
     streaming_ = -1;
-    twin.Send(std::string("CLOSE ") + kDevice);
-    twin.Number();
+    twin.AskNumber(std::string("CLOSE ") + kDevice);
     return Ending::kComplete;
-  } catch (const Ended&) {
+  } catch (const std::runtime_error&) {
     streaming_ = -1;
     return Ending::kFifoFull;
   }
@@ -150,7 +104,7 @@ void IiodTwin::Abort() {
 
 std::unique_ptr<IiodTwin> TwinOfThisProcess() {
   const char* address = std::getenv("TWINBENCH_COMEDI_TWIN");
-  if (address == nullptr) throw Ended();
+  if (address == nullptr) throw std::runtime_error("TWINBENCH_COMEDI_TWIN names no twin");
   return std::make_unique<IiodTwin>(address);
 }
 

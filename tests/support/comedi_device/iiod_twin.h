@@ -23,8 +23,8 @@ enum class Ending { kComplete, kFifoFull, kShort };
 /// that the card shows the twin's own counts.
 class IiodTwin {
  public:
-  /// @param address  "HOST:PORT", numeric.
-  explicit IiodTwin(const std::string& address) : address_(address) {}
+  /// @param address  "HOST:PORT", of this computer.
+  explicit IiodTwin(const std::string& address) : port_(std::stoi(address.substr(address.find(':') + 1))) {}
 
   CardTraits Traits();
   /// Bits: 0 = light on PSD A, 1 = on PSD B, 2 = both spots inside.
@@ -38,7 +38,7 @@ class IiodTwin {
  private:
   std::string Attribute(const std::string& name);
 
-  std::string address_;
+  int port_;
   std::atomic<int> streaming_ = -1;  // socket of the acquisition
   std::atomic<bool> aborted_ = false;
 };
