@@ -18,8 +18,8 @@ struct AxisModel {
   void Go(double to) { commanded = encoder = to; }
 };
 
-/// A controller of two axes in the ESP language that can be spoiled; without MS?, as the ESP301, unless told otherwise.
-/// One thread answers, another asks: hence the lock.
+/// A controller of two axes in the ESP language that can be spoiled; without MS?, as the ESP301, unless told
+/// otherwise. One thread answers, another asks: hence the lock.
 struct EspModel {
   std::mutex mutex{};
   std::map<int, AxisModel> axis = {{1, {}}, {2, {}}};
@@ -27,8 +27,8 @@ struct EspModel {
   int switches = 0;  // of MS?: 2 the lower one, 4 the upper one
   int unit = 7, error = 0;
   int polls_until_done = 0;
-  int fastest = 0;    // 0: it knows no VU?
-  int decimals = 4;   // that it understands of a group's places
+  int fastest = 0;      // 0: it knows no VU?
+  int decimals = 4;     // that it understands of a group's places
   std::string group{};  // that somebody else has formed: "1,2"; it cannot be formed again
 
   /// Several questions may stand on one line.
@@ -73,7 +73,8 @@ struct EspModel {
     if (is_move && a.motor_on) a.Go(ParseNumber(verb.substr(2)).value());
     if (verb.starts_with("HL")) GoTogether(verb.substr(2));
     if (verb.starts_with("HN") && !group.empty()) error = 16;
-    if (!verb.starts_with('H') && std::string("MO OR ST SN PA").find(verb.substr(0, 2)) == std::string::npos) error = 6;
+    if (!verb.starts_with('H') && std::string("MO OR ST SN PA").find(verb.substr(0, 2)) == std::string::npos)
+      error = 6;
   }
 
   void GoTogether(const std::string& places) {
