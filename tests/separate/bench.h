@@ -1,17 +1,10 @@
 #pragma once
 
-#include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/separated_table.h"
 #include "twin/benches/rotary_4dof/estimators/measure.h"
 #include "twin/benches/rotary_4dof/estimators/residuals.h"
 #include "twin/benches/rotary_4dof/estimators/separator.h"
-#include "twin/core/reading.h"
 #include "twin/core/stream.h"
 
 /// What the tests of this room share: the reference bench, designs, motions made straight from table errors.

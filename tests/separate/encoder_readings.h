@@ -1,13 +1,10 @@
 #pragma once
 
-#include <cmath>
 #include <functional>
-#include <vector>
 
 #include "tests/separate/waves.h"
 #include "twin/core/reading.h"
 #include "twin/core/stream.h"
-#include "twin/core/units.h"
 
 /// Readings of an angle comparison from closed forms, independent of the twin.
 namespace twinbench::test {

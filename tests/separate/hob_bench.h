@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "tests/separate/waves.h"
 #include "twin/benches/hob_transmission/estimators/transmission_error.h"
 #include "twin/core/stream.h"

@@ -3,7 +3,6 @@
 #include "tests/core/input_error.h"
 #include "tests/separate/hob_bench.h"
 #include "tests/support/kept_text.h"
-#include "twin/benches/hob_transmission/estimators/transmission_error.h"
 #include "twin/benches/hob_transmission/estimators/turn_fit.h"
 
 namespace twinbench::separate::hob {

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <random>
-#include <vector>
 
 #include "twin/core/units.h"
 #include "twin/separate/index_errors.h"

@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <vector>
 
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <functional>
 #include <random>
-#include <vector>
 
 #include "twin/benches/rotary_4dof/columns.h"
 #include "twin/benches/rotary_4dof/estimators/probe_separation.h"

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "tests/separate/bench.h"

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <complex>
-#include <vector>
 
 #include "twin/core/units.h"
 

@@ -1,12 +1,10 @@
 #include <gmock/gmock.h>
 
-#include <Eigen/Dense>
 #include <utility>
 
 #include "tests/separate/shift_formulas.h"
 #include "tests/separate/turntable_run.h"
 #include "tests/support/kept_text.h"
-#include "twin/benches/turntable_autocollimator/estimators/indexing.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::separate::turntable {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <vector>
 
 #include "twin/benches/turntable_autocollimator/estimators/indexing.h"
 #include "twin/core/stream.h"

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <functional>
 #include <random>
-#include <vector>
 
 #include "twin/benches/turntable_autocollimator/estimators/collimator_sweep.h"
 #include "twin/core/units.h"

@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <vector>
 
 #include "twin/core/units.h"
 #include "twin/separate/series.h"
