@@ -1,17 +1,9 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "tests/support/angle_benches.h"
-#include "twin/benches/registry.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/estimator.h"
 #include "twin/core/scenario_uncertainty.h"
 #include "twin/report/evaluation.h"

@@ -1,11 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "tests/uncertainty/bench_budget.h"
 #include "twin/uncertainty/agreement.h"
-#include "twin/uncertainty/monte_carlo.h"
 #include "twin/uncertainty/one_at_a_time.h"
 
 namespace twinbench::uncertainty {

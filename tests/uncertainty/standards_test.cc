@@ -1,16 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <random>
 
-#include "tests/support/twin_run.h"
 #include "tests/uncertainty/bench_budget.h"
-#include "twin/benches/hob_transmission/settings.h"
-#include "twin/benches/registry.h"
-#include "twin/report/evaluation.h"
-#include "twin/uncertainty/budget.h"
 #include "twin/uncertainty/standards.h"
 
 // The published estimators of the other benches: an uncertainty that holds, or none (rotary_4dof:
