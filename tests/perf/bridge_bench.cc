@@ -17,12 +17,10 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <string>
 #include <thread>
 
 #include "hw_bridge/serve/server.h"
 #include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/errors.h"
 

@@ -1,15 +1,13 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <ctime>
 #include <random>
-#include <vector>
 
+#include "tests/perf/timing.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/diagnose.h"
 #include "twin/model/signals.h"
 #include "twin/model/wave_sums.h"
 
@@ -83,9 +81,9 @@ void Diagnose(benchmark::State& state, Error error_deg) {
   Scenario scenario;
   scenario.bench = kEncoderBench;
   EncoderOf(scenario).encoder_procedure.kind = "sweep";
-  const std::clock_t begin = std::clock();
+  const double begin_s = perf::Seconds();
   for (auto _ : state) benchmark::DoNotOptimize(diagnose::Diagnose(readings, scenario, {}).diagnosis.readings);
-  const double taken_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  const double taken_s = perf::Seconds() - begin_s;
   constexpr double kAsked_s = 10.0;  // of 20 000 readings
   state.counters["asked/taken"] = kAsked_s * static_cast<double>(state.iterations()) / taken_s;
 }

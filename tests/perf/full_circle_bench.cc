@@ -9,19 +9,12 @@
 //   build/tests/perf/bench_full_circle --benchmark_counters_tabular=true
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <array>
-#include <span>
-#include <vector>
-
 #include "tests/perf/timing.h"
 #include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/optical_path.h"
 #include "twin/benches/rotary_4dof/twin/table_stack.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/core/scenario.h"
 #include "twin/core/stream.h"
 
 namespace twinbench {

@@ -10,12 +10,10 @@
 
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <string>
-#include <vector>
 
 #include "optics/bench.h"
 #include "tests/perf/timing.h"

@@ -8,10 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include <random>
-#include <string>
-#include <vector>
 
-#include "twin/core/stream.h"
 #include "twin/sim/ad_sampler.h"
 #include "twin/sim/event_queue.h"
 

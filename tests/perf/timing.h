@@ -6,10 +6,10 @@
 
 namespace twinbench::perf {
 
-/// Time that this process computed, whoever else keeps the machine busy.
-inline double Seconds() {
+/// Time that this process, or this thread, computed, whoever else keeps the machine busy.
+inline double Seconds(clockid_t clock = CLOCK_PROCESS_CPUTIME_ID) {
   timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  clock_gettime(clock, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 

@@ -1,12 +1,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "tests/uncertainty/bench_budget.h"
-#include "twin/benches/registry.h"
 #include "twin/plan/advice.h"
 #include "twin/plan/harmonics.h"
 #include "twin/plan/next_run.h"

@@ -1,19 +1,15 @@
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 
+#include "tests/perf/timing.h"
 #include "tests/support/night.h"
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/plan_advice.h"
-#include "tools/twinbench/planned_run.h"
 #include "twin/benches/evaluated.h"
-#include "twin/core/estimator.h"
-#include "twin/report/evaluation.h"
 
 /// `check` says of a scenario in a second what its run would state (docs/plan.md): held against the runs of the shipped scenarios.
 namespace twinbench::tools {
@@ -35,9 +31,9 @@ Scenario Shipped(const std::string& name, const std::vector<std::string>& sets =
 }
 
 double CpuSecondsOfCheck(const std::string& name) {
-  const std::clock_t begin = std::clock();
+  const double begin_s = perf::Seconds();
   OutlookAtOnce(Shipped(name));
-  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  return perf::Seconds() - begin_s;
 }
 
 TEST(Check, TakesLessThanASecond) {

@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/hidden/effect_size.h"
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/planned_run.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/diagnose.h"
 #include "twin/core/errors.h"
-#include "twin/core/estimator.h"
-#include "twin/core/stream.h"
 #include "twin/diagnose/cause_groups.h"
 #include "twin/diagnose/engine/noise_model.h"
-#include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/diagnose/words.h"
 

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "tests/hidden/placements.h"
 #include "tests/hidden/twin_cases.h"
 #include "twin/diagnose/isolability.h"

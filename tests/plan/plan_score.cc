@@ -2,11 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <map>
-#include <memory>
 
 #include "tests/plan/plan_claims.h"
-#include "twin/core/stream.h"
 #include "twin/diagnose/tuning.h"
 
 // Whether what a plan claims holds on the twin: docs/plan.md is what it printed.

@@ -8,12 +8,10 @@
 #include "tests/support/twin_run.h"
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/plan_advice.h"
-#include "tools/twinbench/planned_run.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/estimator.h"
-#include "twin/diagnose/isolability.h"
 #include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
