@@ -2,9 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cstdlib>
-#include <thread>
-
 #include "tests/campaign/small_study.h"
 #include "twin/core/sqlite_database.h"
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "twin/benches/circular_motion/twin/live.h"
 
 namespace twinbench::test {

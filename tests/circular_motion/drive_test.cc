@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -7,9 +6,7 @@
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/twin/live.h"
 #include "twin/benches/evaluated.h"
-#include "twin/core/estimator.h"
 #include "twin/core/stream.h"
-#include "twin/report/evaluation.h"
 
 // What a controller logs of its own axes on a circle. Readings are written here from how late each axis is.
 namespace twinbench::benches::circular {

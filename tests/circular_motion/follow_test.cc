@@ -5,6 +5,7 @@
 
 #include "tests/circular_motion/oracle.h"
 #include "twin/benches/circular_motion/twin/factory.h"
+#include "twin/core/csv.h"
 
 namespace twinbench::benches::circular {
 namespace {

@@ -1,14 +1,9 @@
 #pragma once
 
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
-#include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/settings.h"
-#include "twin/core/csv.h"
 #include "twin/core/reading.h"
 
 /// Points and a run by an independent implementation of the same definitions, and what tests make of them.

@@ -1,4 +1,4 @@
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@
 #include "twin/benches/circular_motion/bench.h"
 #include "twin/benches/circular_motion/twin/factory.h"
 #include "twin/diagnose/by_twin.h"
-#include "twin/diagnose/diagnose.h"
 
 // The figures of the bar's paper, and what stands behind the uncertainties that are stated beside them: many runs.
 namespace twinbench::benches::circular {

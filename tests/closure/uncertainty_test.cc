@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
@@ -11,8 +9,6 @@
 #include "tests/support/separated_table.h"
 #include "tests/support/truth_rows.h"
 #include "tests/support/twin_run.h"
-#include "twin/benches/names.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/tables.h"
 #include "twin/core/linear_algebra.h"
 

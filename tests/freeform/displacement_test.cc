@@ -1,22 +1,16 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "tests/core/input_error.h"
 #include "twin/benches/evaluated.h"
 #include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/freeform_five_axis/settings.h"
-#include "twin/benches/names.h"
 #include "twin/benches/registry.h"
-#include "twin/core/estimator.h"
 #include "twin/core/stream.h"
-#include "twin/diagnose/diagnose.h"
-#include "twin/report/evaluation.h"
 
 // Displacements of balls at poses. The machines are written here as products of exact transforms; the program has
 // slopes.

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "optics/height_map.h"
@@ -12,13 +9,11 @@
 #include "twin/benches/freeform_five_axis/bench.h"
 #include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/freeform_five_axis/procedure.h"
-#include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/freeform_five_axis/twin/chain.h"
 #include "twin/benches/freeform_five_axis/twin/twin.h"
 #include "twin/benches/names.h"
 #include "twin/core/csv.h"
 #include "twin/core/stream.h"
-#include "twin/diagnose/diagnose.h"
 
 /// Runs of the bench freeform_five_axis, live ones and those of an independent implementation.
 namespace twinbench::freeform_test {

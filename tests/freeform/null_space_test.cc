@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "tests/freeform/freeform_run.h"

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "tests/freeform/freeform_run.h"
-#include "twin/core/errors.h"
 
 // Expected values are those of an implementation that was written independently from the bench's stated formulas.
 namespace twinbench::freeform_test {

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "tests/freeform/freeform_run.h"
-#include "twin/core/errors.h"
 
 // The probe as light against the closed form of the format, the independent implementation, and geometry.
 namespace twinbench::freeform_test {

@@ -3,11 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/hidden/bench_runs.h"
 #include "tests/investigate/hidden_investigation.h"
 #include "tools/twinbench/passing_run.h"
 #include "twin/benches/registry.h"
-#include "twin/core/units.h"
 #include "twin/investigate/evidence.h"
 #include "twin/investigate/expected_information.h"
 #include "twin/investigate/taken_run.h"

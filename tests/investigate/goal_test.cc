@@ -6,7 +6,6 @@
 #include "tests/core/input_error.h"
 #include "tests/investigate/hidden_investigation.h"
 #include "twin/benches/names.h"
-#include "twin/core/units.h"
 #include "twin/investigate/goal.h"
 #include "twin/investigate/hypothesis.h"
 

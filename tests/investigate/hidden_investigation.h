@@ -1,15 +1,7 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "tests/hidden/placements.h"
-#include "tests/hidden/twin_cases.h"
 #include "tests/hidden/unlisted_cause.h"
-#include "twin/core/units.h"
 #include "twin/investigate/investigation.h"
 
 /// Investigations of benches with something hidden: of twins without a disk, and of a program of others.

@@ -7,7 +7,6 @@
 
 #include "tests/investigate/hidden_investigation.h"
 #include "tools/twinbench/passing_run.h"
-#include "twin/core/units.h"
 #include "twin/investigate/evidence.h"
 
 namespace twinbench::investigate {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "tests/core/input_error.h"
-#include "tests/hidden/unlisted_cause.h"
 #include "tests/investigate/hidden_investigation.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/registry.h"

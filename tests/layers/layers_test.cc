@@ -1,13 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <functional>
 #include <map>
 #include <regex>
 #include <set>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "tests/layers/source_files.h"
 

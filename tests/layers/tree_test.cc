@@ -1,11 +1,8 @@
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
-#include <filesystem>
 #include <map>
 #include <regex>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "tests/layers/source_files.h"
 

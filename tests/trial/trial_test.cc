@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "tests/tools/program.h"
