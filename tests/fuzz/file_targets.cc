@@ -1,17 +1,13 @@
 #include <sqlite3.h>
 
 #include <cctype>
-#include <filesystem>
-#include <sstream>
 
 #include "optics/height_map.h"
 #include "optics/irradiance.h"
 #include "optics/stl.h"
 #include "tests/core/input_error.h"
-#include "tests/fuzz/file_of_bytes.h"
 #include "tests/fuzz/target.h"
 #include "twin/benches/names.h"
-#include "twin/core/errors.h"
 #include "twin/core/run_record.h"
 
 /// Files that are no text.
@@ -80,7 +76,7 @@ std::vector<std::string> MakeExr() {
   const FileOfBytes irradiance(""), height("");
   optics::WriteIrradianceMaps(irradiance.Path(), {map});
   optics::WriteHeightMap(height.Path(), heights);
-  return {Contents(irradiance.Path()), Contents(height.Path())};
+  return {BytesOfFile(irradiance.Path()), BytesOfFile(height.Path())};
 }
 
 /// A short run of the rotary bench, and an imported one.
@@ -105,7 +101,7 @@ std::vector<std::string> MakeRecord() {
     record->AppendEvent(Time{}, "target", "homed");
     record->Finish();
   }
-  return {Contents(folder.File("record.sqlite"))};
+  return {BytesOfFile(folder.File("record.sqlite"))};
 }
 
 /// A record of ours in which somebody has changed values: lines of a table, a column, a row and the value in SQL's own words.

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <random>
-#include <string_view>
 
 #include "tests/fuzz/target.h"
 

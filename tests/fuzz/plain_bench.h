@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
-#include "twin/core/devices.h"
 #include "twin/core/machine.h"
 
 /// Benches without physics behind the served protocols: what is tried here is what clients say, not what light does.

@@ -1,22 +1,18 @@
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/time.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
-#include <string>
-#include <vector>
 
-#include "tests/fuzz/file_of_bytes.h"
 #include "tests/fuzz/target.h"
+#include "tests/perf/timing.h"
 #include "tests/support/sanitized.h"
 
 /// Feeds every target its seeds and inputs made of them, without a fuzzer: `fuzz [--seconds s] [--only target] [file ...]`.
@@ -53,10 +49,6 @@ void KeepInput(const char* what) {
 void OnSignal(int signal) {
   KeepInput(signal == SIGVTALRM ? "hang" : "crash");
   _exit(1);
-}
-
-double Processor_s() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 long Peak_KB() {
@@ -101,7 +93,7 @@ void AddSeeds(const fs::path& place, std::vector<std::string>& seeds) {
   }
   std::ranges::sort(files);
   for (const fs::path& file : files) {
-    if (fs::is_regular_file(file) && fs::file_size(file) <= kLargestSeed) seeds.push_back(Contents(file));
+    if (fs::is_regular_file(file) && fs::file_size(file) <= kLargestSeed) seeds.push_back(BytesOfFile(file));
   }
 }
 
@@ -123,22 +115,22 @@ bool Try(const Target& target, const Wanted& wanted) {
     std::fprintf(stderr, "%s: there is no seed\n", target.name);
     return false;
   }
-  const double begin_s = Processor_s();
+  const double begin_s = perf::Seconds();
   for (const std::string& seed : seeds) {
     if (!Read(target, seed)) return false;
   }
   std::uint64_t number = 0;
-  while (Processor_s() - begin_s < wanted.seconds) {
+  while (perf::Seconds() - begin_s < wanted.seconds) {
     if (!Read(target, Mutated(seeds, number++))) return false;
   }
   std::printf("%-14s %3zu seeds, %7llu made of them, %.2f s\n", target.name, seeds.size(),
-              static_cast<unsigned long long>(number), Processor_s() - begin_s);
+              static_cast<unsigned long long>(number), perf::Seconds() - begin_s);
   return true;
 }
 
 bool TryFiles(const Target& target, const Wanted& wanted) {
   now_target = target.name;
-  return std::ranges::all_of(wanted.files, [&](const std::string& file) { return Read(target, Contents(file)); });
+  return std::ranges::all_of(wanted.files, [&](const std::string& file) { return Read(target, BytesOfFile(file)); });
 }
 
 bool WriteSeeds(const Target& target, const std::string& folder) {

@@ -1,5 +1,4 @@
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "hw_bridge/bench_file.h"
 #include "hw_bridge/control/address.h"
@@ -8,11 +7,8 @@
 #include "hw_bridge/control/scpi_table.h"
 #include "hw_bridge/machine_file.h"
 #include "hw_bridge/program/program_file.h"
-#include "tests/fuzz/file_of_bytes.h"
 #include "tests/fuzz/target.h"
 #include "twin/core/compensation_table.h"
-#include "twin/core/errors.h"
-#include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 #include "twin/core/table_errors.h"
 #include "twin/import/import.h"
@@ -82,23 +78,15 @@ void ReadErrorsMap(std::string_view bytes) {
   RefusingIsRight([&] { ReadCompensationTable(file.Path()); });
 }
 
-void ReadBenchFile(std::string_view bytes) {
-  RefusingIsRight([&] { hw::ParseBenchFile(std::string(bytes), kName, "/nowhere"); });
-}
-
-void ReadMachineFile(std::string_view bytes) {
-  RefusingIsRight([&] { hw::ParseMachineFile(std::string(bytes), kName, {{"x", false}, {"y", false}, {"a", true}}); });
-}
-
-void ReadDialogue(std::string_view bytes) {
-  RefusingIsRight([&] { hw::ParseDialogue(std::string(bytes), kName); });
-}
-
 void ReadProgramFile(std::string_view bytes) {
   const FileOfBytes file(bytes);
   RefusingIsRight([&] {
     if (hw::IsProgramFile(file.Path())) hw::LoadProgramFile(file.Path());
   });
+}
+
+void ReadMachineFile(std::string_view bytes) {
+  RefusingIsRight([&] { hw::ParseMachineFile(std::string(bytes), kName, {{"x", false}, {"y", false}, {"a", true}}); });
 }
 
 /// A line that a device answered, as every dialogue takes it.
@@ -115,7 +103,7 @@ void ReadAnswer(std::string_view bytes) {
 template <class Show>
 void ShowPage(std::string_view bytes, Show show) {
   try {
-    RefusingIsRight([&] { report::PageJson(show(report::ParseModestJson(std::string(bytes), "fuzz"))); });
+    RefusingIsRight([&] { report::PageJson(show(report::ParseModestJson(std::string(bytes), kName))); });
   } catch (const nlohmann::json::exception&) {
   }
 }
@@ -126,37 +114,33 @@ report::PageSource Source() {
   return source;
 }
 
-void PageOfDiagnosis(std::string_view bytes) {
-  ShowPage(bytes, [](const nlohmann::json& diagnosis) {
-    return report::Page{"fuzz", "diagnosis", report::VerdictOf(diagnosis).text, {}, report::DiagnosisSections(diagnosis)};
-  });
+report::Page PageOfDiagnosis(const nlohmann::json& diagnosis) {
+  return {kName, "diagnosis", report::VerdictOf(diagnosis).text, {}, report::DiagnosisSections(diagnosis)};
 }
 
-void PageOfResults(std::string_view bytes) {
-  ShowPage(bytes, [](const nlohmann::json& results) { return report::RunPage(Source(), results, {}); });
-}
-
-void PageOfPlan(std::string_view bytes) {
-  ShowPage(bytes, [](const nlohmann::json& plan) { return report::PlanPage(Source(), plan); });
-}
-
-void PageOfInvestigation(std::string_view bytes) {
-  ShowPage(bytes, [](const nlohmann::json& found) { return report::InvestigationPage(Source(), found); });
-}
-
-void ReadLaboratoryFile(std::string_view bytes) {
-  RefusingIsRight([&] { certificate::ReadLaboratory(std::string(bytes), "fuzz"); });
-}
+using Bytes = std::string_view;
+using Json = const nlohmann::json&;
 
 constexpr Target kTextTargets[] = {
-    {"scenario", ReadScenario, "scenarios"}, {"override", ReadOverride, ""},
-    {"readings", ReadReadings, ""},          {"recording", ReadRecording, ""},
-    {"errors_map", ReadErrorsMap, ""},       {"bench_file", ReadBenchFile, ""},
-    {"machine_file", ReadMachineFile, ""},   {"dialogue", ReadDialogue, "hw_bridge/dialogues"},
-    {"program_file", ReadProgramFile, ""},   {"answer", ReadAnswer, ""},
-    {"page_of_diagnosis", PageOfDiagnosis, ""}, {"page_of_results", PageOfResults, ""},
-    {"page_of_plan", PageOfPlan, ""},           {"page_of_investigation", PageOfInvestigation, ""},
-    {"laboratory", ReadLaboratoryFile, ""},
+    {"scenario", ReadScenario, "scenarios"},
+    {"override", ReadOverride, ""},
+    {"readings", ReadReadings, ""},
+    {"recording", ReadRecording, ""},
+    {"errors_map", ReadErrorsMap, ""},
+    {"bench_file",
+     [](Bytes b) { RefusingIsRight([&] { hw::ParseBenchFile(std::string(b), kName, "/nowhere"); }); }, ""},
+    {"machine_file", ReadMachineFile, ""},
+    {"dialogue",
+     [](Bytes b) { RefusingIsRight([&] { hw::ParseDialogue(std::string(b), kName); }); }, "hw_bridge/dialogues"},
+    {"program_file", ReadProgramFile, ""},
+    {"answer", ReadAnswer, ""},
+    {"page_of_diagnosis", [](Bytes b) { ShowPage(b, PageOfDiagnosis); }, ""},
+    {"page_of_results",
+     [](Bytes b) { ShowPage(b, [](Json results) { return report::RunPage(Source(), results, {}); }); }, ""},
+    {"page_of_plan", [](Bytes b) { ShowPage(b, [](Json plan) { return report::PlanPage(Source(), plan); }); }, ""},
+    {"page_of_investigation",
+     [](Bytes b) { ShowPage(b, [](Json found) { return report::InvestigationPage(Source(), found); }); }, ""},
+    {"laboratory", [](Bytes b) { RefusingIsRight([&] { certificate::ReadLaboratory(std::string(b), kName); }); }, ""},
 };
 
 }  // namespace
