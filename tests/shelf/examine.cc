@@ -1,27 +1,20 @@
 #include "tests/shelf/examine.h"
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 
 #include "tests/hidden/judge.h"
 #include "tests/hidden/written_file.h"
+#include "tests/perf/timing.h"
 #include "tools/twinbench/answers.h"
 #include "twin/benches/expected.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
-#include "twin/diagnose/diagnose.h"
 
 namespace twinbench::shelf {
 namespace {
 
 const std::string kFolder = TWINBENCH_TEST_DATA "/shelf";
-
-double ThreadSeconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 tools::Imported ImportedCase(const std::string& name) {
   const std::string path = kFolder + "/" + name + ".csv";
@@ -51,7 +44,7 @@ std::vector<std::string> CaseNames() {
 }
 
 Answer Examine(const std::string& name, const std::string& cache_folder, bool asks_again) {
-  const double begin_s = ThreadSeconds();
+  const double begin_s = perf::Seconds(CLOCK_THREAD_CPUTIME_ID);
   const Truth truth = ReadTruth(kFolder + "/truth.json", name);
   Answer answer;
   answer.truth = InWords(truth);
@@ -62,7 +55,7 @@ Answer Examine(const std::string& name, const std::string& cache_folder, bool as
     const diagnose::DiagnosisRun found = diagnose::Diagnose(taken.readings, taken.scenario, options);
     answer.words = Told(found.diagnosis);
     answer.judged = Judge(truth, found.diagnosis);
-    answer.cpu_s = ThreadSeconds() - begin_s;
+    answer.cpu_s = perf::Seconds(CLOCK_THREAD_CPUTIME_ID) - begin_s;
     if (asks_again && found.diagnosis.verdict != diagnose::Verdict::kNone && !truth.causes.empty())
       answer.second = hidden::Says(taken.readings, hidden::WrittenFile(taken.scenario, found), options);
   } catch (const InputError& refusal) {

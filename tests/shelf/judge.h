@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "tests/shelf/truth.h"
 #include "twin/diagnose/diagnosis.h"
 

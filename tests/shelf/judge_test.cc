@@ -1,5 +1,3 @@
-#include "tests/shelf/judge.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

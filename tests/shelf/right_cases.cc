@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <sstream>
 
 #include "twin/core/errors.h"
+#include "twin/core/whole_file.h"
 
 namespace twinbench::shelf {
 namespace {
@@ -52,14 +52,11 @@ std::string InLines(const KnownCases& known) {
 }
 
 KnownCases ReadKnownCases() {
-  std::ifstream in(kPath);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return ParseKnownCases(text.str(), kPath);
+  return ParseKnownCases(BytesOfFile(kPath), kPath);
 }
 
 void WriteKnownCases(const KnownCases& known) {
-  std::ofstream(kPath) << kHead << InLines(known);
+  WriteFileAtOnce(kPath, kHead + InLines(known));
 }
 
 }  // namespace twinbench::shelf

@@ -1,8 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <string>
-
 #include "tests/core/input_error.h"
 #include "tests/shelf/examine.h"
 #include "tests/shelf/right_cases.h"

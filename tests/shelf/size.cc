@@ -4,7 +4,6 @@
 #include <cmath>
 #include <complex>
 #include <map>
-#include <utility>
 
 #include "twin/core/errors.h"
 #include "twin/core/units.h"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "tests/shelf/truth.h"
 #include "twin/diagnose/diagnosis.h"

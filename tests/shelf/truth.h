@@ -1,9 +1,5 @@
 #pragma once
 
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "twin/core/reading.h"
 
 /// What is in the recordings of tests/data/shelf, and what may be said of them: truth.json.
