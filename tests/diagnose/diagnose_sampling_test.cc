@@ -1,10 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <random>
 #include <set>
-#include <string>
 
 #include "tests/diagnose/encoder_record.h"
 #include "tests/support/night.h"

@@ -1,15 +1,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <functional>
 
 #include "tests/diagnose/encoder_fit.h"
 #include "tests/diagnose/support/synthetic_run.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/diagnosis/signals.h"
-#include "twin/benches/encoder_comparison/settings.h"
-#include "twin/benches/names.h"
 #include "twin/core/units.h"
 #include "twin/model/signals.h"
 #include "twin/model/wave_grid.h"

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
-#include <vector>
 
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"

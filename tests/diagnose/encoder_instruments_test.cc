@@ -1,9 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <random>
-
 #include "tests/diagnose/encoder_record.h"
 
 namespace twinbench::diagnose::encoder {

@@ -7,15 +7,12 @@
 #include <cmath>
 #include <optional>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "tests/support/thresholds.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/extend.h"
 
 /// Comparisons made by hand and asked about, for instruments by closed forms that share nothing with the twin.

@@ -1,12 +1,6 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <random>
 #include <set>
-#include <vector>
 
 #include "tests/diagnose/encoder_record.h"
 #include "twin/benches/encoder_comparison/estimators/angle_comparison.h"

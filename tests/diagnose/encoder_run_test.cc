@@ -1,15 +1,9 @@
-#include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
-
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/core/input_error.h"
 #include "tests/diagnose/encoder_fit.h"
-#include "tests/sim/encoder_run.h"
-#include "twin/benches/encoder_comparison/settings.h"
-#include "twin/benches/names.h"
 #include "twin/core/stream.h"
 #include "twin/diagnose/engine/projector.h"
 

@@ -6,7 +6,6 @@
 #include "tests/support/kept_text.h"
 #include "tests/support/small_scenario.h"
 #include "tests/support/twin_run.h"
-#include "twin/benches/names.h"
 #include "twin/diagnose/aliased_orders.h"
 
 namespace twinbench::diagnose {

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <string>
-
 #include "twin/benches/names.h"
-#include "twin/diagnose/diagnose.h"
 #include "twin/report/diagnosis_text.h"
 
 /// Diagnoses as a search may leave them, for the tests of what becomes of them: file, words, extended scenario.

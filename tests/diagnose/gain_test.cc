@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -12,7 +11,6 @@
 #include "twin/benches/rotary_4dof/bench.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/linear_algebra.h"
-#include "twin/core/stream.h"
 #include "twin/diagnose/accepted_columns.h"
 #include "twin/diagnose/folds.h"
 #include "twin/diagnose/held_out.h"

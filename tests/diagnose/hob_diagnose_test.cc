@@ -10,10 +10,8 @@
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/registry.h"
-#include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/extend.h"
 
 /// Readings of a chain with a hidden cause (tests/diagnose/hob_chain.cc), and what the diagnosis says of them.

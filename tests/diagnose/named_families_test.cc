@@ -6,10 +6,6 @@
 #include <set>
 
 #include "tests/diagnose/encoder_fit.h"
-#include "tests/sim/encoder_run.h"
-#include "twin/benches/encoder_comparison/diagnosis/families.h"
-#include "twin/core/linear_algebra.h"
-#include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
 
 // Each named family, where a cause shows times its course, against what the twin shows when the cause is at work:

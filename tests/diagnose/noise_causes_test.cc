@@ -1,12 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "tests/diagnose/found_causes.h"
 #include "tests/diagnose/ring_run.h"
-#include "tests/diagnose/support/synthetic_run.h"
-#include "twin/core/stream.h"
 #include "twin/diagnose/at_jumps.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/autoregression.h"

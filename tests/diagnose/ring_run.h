@@ -1,12 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <vector>
 
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/stream.h"
 #include "twin/diagnose/diagnose.h"
-#include "twin/diagnose/engine/projector.h"
 
 /// A small run with the bones of the rotary bench: two channels that both see a target and a reference table by
 /// position and a constant of each set-up; three set-ups, passes + - - +, some calibration readings before.

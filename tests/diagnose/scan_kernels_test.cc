@@ -8,7 +8,6 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/bundle.h"
 #include "twin/diagnose/engine/known_products.h"
-#include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/engine/scan_kernels.h"
 #include "twin/diagnose/engine/vector_math.h"
 #include "twin/model/wave_sums.h"

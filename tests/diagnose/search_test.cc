@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "tests/diagnose/ring_run.h"
-#include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/naming.h"
 #include "twin/diagnose/engine/null_calibration.h"

@@ -6,9 +6,6 @@
 
 #include "tests/diagnose/support/synthetic_run.h"
 #include "tests/diagnose/encoder_fit.h"
-#include "tests/sim/encoder_run.h"
-#include "twin/benches/encoder_comparison/diagnosis/families.h"
-#include "twin/diagnose/engine/noise_model.h"
 
 // Sums of series that are never written out, against those of the series.
 namespace twinbench::diagnose::encoder {

@@ -3,16 +3,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <vector>
 
 #include "tests/core/input_error.h"
 #include "tests/diagnose/ring_run.h"
-#include "tests/diagnose/support/synthetic_run.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
-#include "twin/benches/names.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/missing.h"
 #include "twin/diagnose/redundancy.h"

@@ -1,20 +1,13 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cmath>
 #include <functional>
-#include <map>
-#include <string>
-#include <vector>
 
 #include "twin/benches/names.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/reading.h"
-#include "twin/core/scenario.h"
 #include "twin/core/stream.h"
-#include "twin/core/time.h"
-#include "twin/core/units.h"
 
 /// A turntable, a multi-tooth table, a mirror and an autocollimator as plain formulas, independent of the program:
 /// rotations of a vector instead of small angles, and effects a little richer than those that a diagnosis looks

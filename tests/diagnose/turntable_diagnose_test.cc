@@ -2,19 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <functional>
 #include <set>
-#include <string>
 #include <utility>
 
 #include "tests/diagnose/found_causes.h"
 #include "tests/diagnose/turntable_bench.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/thresholds.h"
-#include "twin/benches/registry.h"
-#include "twin/benches/turntable_autocollimator/settings.h"
-#include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/extend.h"
 
 // Whole diagnoses of readings that the independent bench made, with noise.

@@ -6,10 +6,6 @@
 #include "tests/support/kept_text.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/turntable_autocollimator/bench.h"
-#include "twin/benches/turntable_autocollimator/settings.h"
-#include "twin/core/errors.h"
-#include "twin/diagnose/diagnose.h"
-#include "twin/diagnose/engine/projector.h"
 
 // The forward model of the turntable bench: what it predicts, and what its unknowns absorb.
 namespace twinbench::diagnose::turntable {

@@ -1,6 +1,6 @@
 #include "twin/diagnose/watch.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "tests/diagnose/ring_run.h"
 #include "twin/diagnose/sequential_fit.h"

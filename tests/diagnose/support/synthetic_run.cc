@@ -1,7 +1,6 @@
 #include "tests/diagnose/support/synthetic_run.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 

@@ -1,13 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "twin/diagnose/engine/linear_run.h"
-#include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/screen/screen.h"
 
