@@ -29,20 +29,18 @@ TEST(LeftByInterpolation, IsThatOfStraightLinesBetweenSamplesOfAWave) {
 }
 
 TEST(Compensate, LeavesNothingOfCertainLinesWithoutNoise) {
-  std::mt19937_64 random(1);
   SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}, {2, 3 * arcsec, 1.0}, {90, 1 * arcsec, 2.0}}, 0.0);
   const std::vector<ReadingPlan> plan = {EvenPositions(), Between(1)};
-  const IndexErrors first = bench.Read(plan, random);
+  const IndexErrors first = bench.Read(plan);
   const Compensation compensation = Compensate(first);
   EXPECT_THAT(compensation.Orders(LineFate::kCompensated), ElementsAre(1, 2, 90));
   EXPECT_EQ(compensation.table.position_rad.size(), 2160u);  // 22 entries a period of order 90, whole degrees
   bench.commanded = compensation.table;
   // Products of the error with its own slope (7 arcsec times 90 times 1 arcsec): some milliarcseconds.
-  EXPECT_LT(RootMeanSquare(AboutGroups(first, bench.Read(plan, random).value_rad)), 5e-3 * arcsec);
+  EXPECT_LT(RootMeanSquare(AboutGroups(first, bench.Read(plan).value_rad)), 5e-3 * arcsec);
 }
 
 TEST(Compensate, GoesOnFromACompensationThatWasAtWork) {
-  std::mt19937_64 random(1);
   SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}}, 0.05 * arcsec);
   CompensationTable half;  // of the error
   for (int i = 0; i < 360; ++i) {
@@ -50,35 +48,32 @@ TEST(Compensate, GoesOnFromACompensationThatWasAtWork) {
     half.correction_rad.push_back(-0.5 * ErrorOf(bench.lines, i * deg));
   }
   bench.commanded = half;
-  const Compensation compensation = Compensate(bench.Read({EvenPositions()}, random));
+  const Compensation compensation = Compensate(bench.Read({EvenPositions()}));
   EXPECT_NEAR(compensation.table.At(1.0), -ErrorOf(bench.lines, 1.0), 0.02 * arcsec);
 }
 
 TEST(Compensate, RefusesWhatATableOfFewEntriesCannotFollow) {
-  std::mt19937_64 random(1);
   const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}, {90, 1 * arcsec, 2.0}}, 0.1 * arcsec);
   CompensationOptions options;
   options.points = 200;
-  const Compensation compensation = Compensate(bench.Read({EvenPositions(), Between(1)}, random), options);
+  const Compensation compensation = Compensate(bench.Read({EvenPositions(), Between(1)}), options);
   EXPECT_THAT(compensation.Orders(LineFate::kCompensated), ElementsAre(1));
   EXPECT_THAT(compensation.Orders(LineFate::kTooFine), ElementsAre(90));
   EXPECT_EQ(compensation.table.position_rad.size(), 200u);
   options.points = 3;
-  EXPECT_KEPT(MessageOf([&] { Compensate(bench.Read({EvenPositions()}, random), options); }));
+  EXPECT_KEPT(MessageOf([&] { Compensate(bench.Read({EvenPositions()}), options); }));
 }
 
 TEST(Compensate, AddsNothingWhereNothingIs) {
-  std::mt19937_64 random(7);
-  const SpectrumBench bench = BenchWith({}, 0.3 * arcsec);
-  const Compensation compensation = Compensate(bench.Read({EvenPositions()}, random));
+  const SpectrumBench bench = BenchWith({}, 0.3 * arcsec, 7);
+  const Compensation compensation = Compensate(bench.Read({EvenPositions()}));
   EXPECT_TRUE(compensation.lines.empty());
   for (const double correction_rad : compensation.table.correction_rad) EXPECT_EQ(correction_rad, 0.0);
 }
 
 TEST(CheckCompensation, RefusesARunWithAnotherTable) {
-  std::mt19937_64 random(1);
   const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}}, 0.1 * arcsec);
-  const IndexErrors first = bench.Read({EvenPositions()}, random);
+  const IndexErrors first = bench.Read({EvenPositions()});
   const Compensation compensation = Compensate(first);
   EXPECT_KEPT(MessageOf([&] { CheckCompensation(first, compensation, first); }));
 }
@@ -96,14 +91,13 @@ Outcome Measure(const std::vector<ReadingPlan>& plans, int highest_told) {
   const std::vector<ReadingPlan> checks = {Between(1)};
   Outcome outcome;
   for (int seed = 1; seed <= test::ByNight(200, 25); ++seed) {
-    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
-    SpectrumBench bench = DrawBench(random, 5);
-    const IndexErrors first = bench.Read(plans, random);
-    const IndexErrors check_before = bench.Read(checks, random);
+    SpectrumBench bench = DrawBench(static_cast<std::uint64_t>(seed), 5);
+    const IndexErrors first = bench.Read(plans);
+    const IndexErrors check_before = bench.Read(checks);
     const Compensation compensation = Compensate(first);
     bench.commanded = compensation.table;
-    const CompensationCheck check = CheckCompensation(first, compensation, bench.Read(plans, random));
-    const IndexErrors check_after = bench.Read(checks, random);
+    const CompensationCheck check = CheckCompensation(first, compensation, bench.Read(plans));
+    const IndexErrors check_after = bench.Read(checks);
     EXPECT_NEAR(check.Ratio(), 1.0, 0.2) << seed;
     EXPECT_TRUE(check.IsBetter()) << seed;
     EXPECT_LE(RootMeanSquare(AboutGroups(check_after, check_after.value_rad)),
@@ -137,14 +131,13 @@ TEST(Compensate, PredictsTheUncertaintyOfItsOwnLinesToo) {
   constexpr int kSeeds = 60, kLines = 12;  // a sixth of the places, the most that are looked for
   double mean_ratio = 0.0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
-    SpectrumBench bench = BenchWith({}, 2.0 * arcsec);
+    SpectrumBench bench = BenchWith({}, 2.0 * arcsec, static_cast<std::uint64_t>(seed));
     for (int order = 1; order <= kLines; ++order) bench.lines.push_back({order, 100.0 / order * arcsec, 0.7 * order});
-    const IndexErrors first = bench.Read({EvenPositions()}, random);
+    const IndexErrors first = bench.Read({EvenPositions()});
     const Compensation compensation = Compensate(first, options);
     EXPECT_EQ(compensation.Orders(LineFate::kCompensated).size(), static_cast<std::size_t>(kLines)) << seed;
     bench.commanded = compensation.table;
-    mean_ratio += CheckCompensation(first, compensation, bench.Read({EvenPositions()}, random)).Ratio() / kSeeds;
+    mean_ratio += CheckCompensation(first, compensation, bench.Read({EvenPositions()})).Ratio() / kSeeds;
   }
   EXPECT_NEAR(mean_ratio, 1.0, 0.04);  // 0.86 without it
 }
@@ -156,9 +149,8 @@ std::vector<int> OrdersOf(const LineFit& fit) {
 }
 
 TEST(FindLines, FindsKnownLinesAndTheirPhasesWithoutNoise) {
-  std::mt19937_64 random(1);
   const std::vector<SpectrumLine> lines = {{1, 7 * arcsec, 0.4}, {18, 1 * arcsec, 2.0}, {90, 0.5 * arcsec, -1.0}};
-  const LineFit fit = FindLines(BenchWith(lines, 0.0).Read({EvenPositions(), Between(1)}, random));
+  const LineFit fit = FindLines(BenchWith(lines, 0.0).Read({EvenPositions(), Between(1)}));
   ASSERT_EQ(OrdersOf(fit), (std::vector<int>{1, 18, 90}));
   for (std::size_t i = 0; i < 3; ++i) {
     // Second order of the error itself: the table stands where its error has brought it.
@@ -171,44 +163,40 @@ TEST(FindLines, FindsKnownLinesAndTheirPhasesWithoutNoise) {
 TEST(FindLines, FindsNothingInNoise) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    std::mt19937_64 random(seed);
-    found += static_cast<int>(FindLines(BenchWith({}, 0.3 * arcsec).Read({EvenPositions()}, random)).lines.size());
+    found += static_cast<int>(FindLines(BenchWith({}, 0.3 * arcsec, seed).Read({EvenPositions()})).lines.size());
   }
   // Odds of 20 : 1 for a line and a prior that makes lines rare: one in a hundred spectra is expected at most.
   EXPECT_LE(found, 3);
 }
 
 TEST(FindLines, DoesNotTakeOrder90ForOrder18At72Positions) {
-  std::mt19937_64 random(2);
-  const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}, {90, 1 * arcsec, 2.0}}, 0.1 * arcsec);
-  const LineFit even = FindLines(bench.Read({EvenPositions()}, random));
+  const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}, {90, 1 * arcsec, 2.0}}, 0.1 * arcsec, 2);
+  const LineFit even = FindLines(bench.Read({EvenPositions()}));
   ASSERT_EQ(OrdersOf(even), (std::vector<int>{1, 18}));
   EXPECT_TRUE(even.lines[0].is_certain);
   EXPECT_FALSE(even.lines[1].is_certain);
   std::vector<int> alike;
   for (const AlikeOrder& other : even.lines[1].alike) alike.push_back(other.order);
   EXPECT_EQ(alike, (std::vector<int>{54, 90, 126, 162, 198}));  // 72 m +- 18
-  const LineFit between = FindLines(bench.Read({EvenPositions(), Between(2)}, random));
+  const LineFit between = FindLines(bench.Read({EvenPositions(), Between(2)}));
   ASSERT_EQ(OrdersOf(between), (std::vector<int>{1, 90}));
   EXPECT_TRUE(between.lines[1].is_certain);
 }
 
 TEST(FindLines, SaysWhichOrdersThePlacesDoNotShow) {
-  std::mt19937_64 random(3);
-  const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}}, 0.1 * arcsec);
-  const LineFit even = FindLines(bench.Read({EvenPositions()}, random));
+  const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}}, 0.1 * arcsec, 3);
+  const LineFit even = FindLines(bench.Read({EvenPositions()}));
   EXPECT_EQ(even.unseen, (std::vector<int>{36, 72, 108, 144, 180}));
   EXPECT_EQ(std::ssize(even.doubled), 198);  // all but 72 and 144, which look like a constant
-  const LineFit degrees = FindLines(bench.Read({EvenPositions(), Between(1)}, random));
+  const LineFit degrees = FindLines(bench.Read({EvenPositions(), Between(1)}));
   EXPECT_EQ(degrees.unseen, (std::vector<int>{180}));  // its sine is 0 at whole degrees
   EXPECT_EQ(degrees.doubled.front(), 160);             // looks like 200
   EXPECT_EQ(std::ssize(degrees.doubled), 40);
 }
 
 TEST(FindLines, IsNotCertainOfALineThatIsHalfSeen) {
-  std::mt19937_64 random(4);
-  const SpectrumBench bench = BenchWith({{180, 1 * arcsec, 0.3}}, 0.1 * arcsec);
-  const LineFit fit = FindLines(bench.Read({EvenPositions(), Between(1)}, random));
+  const SpectrumBench bench = BenchWith({{180, 1 * arcsec, 0.3}}, 0.1 * arcsec, 4);
+  const LineFit fit = FindLines(bench.Read({EvenPositions(), Between(1)}));
   ASSERT_EQ(OrdersOf(fit), (std::vector<int>{180}));
   EXPECT_TRUE(fit.lines[0].is_half_seen);
   EXPECT_FALSE(fit.lines[0].is_certain);
@@ -218,9 +206,8 @@ TEST(FindLines, StatesAnUncertaintyThatMatchesItsScatter) {
   constexpr int kRuns = 200;
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
-    std::mt19937_64 random(seed);
-    const SpectrumBench bench = BenchWith({{2, 3 * arcsec, 0.0}}, 0.3 * arcsec);
-    const LineFit fit = FindLines(bench.Read({EvenPositions()}, random));
+    const SpectrumBench bench = BenchWith({{2, 3 * arcsec, 0.0}}, 0.3 * arcsec, seed);
+    const LineFit fit = FindLines(bench.Read({EvenPositions()}));
     ASSERT_FALSE(fit.lines.empty());
     sum += std::pow((fit.lines[0].sin_rad) / fit.lines[0].u_rad, 2);
   }

@@ -48,9 +48,10 @@ struct SpectrumBench {
   std::vector<SpectrumLine> lines;
   std::vector<double> tooth_rad;            // one a degree
   double noise_rad = 0.39 * units::arcsec;  // 0.3 of the table's repeatability, 0.25 of the autocollimator
+  mutable std::mt19937_64 random{1};
   std::optional<CompensationTable> commanded = {};
 
-  IndexErrors Read(const std::vector<ReadingPlan>& plans, std::mt19937_64& random) const {
+  IndexErrors Read(const std::vector<ReadingPlan>& plans) const {
     std::normal_distribution<double> normal;
     std::vector<IndexReading> readings;
     for (const ReadingPlan& plan : plans) {
@@ -73,17 +74,18 @@ struct SpectrumBench {
   }
 };
 
-inline SpectrumBench DrawBench(std::mt19937_64& random, int gears) {
+inline SpectrumBench DrawBench(std::uint64_t seed, int gears) {
   std::normal_distribution<double> normal;
   SpectrumBench bench;
-  bench.lines = DrawSpectrum(random, gears);
-  for (int tooth = 0; tooth < 360; ++tooth) bench.tooth_rad.push_back(0.1 * units::arcsec * normal(random));
+  bench.random.seed(seed);
+  bench.lines = DrawSpectrum(bench.random, gears);
+  for (int tooth = 0; tooth < 360; ++tooth) bench.tooth_rad.push_back(0.1 * units::arcsec * normal(bench.random));
   return bench;
 }
 
 /// Without teeth, with just these lines.
-inline SpectrumBench BenchWith(const std::vector<SpectrumLine>& lines, double noise_rad) {
-  return {lines, std::vector<double>(360, 0.0), noise_rad};
+inline SpectrumBench BenchWith(const std::vector<SpectrumLine>& lines, double noise_rad, std::uint64_t seed = 1) {
+  return {lines, std::vector<double>(360, 0.0), noise_rad, std::mt19937_64(seed)};
 }
 
 /// 72 positions in two set-ups, there and back.
