@@ -1,10 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <map>
 #include <sstream>
-#include <thread>
 
+#include "tests/support/in_parallel.h"
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/separated_table.h"
 #include "tests/support/truth_rows.h"
@@ -261,19 +260,13 @@ std::string Text(const Scenario& scenario) {
 }
 
 /// Runs seeds 1..count on this many threads, each taking the next seed that is free.
-std::vector<std::string> RunSeeds(Scenario scenario, int count, int threads) {
-  std::vector<std::string> texts(static_cast<std::size_t>(count));
-  std::atomic<int> next = 0;
-  std::vector<std::thread> pool;
-  for (int t = 0; t < threads; ++t) {
-    pool.emplace_back([&, mine = scenario]() mutable {
-      for (int k = next++; k < count; k = next++) {
-        mine.seed = static_cast<std::uint64_t>(k + 1);
-        texts[static_cast<std::size_t>(k)] = Text(mine);
-      }
-    });
-  }
-  for (std::thread& thread : pool) thread.join();
+std::vector<std::string> RunSeeds(const Scenario& scenario, std::size_t count, int threads) {
+  std::vector<std::string> texts(count);
+  test::InParallel(count, threads, [&](std::size_t k) {
+    Scenario mine = scenario;
+    mine.seed = k + 1;
+    texts[k] = Text(mine);
+  });
   return texts;
 }
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "tests/foreign/angle_fault.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/hidden/written_file.h"
+#include "tests/support/thresholds.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -80,14 +81,12 @@ double LeftOf(const std::vector<Reading>& readings, const Scenario& scenario) {
 }
 
 void HoldToTheFile(const Machine& machine, const std::vector<Reading>& readings,
-                   const diagnose::DiagnosisRun& found, const diagnose::DiagnoseOptions& options, bool runs_again,
-                   Answer& answer) {
+                   const diagnose::DiagnosisRun& found, const diagnose::DiagnoseOptions& options, Answer& answer) {
   try {
     Scenario extended = hidden::WrittenFile(machine.believed, found);
     answer.second = hidden::Says(readings, extended, options);
     if (!machine.truth.repeats) return;
-    if (runs_again)
-      answer.second_run = hidden::Says(machine.readings(kAnother), machine.in_another_run(extended), options);
+    answer.second_run = hidden::Says(machine.readings(kAnother), machine.in_another_run(extended), options);
     std::erase_if(extended.empiricals, [](const EmpiricalSettings& table) { return table.by == "time"; });
     if (std::isfinite(answer.stated_gain)) answer.file_gain = GainOn(machine, extended);
   } catch (const InputError& refusal) {
@@ -138,18 +137,18 @@ double GainOn(const Machine& machine, const Scenario& extended) {
   }
 }
 
-Answer Examine(const Plan& plan, const std::string& cache_folder, bool runs_again) {
+Answer Examine(const Plan& plan) {
   const Machine machine = plan.make();
   const std::vector<Reading> readings = machine.readings(kFirst);
   diagnose::DiagnoseOptions options;
-  options.cache_folder = cache_folder;
+  options.cache_folder = test::ThresholdsFolder();
   Answer answer;
   answer.truth = machine.truth;
   try {
     const diagnose::DiagnosisRun found = diagnose::Diagnose(readings, machine.believed, options);
     answer = Judge(machine.truth, found.diagnosis);
     if (answer.alarm && !machine.truth.IsClean())
-      HoldToTheFile(machine, readings, found, options, runs_again, answer);
+      HoldToTheFile(machine, readings, found, options, answer);
   } catch (const InputError& refusal) {
     answer.words = std::string("refused: ") + refusal.what();
     answer.missing = static_cast<int>(std::ssize(machine.truth.listed)) + machine.truth.unlisted;

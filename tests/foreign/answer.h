@@ -1,8 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "tests/foreign/machine.h"
 #include "tests/hidden/judge.h"
@@ -30,8 +28,8 @@ struct Answer {
 Answer Judge(const Truth& truth, const diagnose::Diagnosis& diagnosis);
 
 /// Diagnoses a run of the machine, writes the extended scenario, reads it, diagnoses the same readings with it, and
-/// holds it against another run. With `runs_again` that other run, noise and all, is diagnosed with it too.
-Answer Examine(const Plan& plan, const std::string& cache_folder, bool runs_again);
+/// holds it against another run, which, noise and all, is diagnosed with it too.
+Answer Examine(const Plan& plan);
 
 /// Share of what the faults add to the readings of another run that the scenario explains; noise is not on them.
 /// 0 for a scenario that cannot be applied to them.

@@ -1,13 +1,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/foreign/answer.h"
-#include "tests/foreign/grating_stand.h"
 #include "tests/foreign/plans.h"
 #include "tests/hidden/known_wrong.h"
 #include "tests/support/oracle_poses.h"
 #include "tests/support/thresholds.h"
 #include "tests/support/twin_run.h"
-#include "twin/benches/names.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
 
@@ -16,12 +14,7 @@
 namespace twinbench::foreign {
 namespace {
 
-/// Every `step`-th case.
-std::vector<Plan> Every(std::size_t step, const std::vector<Plan>& plans) {
-  std::vector<Plan> kept;
-  for (std::size_t k = 0; k < plans.size(); k += step) kept.push_back(plans[k]);
-  return kept;
-}
+using hidden::Every;
 
 std::vector<Plan> OfSet(const std::string& set, std::vector<Plan> plans) {
   std::erase_if(plans, [&](const Plan& plan) { return plan.set != set; });

@@ -4,9 +4,6 @@
 
 #include <algorithm>
 
-#include "tests/foreign/dice.h"
-#include "tests/foreign/machines.h"
-#include "tests/hidden/effect_size.h"
 #include "tests/hidden/placements.h"
 #include "tests/hidden/twin_cases.h"
 #include "tests/hidden/written_file.h"
@@ -36,11 +33,11 @@ Plan StandKindPlan(const StandKind& kind, std::uint64_t seed) {
 }
 
 /// Kinds of which no two are the same, and those that are there besides.
-template <class Kind, class WantedOf>
-std::vector<WantedOf> Mixture(const std::vector<Kind>& listed, const std::vector<Kind>& unlisted, double least_rho,
-                              Dice& dice) {
+template <class Kind>
+std::vector<Wanted<Kind>> Mixture(const std::vector<Kind>& listed, const std::vector<Kind>& unlisted,
+                                  double least_rho, Dice& dice) {
   std::vector<Kind> left = listed;
-  std::vector<WantedOf> wanted;
+  std::vector<Wanted<Kind>> wanted;
   const bool has_unlisted = dice.Sign() > 0.0;
   for (int count = dice.Whole(has_unlisted ? 1 : 2, has_unlisted ? 2 : 3); count > 0; --count) {
     const auto k = static_cast<std::size_t>(dice.Whole(0, static_cast<int>(left.size()) - 1));
@@ -66,14 +63,13 @@ Machine MakeAngleMixture(std::uint64_t seed) {
     return kinds;
   };
   const auto others = Without(suiting(UnlistedAngleKinds()), {"noise of speed", "1/f noise", "held readings"});
-  return MakeAngleMachine(seed, in_motion,
-                          Mixture<AngleKind, WantedFault>(suiting(ListedAngleKinds()), others, 15.0, dice));
+  return MakeAngleMachine(seed, in_motion, Mixture(suiting(ListedAngleKinds()), others, 15.0, dice));
 }
 
 Machine MakeStandMixture(std::uint64_t seed) {
   Dice dice(seed, "mixture");
   const auto others = Without(UnlistedStandKinds(), {"noise of spot", "both distances"});
-  return MakeStand(seed, Mixture<StandKind, WantedStandFault>(ListedStandKinds(), others, 25.0, dice));
+  return MakeStand(seed, Mixture(ListedStandKinds(), others, 25.0, dice));
 }
 
 /// Every stress, and plain noise as often, with the positions in turn.

@@ -1,12 +1,29 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include "tests/foreign/angle_fault.h"
+#include "tests/foreign/stand_fault.h"
 
-#include "tests/foreign/machine.h"
-
-/// The sets of foreign machines.
+/// Angle devices and rotary benches with faults, and in order; and the sets of them.
 namespace twinbench::foreign {
+
+/// A fault with the length of what it shows on all channels, in units of noise, offsets and constants of the set-ups
+/// apart. Free unknowns of the rotary bench take a further part of it, which depends on the fault.
+template <class Kind>
+struct Wanted {
+  Kind kind;
+  double rho;
+};
+
+Machine MakeAngleMachine(std::uint64_t seed, bool in_motion, const std::vector<Wanted<AngleKind>>& wanted);
+
+/// Nothing wrong.
+/// @param stops_per_turn  0: as drawn.
+Machine MakeAngleInOrder(std::uint64_t seed, bool in_motion, const NoiseShape& noise, int stops_per_turn);
+
+Machine MakeStand(std::uint64_t seed, const std::vector<Wanted<StandKind>>& wanted);
+
+/// Nothing wrong.
+Machine MakeStandInOrder(std::uint64_t seed, const NoiseShape& noise, int positions);
 
 /// Every kind that the catalogue lacks, `each` times: angle devices at stops and in motion in turn, rotary benches.
 std::vector<Plan> KindPlans(int each, std::uint64_t first_seed);

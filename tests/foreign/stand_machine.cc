@@ -3,9 +3,8 @@
 
 #include <map>
 
-#include "tests/foreign/machines.h"
+#include "tests/foreign/plans.h"
 #include "tests/support/twin_run.h"
-#include "twin/benches/names.h"
 
 namespace twinbench::foreign {
 namespace {
@@ -137,12 +136,12 @@ Machine Finished(const Truth& truth, const StandMachine& m) {
 
 }  // namespace
 
-Machine MakeStand(std::uint64_t seed, const std::vector<WantedStandFault>& wanted) {
+Machine MakeStand(std::uint64_t seed, const std::vector<Wanted<StandKind>>& wanted) {
   Dice dice(seed, "stand faults"), course(seed + 1, "stand course");
   StandMachine m = Drawn(seed, {}, {});
   const StandRun example = DrawRun(m.design, course);
   Truth truth;
-  for (const WantedStandFault& w : wanted) {
+  for (const Wanted<StandKind>& w : wanted) {
     StandFault fault = w.kind.draw(dice, example);
     fault.truth.kind = w.kind.name;
     Append(fault.truth, truth);

@@ -4,16 +4,9 @@
 
 #include "tests/support/angle_benches.h"
 #include "twin/benches/circular_motion/columns.h"
-#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/hob_transmission/bench.h"
-#include "twin/benches/hob_transmission/settings.h"
-#include "twin/benches/names.h"
-#include "twin/benches/registry.h"
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/bench.h"
-#include "twin/benches/turntable_autocollimator/settings.h"
-#include "twin/core/bench.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::hidden {

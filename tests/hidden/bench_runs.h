@@ -1,11 +1,7 @@
 #pragma once
 
-#include <cstdint>
-#include <map>
 #include <memory>
 #include <mutex>
-#include <string>
-#include <vector>
 
 #include "tests/hidden/hidden_case.h"
 #include "twin/core/stream.h"

@@ -1,8 +1,7 @@
-#include "tests/hidden/challenge.h"
+#include "tests/hidden/twin_cases.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "tests/hidden/judge.h"

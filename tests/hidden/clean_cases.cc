@@ -1,4 +1,4 @@
-#include "tests/hidden/clean_cases.h"
+#include "tests/hidden/twin_cases.h"
 
 #include <cmath>
 #include <utility>
@@ -24,16 +24,13 @@ struct NoiseShape {
   double stated = 1.0;  // stated / actual standard deviation
 };
 
-const NoiseShape& ShapeOf(Noise noise) {
-  static const std::vector<NoiseShape> shapes = {{"Gaussian"},
-                                                 {"Student t, 5 dof", true},
-                                                 {"AR(1) 0.2", false, 0.2},
-                                                 {"AR(1) 0.3", false, 0.3},
-                                                 {"25 % larger than stated", false, 0.0, 1.0 / 1.25},
-                                                 {"25 % smaller than stated", false, 0.0, 1.0 / 0.75},
-                                                 {"t5, AR(1) 0.2, 25 % larger than stated", true, 0.2, 1.0 / 1.25}};
-  return shapes[static_cast<std::size_t>(noise)];
-}
+const std::array<NoiseShape, kNoises> kShapes = {{{"Gaussian"},
+                                                  {"Student t, 5 dof", true},
+                                                  {"AR(1) 0.2", false, 0.2},
+                                                  {"AR(1) 0.3", false, 0.3},
+                                                  {"25 % larger than stated", false, 0.0, 1.0 / 1.25},
+                                                  {"25 % smaller than stated", false, 0.0, 1.0 / 0.75},
+                                                  {"t5, AR(1) 0.2, 25 % larger than stated", true, 0.2, 1.0 / 1.25}}};
 
 /// A series of unit variance in the order of the readings.
 class Series {
@@ -148,10 +145,7 @@ Case MachineToolClean(const NoiseShape& shape, Scenario actual, Case clean, std:
   return clean;
 }
 
-}  // namespace
-
-Case MakeClean(Design design, Noise noise, std::uint64_t seed) {
-  const NoiseShape shape = ShapeOf(noise);
+Case MakeClean(Design design, const NoiseShape& shape, std::uint64_t seed) {
   Case clean;
   clean.hidden.noise = shape.name;
   clean.scenario = Believed(design);
@@ -169,14 +163,16 @@ Case MakeClean(Design design, Noise noise, std::uint64_t seed) {
   return clean;
 }
 
+}  // namespace
+
 std::vector<Plan> CleanPlans(const std::string& bench, int count, std::uint64_t first_seed) {
   const std::vector<Design> designs = PlainDesigns(bench);
   std::vector<Plan> plans;
   for (int k = 0; k < count; ++k) {
-    const auto noise = static_cast<Noise>(k % kNoises);
+    const NoiseShape& shape = kShapes[static_cast<std::size_t>(k % kNoises)];
     const Design design = designs[static_cast<std::size_t>(k / kNoises) % designs.size()];
     const std::uint64_t seed = 300000 + first_seed + static_cast<std::uint64_t>(k);
-    plans.push_back({"clean " + bench, std::to_string(seed), [=] { return MakeClean(design, noise, seed); }});
+    plans.push_back({"clean " + bench, std::to_string(seed), [=] { return MakeClean(design, shape, seed); }});
   }
   return plans;
 }

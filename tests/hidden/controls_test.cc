@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "tests/hidden/effect_size.h"
 #include "tests/hidden/known_wrong.h"
+#include "tests/hidden/placements.h"
 #include "tests/hidden/twin_cases.h"
 #include "tests/support/thresholds.h"
 #include "twin/benches/names.h"

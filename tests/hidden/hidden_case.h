@@ -1,12 +1,7 @@
 #pragma once
 
 #include <functional>
-#include <map>
-#include <string>
-#include <vector>
 
-#include "twin/core/reading.h"
-#include "twin/core/scenario.h"
 #include "twin/diagnose/diagnose.h"
 
 /// Cases with something hidden in them, and what a right answer to each is.
@@ -44,6 +39,13 @@ struct Plan {
   std::string set, name;
   std::function<Case()> make;
 };
+
+template <class T>
+std::vector<T> Every(std::size_t step, const std::vector<T>& all) {
+  std::vector<T> some;
+  for (std::size_t k = 0; k < all.size(); k += step) some.push_back(all[k]);
+  return some;
+}
 
 /// "psd_gain psd_a_x", "backlash + tone all", "none", "unlisted etalon".
 std::string InWords(const Hidden& hidden);

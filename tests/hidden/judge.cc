@@ -3,12 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <set>
-
-#include "twin/core/errors.h"
 
 namespace twinbench::hidden {
 namespace {

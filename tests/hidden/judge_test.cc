@@ -1,5 +1,3 @@
-#include "tests/hidden/judge.h"
-
 #include <gmock/gmock.h>
 
 #include "tests/core/input_error.h"

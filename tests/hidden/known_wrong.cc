@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
+#include <regex>
 #include <set>
 #include <sstream>
 
-#include "tests/hidden/judge.h"
+#include "tests/support/in_parallel.h"
 #include "tests/support/thresholds.h"
 #include "twin/core/errors.h"
+#include "twin/core/whole_file.h"
 
 namespace twinbench::hidden {
 namespace {
@@ -20,20 +21,15 @@ std::string Key(const std::string& set, const std::string& name) {
   return set + " | " + name;
 }
 
-std::string Trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+std::string WordsOf(const Outcome& o) {
+  return fmt::format("hides {} (rho {:.0f}): {}", InWords(o.hidden), o.hidden.rho, o.answer);
 }
 
 KnownWrong EntryOf(const std::string& line, const std::string& place) {
-  std::istringstream in(line);
-  KnownWrong entry;
-  std::getline(in, entry.set, '|');
-  std::getline(in, entry.name, '|');
-  std::getline(in, entry.why);
-  for (std::string* part : {&entry.set, &entry.name, &entry.why}) *part = Trimmed(*part);
-  if (entry.why.empty()) throw InputError(place, "is \"" + line + "\"", "set | case | why it is wrong");
-  return entry;
+  static const std::regex entry(R"(\s*(.*?)\s*\|\s*(.*?)\s*\|\s*(.*\S)\s*)");
+  std::smatch parts;
+  if (!std::regex_match(line, parts, entry)) throw InputError(place, "is \"" + line + "\"", "set | case | why it is wrong");
+  return {parts[1], parts[2], parts[3]};
 }
 
 std::string InLines(const std::string& title, const std::vector<std::string>& cases) {
@@ -42,16 +38,30 @@ std::string InLines(const std::string& title, const std::vector<std::string>& ca
   return text;
 }
 
-namespace fs = std::filesystem;
+/// An InputError is the outcome kRefused.
+Outcome OutcomeOf(const Plan& plan) {
+  const Case made = plan.make();
+  const diagnose::DiagnoseOptions quick = test::QuickOptions();
+  diagnose::DiagnoseOptions options = made.options;
+  options.cache_folder = quick.cache_folder;
+  options.null_runs = std::min(options.null_runs, quick.null_runs);
+  Outcome outcome;
+  try {
+    outcome = Judge(made.hidden, diagnose::Diagnose(made.readings, made.scenario, options).diagnosis);
+  } catch (const InputError& refusal) {
+    outcome.hidden = made.hidden;
+    outcome.answer = std::string("refused: ") + refusal.what();
+  }
+  outcome.set = plan.set;
+  outcome.name = plan.name;
+  return outcome;
+}
 
 }  // namespace
 
 std::vector<Answered> AnsweredOf(const std::vector<Outcome>& outcomes) {
   std::vector<Answered> answered;
-  for (const Outcome& o : outcomes) {
-    answered.push_back({o.set, o.name, IsRight(o),
-                        fmt::format("hides {} (rho {:.0f}): {}", InWords(o.hidden), o.hidden.rho, o.answer)});
-  }
+  for (const Outcome& o : outcomes) answered.push_back({o.set, o.name, IsRight(o), WordsOf(o)});
   return answered;
 }
 
@@ -66,12 +76,7 @@ std::vector<KnownWrong> ParseKnownWrong(const std::string& text, const std::stri
 }
 
 const std::vector<KnownWrong>& KnownWrongCases() {
-  static const std::vector<KnownWrong> known = [] {
-    std::ifstream in(kPath);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return ParseKnownWrong(text.str(), kPath);
-  }();
+  static const std::vector<KnownWrong> known = ParseKnownWrong(BytesOfFile(kPath), kPath);
   return known;
 }
 
@@ -126,7 +131,9 @@ int FewestOf(int of, double caught) {
 }
 
 std::vector<Outcome> RunReduced(const std::vector<Plan>& plans, int threads) {
-  return RunCases(plans, {threads, test::ThresholdsFolder(), test::QuickOptions().null_runs});
+  std::vector<Outcome> outcomes(plans.size());
+  test::InParallel(plans.size(), threads, [&](std::size_t k) { outcomes[k] = OutcomeOf(plans[k]); });
+  return outcomes;
 }
 
 int CountOf(const std::vector<Outcome>& outcomes, bool (*test)(const Outcome&)) {
@@ -136,9 +143,7 @@ int CountOf(const std::vector<Outcome>& outcomes, bool (*test)(const Outcome&)) 
 std::string Others(const std::vector<Outcome>& outcomes, bool (*right)(const Outcome&)) {
   std::string text;
   for (const Outcome& o : outcomes) {
-    if (right(o)) continue;
-    text += fmt::format("\n  {} {} hides {} (rho {:.0f}): {}", o.set, o.name, InWords(o.hidden), o.hidden.rho,
-                        o.answer);
+    if (!right(o)) text += fmt::format("\n  {} {} {}", o.set, o.name, WordsOf(o));
   }
   return text;
 }

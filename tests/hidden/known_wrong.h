@@ -2,11 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <string>
-#include <vector>
-
-#include "tests/hidden/run_cases.h"
+#include "tests/hidden/judge.h"
 
 /// Cases of the suite's fixed set, and how well they must do.
 namespace twinbench::hidden {
@@ -47,6 +43,7 @@ int FewestOf(int of, double caught);
 /// Two-sided, of a share that is claimed as a number: fails if so uneven a count has a probability below 1 %.
 ::testing::AssertionResult IsShareOf(int count, std::size_t of, double claimed);
 
+/// Makes, diagnoses and judges every case; the outcomes are in the order of the plans whatever the threads.
 std::vector<Outcome> RunReduced(const std::vector<Plan>& plans, int threads = 1);
 
 int CountOf(const std::vector<Outcome>& outcomes, bool (*test)(const Outcome&));

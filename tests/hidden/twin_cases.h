@@ -1,15 +1,9 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <map>
-#include <string>
-#include <vector>
-
 #include "tests/hidden/bench_runs.h"
 #include "twin/core/effect_catalogue.h"
 
-/// Cases made by the twin with effects of the catalogue on, diagnosed with the scenario that lacks them.
+/// Cases with effects of the catalogue, with nothing wrong, and of the independent generators.
 namespace twinbench::hidden {
 
 struct TwinOptions {
@@ -61,5 +55,21 @@ Scenario HiddenBench(Design design, std::uint64_t seed, const std::vector<Wanted
 /// @param scale   Of the same design.
 Case MakeTwinCase(Design design, std::uint64_t seed, const std::vector<Wanted>& wanted, const SignatureScale& scale,
                   const Otherwise& otherwise = {});
+
+inline constexpr int kNoises = 7;
+
+/// `count` runs, the noises in turn. On the angle bench, where the noise is not stated but estimated, that of a
+/// wrong size is Gaussian noise of a device whose noise is stated.
+std::vector<Plan> CleanPlans(const std::string& bench, int count, std::uint64_t first_seed);
+
+/// "challenge" of the rotary bench, else with the first word of the bench's name: "challenge_circular".
+std::string ChallengeSetOf(const std::string& bench);
+
+/// @param bench  Decides the scenario that is believed.
+/// @param excluded  Effects taken out of the catalogue.
+/// @return one plan a folder, in the order of their names.
+/// @throws InputError if there is no such folder or no case in it.
+std::vector<Plan> ChallengePlans(const std::string& folder, const std::string& bench,
+                                 const std::vector<std::string>& excluded = {});
 
 }  // namespace twinbench::hidden

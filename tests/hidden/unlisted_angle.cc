@@ -1,11 +1,10 @@
 #include <cmath>
-#include <map>
 
 #include "tests/hidden/unlisted_cause.h"
 #include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/names.h"
 
-// Causes that catalogues lack; those of the rotary bench are in unlisted_rotary.cc.
+// Causes that catalogues lack; those of the rotary bench are in unlisted_cause.cc.
 namespace twinbench::hidden {
 namespace {
 

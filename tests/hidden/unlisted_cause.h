@@ -1,10 +1,5 @@
 #pragma once
 
-#include <functional>
-#include <string>
-#include <vector>
-
-#include "tests/hidden/bench_runs.h"
 #include "tests/hidden/twin_cases.h"
 
 /// What causes that the catalogue lacks write into the readings of a run that is otherwise clean.

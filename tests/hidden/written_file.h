@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "twin/core/scenario.h"
 #include "twin/diagnose/diagnose.h"
 
 /// The scenario that a diagnosis writes, held against readings; and a second run of a machine, on another day.

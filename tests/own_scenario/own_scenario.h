@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 
@@ -41,7 +38,7 @@ std::vector<OwnRun> KeyRuns(const OwnBench& bench, std::size_t together);
 std::vector<OwnRun> EffectRuns(const OwnBench& bench, std::size_t together);
 
 /// What the diagnosis has to say; empty if nothing.
-std::string AlarmOf(const OwnRun& run, const std::string& cache_folder);
-std::string AlarmIn(const std::vector<Reading>& readings, const Scenario& scenario, const std::string& cache_folder);
+std::string AlarmOf(const OwnRun& run);
+std::string AlarmIn(const std::vector<Reading>& readings, const Scenario& scenario);
 
 }  // namespace twinbench::test

@@ -8,7 +8,6 @@
 
 #include "tests/support/angle_benches.h"
 #include "tests/support/night.h"
-#include "tests/support/thresholds.h"
 
 namespace twinbench::test {
 namespace {
@@ -30,7 +29,7 @@ Alarms AlarmsOf(const std::vector<OwnRun>& runs) {
   for (OwnRun run : runs) {
     alarms.runs += run.stated * Seeds();
     for (int k = 0; k < Seeds(); ++k, ++run.scenario.seed) {
-      const std::string raised = AlarmOf(run, ThresholdsFolder());
+      const std::string raised = AlarmOf(run);
       if (raised.empty()) continue;
       alarms.raised.push_back(fmt::format("{} (seed {}): {}", run.what, run.scenario.seed, raised));
       std::cout << alarms.raised.back() << std::endl;
@@ -60,7 +59,7 @@ TEST_P(OwnScenario, IsDiagnosedWithoutAClock) {
   const Scenario scenario = LoadScenario(ScenarioPath(bench.scenario), bench.base);
   std::vector<Reading> readings = ReadingsOf(scenario);
   for (Reading& r : readings) r.time = {};
-  EXPECT_TRUE(AlarmIn(readings, scenario, ThresholdsFolder()).empty());
+  EXPECT_TRUE(AlarmIn(readings, scenario).empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryBench, OwnScenario, ::testing::ValuesIn(OwnBenches()),

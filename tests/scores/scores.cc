@@ -1,17 +1,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <ctime>
-#include <filesystem>
 #include <mutex>
 
-#include "tests/core/input_error.h"
-#include "tests/hidden/run_cases.h"
-#include "tests/scores/compare.h"
+#include "tests/perf/timing.h"
 #include "tests/scores/sets.h"
+#include "tests/support/in_parallel.h"
 #include "twin/core/bench_format.h"
-#include "twin/core/errors.h"
 #include "twin/core/scenario_schema.h"
+#include "twin/core/whole_file.h"
 
 // Hides causes, has them diagnosed, and keeps case by case how right the answers are.
 namespace twinbench::scores {
@@ -37,22 +34,16 @@ Plans PlansOf(const Options& options) {
   return plans;
 }
 
-double ThreadSeconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 Row RowOf(const Plan& plan) {
   Row row{plan.set, plan.bench, Unquoted(plan.name)};
-  const double begin_s = ThreadSeconds();
+  const double begin_s = perf::Seconds(CLOCK_THREAD_CPUTIME_ID);
   try {
     plan.examine(row);
   } catch (const std::exception& end) {  // one case lost, as in a campaign
     row.marks[kRight] = false;
     row.answer = std::string("ended: ") + end.what();
   }
-  row.seconds = ThreadSeconds() - begin_s;
+  row.seconds = perf::Seconds(CLOCK_THREAD_CPUTIME_ID) - begin_s;
   return row;
 }
 
@@ -60,11 +51,11 @@ Row RowOf(const Plan& plan) {
 Rows Scored(const Plans& plans, const Options& options) {
   Rows rows(plans.size()), done;
   std::mutex reporting;
-  hidden::InParallel(plans.size(), options.threads, [&](std::size_t k) {
+  test::InParallel(plans.size(), options.threads, [&](std::size_t k) {
     rows[k] = RowOf(plans[k]);
     const std::scoped_lock lock(reporting);
     done.push_back(rows[k]);
-    if (!options.out.empty()) WriteWhole(options.out, Csv(done));
+    if (!options.out.empty()) WriteFileAtOnce(options.out, Csv(done));
     fmt::print(stderr, "{}/{} {} {} {} [{}] {}: {} {:.1f} s\n", done.size(), plans.size(), rows[k].set, rows[k].bench,
                rows[k].name, rows[k].hidden, rows[k].marks[kRight].value_or(false) ? "right" : "WRONG",
                rows[k].answer.substr(0, 100), rows[k].seconds);
@@ -94,8 +85,8 @@ int Score(const Options& options) {
   const Rows before = options.since.empty() ? Rows{} : ReadRows(options.since);
   const Rows rows = options.read.empty() ? Scored(PlansOf(options), options) : ReadRows(options.read);
   const std::string summary = Summary(rows);
-  if (!options.out.empty()) WriteWhole(options.out, Csv(rows));
-  if (!options.page.empty()) WriteWhole(options.page, PageOf(options, summary));
+  if (!options.out.empty()) WriteFileAtOnce(options.out, Csv(rows));
+  if (!options.page.empty()) WriteFileAtOnce(options.page, PageOf(options, summary));
   fmt::print("{}", summary);
   if (options.since.empty()) return 0;
   const Comparison comparison = Compare(rows, before);
@@ -152,11 +143,9 @@ int main(int argc, char** argv) {
     return app.exit(refusal) == 0 ? 0 : 2;
   }
   SetCommand(options);
-  const twinbench::TemporaryFolder cache;  // thresholds of this run only: those of another version would be wrong
-  options.amount.cache_folder = cache.path();
   try {
     return Score(options);
-  } catch (const twinbench::InputError& refusal) {
+  } catch (const std::runtime_error& refusal) {
     fmt::print(stderr, "{}\n", refusal.what());
     return 2;
   }

@@ -2,8 +2,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <string>
-#include <vector>
 
 #include "tests/scores/row.h"
 
@@ -18,8 +16,7 @@ using Plans = std::vector<Plan>;
 
 struct Amount {
   std::uint64_t first_seed = 1;
-  bool is_long = false;      // for the night: some four times as much
-  std::string cache_folder;  // of calibrated thresholds
+  bool is_long = false;  // for the night: some four times as much
 };
 
 struct Set {

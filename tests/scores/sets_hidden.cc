@@ -1,15 +1,13 @@
 #include <filesystem>
 
-#include "tests/hidden/challenge.h"
-#include "tests/hidden/clean_cases.h"
-#include "tests/hidden/twin_cases.h"
+#include "tests/hidden/judge.h"
 #include "tests/hidden/unlisted_cause.h"
 #include "tests/hidden/written_file.h"
 #include "tests/scores/sets.h"
+#include "tests/support/thresholds.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
-#include "twin/core/errors.h"
 
 // Cases of tests/hidden: one run, what is hidden in it, and what the written file says of the same readings.
 namespace twinbench::scores {
@@ -25,9 +23,9 @@ bool IsUnknown(const Outcome& o) {
   return o.verdict == diagnose::Verdict::kUnknown;
 }
 
-void Examine(const hidden::Case& made, RightIf is_right, const std::string& cache_folder, Row& row) {
+void Examine(const hidden::Case& made, RightIf is_right, Row& row) {
   diagnose::DiagnoseOptions options = made.options;
-  options.cache_folder = cache_folder;
+  options.cache_folder = test::ThresholdsFolder();
   row.hidden = InWords(made.hidden);
   const diagnose::DiagnosisRun found = diagnose::Diagnose(made.readings, made.scenario, options);
   const Outcome outcome = Judge(made.hidden, found.diagnosis);
@@ -44,11 +42,9 @@ void Examine(const hidden::Case& made, RightIf is_right, const std::string& cach
 
 /// @param prefix  Of names, where a set has several sorts of cases.
 void AppendCases(const std::string& set, const std::string& bench, const std::string& prefix,
-                 const std::vector<hidden::Plan>& cases, const std::string& cache_folder, Plans& plans,
-                 RightIf is_right = hidden::IsRight) {
+                 const std::vector<hidden::Plan>& cases, Plans& plans, RightIf is_right = hidden::IsRight) {
   for (const hidden::Plan& one : cases) {
-    plans.push_back({set, bench, prefix + one.name,
-                     [=, make = one.make](Row& row) { Examine(make(), is_right, cache_folder, row); }});
+    plans.push_back({set, bench, prefix + one.name, [=, make = one.make](Row& row) { Examine(make(), is_right, row); }});
   }
 }
 
@@ -72,7 +68,7 @@ Plans HiddenSet(const std::string& bench, const Amount& amount) {
   const hidden::TwinOptions options = TwinOptionsOf(amount, 5.0, 30.0);
   Plans plans;
   const auto append = [&](const std::string& prefix, const std::vector<hidden::Plan>& cases) {
-    AppendCases("hidden", bench, prefix, cases, amount.cache_folder, plans);
+    AppendCases("hidden", bench, prefix, cases, plans);
   };
   append("", SinglePlans(bench, options));
   if (bench == kRotaryBench || bench == kTurntableBench)
@@ -81,30 +77,28 @@ Plans HiddenSet(const std::string& bench, const Amount& amount) {
   return plans;
 }
 
-Plans ChallengeSet(const std::string& bench, const Amount& amount) {
+Plans ChallengeSet(const std::string& bench, const Amount&) {
   Plans plans;
   const std::string folder = test::DataPath(hidden::ChallengeSetOf(bench));
   if (std::filesystem::is_directory(folder))
-    AppendCases("challenge", bench, "", hidden::ChallengePlans(folder, bench), amount.cache_folder, plans);
+    AppendCases("challenge", bench, "", hidden::ChallengePlans(folder, bench), plans);
   return plans;
 }
 
 Plans CleanSet(const std::string& bench, const Amount& amount) {
   Plans plans;
   const int count = (amount.is_long ? 8 : 2) * hidden::kNoises;
-  AppendCases("clean", bench, "", hidden::CleanPlans(bench, count, amount.first_seed), amount.cache_folder, plans);
+  AppendCases("clean", bench, "", hidden::CleanPlans(bench, count, amount.first_seed), plans);
   return plans;
 }
 
 Plans UnlistedSet(const std::string& bench, const Amount& amount) {
   const hidden::TwinOptions options = TwinOptionsOf(amount, 20.0, 20.0);
   Plans plans;
-  AppendCases("unlisted", bench, "", UnlistedPlans(bench, options), amount.cache_folder, plans);
+  AppendCases("unlisted", bench, "", UnlistedPlans(bench, options), plans);
   // Every design without an effect is calibrated for itself: a sample, unless there is a night.
-  const std::vector<hidden::Plan> struck = LeaveOneOutPlans(bench, options);
-  std::vector<hidden::Plan> some;
-  for (std::size_t k = 0; k < struck.size(); k += amount.is_long ? 3 : 10) some.push_back(struck[k]);
-  AppendCases("unlisted", bench, "struck ", some, amount.cache_folder, plans, IsUnknown);
+  const auto some = hidden::Every(amount.is_long ? 3 : 10, LeaveOneOutPlans(bench, options));
+  AppendCases("unlisted", bench, "struck ", some, plans, IsUnknown);
   return plans;
 }
 

@@ -6,6 +6,7 @@
 #include "tests/hidden/judge.h"
 #include "tests/hidden/written_file.h"
 #include "tests/perf/timing.h"
+#include "tests/support/thresholds.h"
 #include "tools/twinbench/answers.h"
 #include "twin/benches/expected.h"
 #include "twin/benches/registry.h"
@@ -43,7 +44,7 @@ std::vector<std::string> CaseNames() {
   return names;
 }
 
-Answer Examine(const std::string& name, const std::string& cache_folder, bool asks_again) {
+Answer Examine(const std::string& name, bool asks_again) {
   const double begin_s = perf::Seconds(CLOCK_THREAD_CPUTIME_ID);
   const Truth truth = ReadTruth(kFolder + "/truth.json", name);
   Answer answer;
@@ -51,7 +52,7 @@ Answer Examine(const std::string& name, const std::string& cache_folder, bool as
   try {
     const tools::Imported taken = ImportedCase(name);
     diagnose::DiagnoseOptions options;
-    options.cache_folder = cache_folder;
+    if (asks_again) options.cache_folder = test::ThresholdsFolder();
     const diagnose::DiagnosisRun found = diagnose::Diagnose(taken.readings, taken.scenario, options);
     answer.words = Told(found.diagnosis);
     answer.judged = Judge(truth, found.diagnosis);

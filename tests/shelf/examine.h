@@ -18,8 +18,7 @@ struct Answer {
   double cpu_s = 0.0;  // of this thread, until the answer was judged
 };
 
-/// @param cache_folder  Of calibrated thresholds; empty: nowhere.
-/// @param asks_again    Diagnose the same readings with the written file.
-Answer Examine(const std::string& name, const std::string& cache_folder, bool asks_again);
+/// @param asks_again  Diagnose the same readings with the written file, with thresholds that are kept.
+Answer Examine(const std::string& name, bool asks_again);
 
 }  // namespace twinbench::shelf

@@ -35,7 +35,7 @@ TEST_P(Shelf, IsDiagnosedAsWellAsItWas) {
   KnownCases known = ReadKnownCases();
   const char* const accept = std::getenv("TWINBENCH_ACCEPT_RIGHT");  // "1"; "all": of slow ones too
   if (known[name].is_slow && (!accept || accept != std::string("all"))) GTEST_SKIP() << "only tests/scores runs it";
-  const Answer answer = Examine(name, "", false);
+  const Answer answer = Examine(name, false);
   if (accept) {
     known[name] = {answer.judged.is_right, IsSlow(answer.cpu_s, known[name].is_slow)};
     WriteKnownCases(known);

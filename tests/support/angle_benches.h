@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/circular_motion/circle_run.h"
+#include "tests/core/input_error.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
 #include "twin/benches/hob_transmission/procedure.h"
@@ -47,13 +48,10 @@ inline BenchRun RunCircles(const Scenario& scenario) {
 
 /// By the bench's own twin, through a run record: a bench that has no shorter way.
 inline std::vector<Reading> ReadingsByRecord(const Scenario& scenario) {
-  std::string folder = std::filesystem::temp_directory_path() / "twinbench-readings-XXXXXX";
-  Require(mkdtemp(folder.data()) != nullptr, "a temporary folder");
-  const std::unique_ptr<RunRecord> record = RunRecord::Create(folder, {});
+  const TemporaryFolder folder;
+  const std::unique_ptr<RunRecord> record = RunRecord::Create(folder.path(), {});
   BenchOf(scenario).make_twin(scenario)->CarryOut(*record, {});
-  std::vector<Reading> readings = record->Readings();
-  std::filesystem::remove_all(folder);
-  return readings;
+  return record->Readings();
 }
 
 /// An effect of the catalogue with its default sizes, at its last place. What has an onset or a share gets ones
