@@ -9,6 +9,7 @@
 #include "hw_bridge/program/program_run.h"
 #include "hw_bridge/program/stops.h"
 #include "tests/core/input_error.h"
+#include "tests/support/thresholds.h"
 #include "tools/twinbench/bench_means.h"
 #include "tools/twinbench/passing_run.h"
 #include "twin/benches/registry.h"
@@ -116,7 +117,7 @@ const char* ResultName(Result result) {
 }
 
 Means MeansOf(const Scenario& believed) {
-  return tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
+  return tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; }, test::QuickOptions(100));
 }
 
 Judged InvestigateBench(const Scenario& believed, const Truth& truth, const Measure& measure,
