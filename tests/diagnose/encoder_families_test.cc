@@ -6,6 +6,7 @@
 #include "tests/diagnose/support/synthetic_run.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/encoder_comparison/bench.h"
+#include "twin/benches/encoder_comparison/diagnosis/family_parts.h"
 #include "twin/benches/encoder_comparison/diagnosis/signals.h"
 #include "twin/core/units.h"
 #include "twin/model/signals.h"
@@ -23,6 +24,18 @@ SignalContext Steps(const std::vector<double>& angle_deg, const std::vector<int>
   s.reference_rad = Eigen::Map<const Eigen::VectorXd>(angle_deg.data(), n) * deg;
   s.direction = direction;
   return ContextOf(s, s.reference_rad, {});
+}
+
+/// A single step is a slip.
+TEST(LostCounts, AreOfferedWhereASpotIsPassedAgain) {
+  unknown::Design design;
+  design.channels = {"device"};
+  design.places = {{"", "device", Eigen::MatrixXd::Ones(1, 1)}};
+  const auto families = [&](const std::vector<double>& angle_deg) {
+    return LostCountFamilies(Steps(angle_deg, std::vector<int>(angle_deg.size(), 1)), design).size();
+  };
+  EXPECT_EQ(families({5, 95, 185, 275, 355}), 0u) << "each once";
+  EXPECT_GT(families({5, 95, 185, 275, 355, 445, 535, 625, 715, 805}), 0u);
 }
 
 TEST(WaveGrid, IsTheWaveOfEachGridPoint) {

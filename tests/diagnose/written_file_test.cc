@@ -7,6 +7,7 @@
 #include "tests/support/angle_benches.h"
 #include "tests/support/small_scenario.h"
 #include "tests/support/thresholds.h"
+#include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/bench.h"
 #include "twin/benches/rotary_4dof/diagnose.h"
 #include "twin/core/errors.h"
@@ -259,6 +260,20 @@ TEST(RotarySearch, NamesAChangeOfTheBenchThatIsLargeEnoughToBend) {
   const ParameterEstimate& incidence = found.causes[0].parameters.at(0);
   EXPECT_NEAR(incidence.value, kIncidence_rad, 4.0 * incidence.u);
   EXPECT_LT(incidence.u, 0.1 * kIncidence_rad);
+}
+
+TEST(RotarySearch, NamesEveryWireThatMayBeExchanged) {
+  const Scenario believed =
+      LoadScenario(twinbench::test::ScenarioPath("rotary_4dof.toml"),
+                   {"procedure.positions=12", "procedure.shifts=[0, 1, 5]", "mechanics.fidelity=kinematic"});
+  for (const std::string& where : FindEffect("convention", kRotaryBench)->places) {
+    if (where.starts_with("reverse_") || where == "index_offset") continue;  // labels of tables, which no reading shows
+    Scenario actual = believed;
+    actual.effects.push_back({"convention", where, {}, ""});
+    const std::vector<Cause> causes = FoundIn(twinbench::test::RunTwin(actual).readings, believed).diagnosis.causes;
+    ASSERT_EQ(causes.size(), 1U) << where;
+    EXPECT_EQ(causes[0].where, where);
+  }
 }
 
 }  // namespace
