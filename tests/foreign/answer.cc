@@ -39,22 +39,13 @@ bool Speaks(const Diagnosis& d, const Names& names) {
   });
 }
 
-/// Parts of the signature of what has no name.
-int UnknownParts(const Diagnosis& d) {
-  const std::string& signature = d.unknown.signature;
-  if (signature.empty()) return 0;
-  int parts = 1;
-  for (std::size_t at = signature.find(" | "); at != std::string::npos; at = signature.find(" | ", at + 1)) ++parts;
-  return parts;
-}
-
 /// What is not found must be said to be there: one unknown part for each. A name that is near stands for a cause
 /// that the catalogue lacks.
 int MissingIn(const Diagnosis& d, const Truth& truth) {
   if (d.verdict == Verdict::kNone) return static_cast<int>(std::ssize(truth.listed)) + truth.unlisted;
   int missing = Speaks(d, truth.honest) ? std::max(0, truth.unlisted - 1) : truth.unlisted;
   for (const Names& names : truth.listed) missing += Speaks(d, names) ? 0 : 1;
-  return std::max(0, missing - UnknownParts(d));
+  return std::max(0, missing - static_cast<int>(hidden::Split(d.unknown.signature, " | ").size()));
 }
 
 void FindWrong(const Diagnosis& d, const Truth& truth, Answer& answer) {

@@ -30,16 +30,6 @@ const Cause* CauseFor(const Part& part, const Diagnosis& d) {
   return found == d.causes.end() ? nullptr : &*found;
 }
 
-std::vector<std::string> Split(const std::string& text, const std::string& separator) {
-  std::vector<std::string> parts;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, at), text.size());
-    parts.push_back(text.substr(at, end - at));
-    at = end + separator.size();
-  }
-  return parts;
-}
-
 /// One part of the signature has the lock, and itself or one of its alternatives names exactly the channels.
 bool HasSignature(const Hidden& hidden, const std::string& signature) {
   return std::ranges::any_of(Split(signature, " | "), [&](const std::string& part) {
@@ -138,6 +128,16 @@ double ParameterCheck::Error() const {
 
 bool ParameterCheck::Covers() const {
   return std::abs(Error()) <= 1.96 * u;
+}
+
+std::vector<std::string> Split(const std::string& text, const std::string& separator) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(separator, at), text.size());
+    parts.push_back(text.substr(at, end - at));
+    at = end + separator.size();
+  }
+  return parts;
 }
 
 std::vector<std::string> ChannelsIn(const std::string& signature) {

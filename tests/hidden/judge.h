@@ -55,6 +55,9 @@ inline bool IsRight(const Outcome& o) {
 
 Outcome Judge(const Hidden& hidden, const diagnose::Diagnosis& diagnosis);
 
+/// Of an empty text nothing.
+std::vector<std::string> Split(const std::string& text, const std::string& separator);
+
 /// Channels that a signature speaks of, also by the name of a pattern ("tilt": both y channels).
 std::vector<std::string> ChannelsIn(const std::string& signature);
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "tests/hidden/judge.h"
 #include "tests/hidden/written_file.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/thresholds.h"
@@ -77,16 +78,6 @@ std::pair<std::string, std::string> SplitAt(const std::string& mark, const std::
   return {text.substr(0, at), text.substr(at + mark.size())};
 }
 
-Settings PartsOf(std::string text, const std::string& mark) {
-  Settings parts;
-  while (!text.empty()) {
-    const auto [part, rest] = SplitAt(mark, text);
-    parts.push_back(part);
-    text = rest;
-  }
-  return parts;
-}
-
 /// Keys of each bench from tests/data/own_scenario/BENCH.txt, in the order in which runs are made. A line is one of
 ///
 ///     machine.play_um=2 with A & B    a value that readings feel far above their noise, behind what must be so
@@ -103,7 +94,7 @@ class KeysFile {
     Require(in.is_open(), "every bench has a file of its keys");
     for (std::string line; std::getline(in, line);) {
       if (line.starts_with("each "))
-        ReadBlock(PartsOf(line.substr(5), ", "), in);
+        ReadBlock(hidden::Split(line.substr(5), ", "), in);
       else
         Read(line);
     }
@@ -147,7 +138,7 @@ class KeysFile {
 
   Settings Listed(const std::string& text) const {
     Settings all;
-    for (const std::string& part : PartsOf(text, " & ")) {
+    for (const std::string& part : hidden::Split(text, " & ")) {
       const Settings settings = part[0] == '$' ? named_.at(part) : Settings{part};
       all.insert(all.end(), settings.begin(), settings.end());
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "tests/hidden/judge.h"
 #include "tests/shelf/size.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/cause_groups.h"
@@ -86,17 +87,6 @@ std::string SizesOf(const Cause& cause, const Expected& expected) {
   return fmt::format("{:.4g} for {:.4g} {}", told->value / InSI(1.0, unit).value, size, unit);
 }
 
-std::vector<std::string> PartsOf(const std::string& signature) {
-  std::vector<std::string> parts;
-  constexpr const char* kBetween = " | ";
-  for (std::size_t at = 0; at < signature.size();) {
-    const std::size_t end = std::min(signature.find(kBetween, at), signature.size());
-    parts.push_back(signature.substr(at, end - at));
-    at = end + 3;
-  }
-  return parts;
-}
-
 double Together(const Causes& causes, const diagnose::CauseGroup& group) {
   double sum = 0.0;
   for (const std::size_t k : group) sum += causes[k].probability;
@@ -106,7 +96,7 @@ double Together(const Causes& causes, const diagnose::CauseGroup& group) {
 /// What is wrong with how a cause is named; empty if nothing.
 std::string WrongWith(const Expected& expected, const Diagnosis& d) {
   if (diagnose::HasUnmodelled(d)) {
-    for (const std::string& part : PartsOf(d.unknown.signature)) {
+    for (const std::string& part : hidden::Split(d.unknown.signature, " | ")) {
       if (SpeaksOf(part, expected.words)) return "";
     }
   }
@@ -193,7 +183,7 @@ std::vector<std::string> FalseNames(const Truth& truth, const Diagnosis& d, doub
 
 std::vector<std::string> FalseParts(const Truth& truth, const Diagnosis& d, double from) {
   if (d.unknown.probability < from || !diagnose::HasUnmodelled(d)) return {};
-  std::vector<std::string> parts = PartsOf(d.unknown.signature);
+  std::vector<std::string> parts = hidden::Split(d.unknown.signature, " | ");
   std::erase_if(parts, [&](const std::string& part) { return IsDescribed(part, truth); });
   return parts;
 }
