@@ -75,22 +75,17 @@ void ExpectError(const nlohmann::json& results, const std::string& key, double v
   EXPECT_LT(u, largest_u) << key;
 }
 
-TEST(Drive, IsLateByAFixedTimeIfTwoFeedsSaySo) {
-  const nlohmann::json results = ResultsOf(Logged({}, {1000.0, 3000.0}));
-  EXPECT_EQ(results.at("lag_kind"), "fixed_delay");
-  EXPECT_EQ(results.at("setups")[0].at("instrument"), "drive");
-  ExpectError(results, "machine.scale_x_um_m", 20.0, 1.0);
-  ExpectError(results, "machine.scale_y_um_m", -10.0, 1.0);
-  ExpectError(results, "machine.lag_x_s", 5e-3, 1e-5);
-  ExpectError(results, "machine.lag_y_s", 6e-3, 1e-5);
-  ExpectError(results, "machine.squareness_arcsec", 30e-6 / arcsec, 1.5);
-}
-
-TEST(Drive, LagsByFirstOrderIfTwoFeedsSaySo) {
-  const nlohmann::json results = ResultsOf(Logged({.are_delayed = false}, {1000.0, 3000.0}));
-  EXPECT_EQ(results.at("lag_kind"), "first_order");
-  ExpectError(results, "machine.scale_x_um_m", 20.0, 1.0);
-  ExpectError(results, "machine.lag_x_s", 5e-3, 1e-5);
+TEST(Drive, IsLateByAFixedTimeOrByFirstOrderAsTwoFeedsSay) {
+  for (const bool are_delayed : {true, false}) {
+    const nlohmann::json results = ResultsOf(Logged({.are_delayed = are_delayed}, {1000.0, 3000.0}));
+    EXPECT_EQ(results.at("lag_kind"), are_delayed ? "fixed_delay" : "first_order");
+    EXPECT_EQ(results.at("setups")[0].at("instrument"), "drive");
+    ExpectError(results, "machine.scale_x_um_m", 20.0, 1.0);
+    ExpectError(results, "machine.scale_y_um_m", -10.0, 1.0);
+    ExpectError(results, "machine.lag_x_s", 5e-3, 1e-5);
+    ExpectError(results, "machine.lag_y_s", 6e-3, 1e-5);
+    ExpectError(results, "machine.squareness_arcsec", 30e-6 / arcsec, 1.5);
+  }
 }
 
 /// Circles of a file in machine coordinates are about their own centres; arcs too, and what stands about the origin is left.
