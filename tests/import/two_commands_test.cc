@@ -15,9 +15,7 @@ class TwoCommands : public Program {
   std::set<std::string> Named(const std::string& file, const std::string& text,
                               const std::vector<std::string>& options) {
     Write(file, text);
-    std::vector<std::string> words = {"import", file, "-o", "run"};
-    words.insert(words.end(), options.begin(), options.end());
-    story_ = Succeed(words);
+    story_ = Succeed(With({"import", file, "-o", "run"}, options));
     found_ = Json({"diagnose", "run", "--json", "-"});
     std::set<std::string> effects;
     for (const auto& cause : found_.at("causes")) effects.insert(cause.at("effect"));

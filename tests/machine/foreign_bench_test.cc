@@ -39,9 +39,7 @@ class ForeignBenchProgram : public ProgramHere {
 
   /// @param faults  The bench is troubled by them, as line_devices.py writes them.
   Outcome MeasureWith(const std::vector<std::string>& faults, int attempts = 5) {
-    std::vector<std::string> words = faults;
-    words.insert(words.end(), settings_.begin(), settings_.end());
-    const ForeignBench bench(program_, At(""), words, python_);
+    const ForeignBench bench(program_, At(""), With(faults, settings_), python_);
     hidden_ = bench.told();
     std::string text = bench_file_;
     if (const auto at = text.find("attempts = "); at != std::string::npos) text.erase(at, text.find('\n', at) + 1 - at);

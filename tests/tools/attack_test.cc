@@ -1,4 +1,3 @@
-
 #include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
 

@@ -21,9 +21,7 @@ class Diagnose : public ProgramHere {
     });
   }
   std::vector<std::string> Arguments(const std::vector<std::string>& more) const {
-    std::vector<std::string> all = {"diagnose", "readings.csv", "--scenario", "small.toml", "--cache", "cache"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+    return With({"diagnose", "readings.csv", "--scenario", "small.toml", "--cache", "cache"}, more);
   }
 };
 

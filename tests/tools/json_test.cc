@@ -1,4 +1,3 @@
-
 #include "tests/tools/program_here.h"
 
 /// Every command answers to programs: one JSON document on stdout, whether it could do what it was asked or not.

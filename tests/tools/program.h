@@ -14,6 +14,11 @@
 /// The program `twinbench` as its users meet it: a process in a folder.
 namespace twinbench::test {
 
+inline std::vector<std::string> With(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 struct Outcome {
   int exit_code = -1;
   std::string out, err;
@@ -26,8 +31,7 @@ class Process {
   /// @param name    Of those files: one for each process that runs at the same time.
   Process(const std::string& folder, const std::vector<std::string>& arguments, const std::string& name = "")
       : out_(folder + name + ".out"), err_(folder + name + ".err") {
-    std::vector<std::string> words = {TWINBENCH_PROGRAM};
-    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<std::string> words = With({TWINBENCH_PROGRAM}, arguments);
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
@@ -113,9 +117,7 @@ class Program : public ::testing::Test {
 
   /// Runs the small scenario into `name`.
   void MakeRun(const std::string& name, const std::vector<std::string>& options = {}) {
-    std::vector<std::string> arguments = {"run", "small.toml", "-o", name};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    Succeed(arguments);
+    Succeed(With({"run", "small.toml", "-o", name}, options));
   }
   std::string ReadingsOf(const std::string& run) { return Succeed({"export", run}); }
 

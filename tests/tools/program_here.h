@@ -38,8 +38,7 @@ class WrittenTo {
 class ProgramHere : public Program {
  protected:
   Outcome Call(const std::vector<std::string>& arguments) override {
-    std::vector<std::string> words = {"twinbench"};
-    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<std::string> words = With({"twinbench"}, arguments);
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);

@@ -104,10 +104,9 @@ TEST_F(ResumedRun, CountsAnAttemptAtTheReadingThatWasUnderWayAndIsEvaluatedAndNo
 }
 
 TEST_F(ResumedRun, OfAnotherScenarioOrWithoutResumeIsRefusedAndTheFolderNotTouched) {
-  auto words = Measure("undisturbed");
+  const auto words = Measure("undisturbed");
   ExpectRefused({words.begin(), words.end() - 1});
-  words.insert(words.end(), {"--set", "procedure.positions=12"});
-  ExpectRefused(words);
+  ExpectRefused(With(words, {"--set", "procedure.positions=12"}));
   EXPECT_EQ(ReadingsOf("undisturbed"), readings_);
 }
 

@@ -20,9 +20,7 @@ class Served : public ServedProgram {
   }
   /// @return what is said; nothing was begun.
   std::string ExpectRehearsalStops(const std::vector<std::string>& options, const std::string& said) {
-    std::vector<std::string> words = Measure("stopped");
-    words.insert(words.end(), options.begin(), options.end());
-    const Outcome outcome = Call(words);
+    const Outcome outcome = Call(With(Measure("stopped"), options));
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_THAT(outcome.err, HasSubstr(said));
     EXPECT_FALSE(Exists("stopped"));
@@ -63,9 +61,7 @@ TEST_F(Served, MeasuresWhatRunMakesWithACompensationAndTheCheckHolds) {
   EXPECT_NE(ReadingsOf("run_again"), ReadingsOf("before"));
 
   const auto server = Serve({"--speed", "max", "--set", "seed=6"});
-  std::vector<std::string> measure = Measure("measured");
-  measure.insert(measure.end(), again.begin(), again.end());
-  Succeed(measure);
+  Succeed(With(Measure("measured"), again));
   EXPECT_EQ(ReadingsOf("measured"), ReadingsOf("run_again"));
   EXPECT_EQ(Read("measured/results.json"), Read("run_again/results.json"));
 
@@ -185,9 +181,8 @@ TEST_F(Served, ARehearsalComesBeforeAnyMotion) {
   EXPECT_EQ(fine.exit_code, 0) << fine.err;
   EXPECT_THAT(fine.err, HasSubstr("44 readings"));
   EXPECT_THAT(fine.err, HasSubstr("a word lost by the card might not show"));
-  std::vector<std::string> apart = only;
-  apart.insert(apart.end(), {"--set", "amplifier.offset_mV=[-1500, -500, 500, 1500]"});
-  EXPECT_THAT(Call(apart).err, Not(HasSubstr("a word lost by the card")));
+  const std::vector<std::string> apart = {"--set", "amplifier.offset_mV=[-1500, -500, 500, 1500]"};
+  EXPECT_THAT(Call(With(only, apart)).err, Not(HasSubstr("a word lost by the card")));
   ExpectRehearsalStops({"--rehearse", "--set", "psd_a.width_mm=0.2"}, "PROBLEM");
   const auto server = Serve();
   std::string text = Read("bench.toml");

@@ -24,11 +24,10 @@ class ServedProgram : public ProgramHere {
   /// Starts a server and waits until it has said where it is.
   std::unique_ptr<Process> Serve(const std::vector<std::string>& options = {"--speed", "max"},
                                  const std::string& scenario = "small.toml") {
-    std::vector<std::string> words = {"serve",      scenario, "--iiod-port",   "0",         "--scpi-port", "0",
-                                      "--esp-port", "0",      "--write-bench", "bench.toml"};
-    words.insert(words.end(), options.begin(), options.end());
+    const std::vector<std::string> words = {"serve",      scenario, "--iiod-port",   "0",         "--scpi-port", "0",
+                                            "--esp-port", "0",      "--write-bench", "bench.toml"};
     std::filesystem::remove(At("bench.toml"));
-    auto server = std::make_unique<Process>(At(""), words, "server");
+    auto server = std::make_unique<Process>(At(""), With(words, options), "server");
     for (int k = 0; k < 500 && !Exists("bench.toml"); ++k)
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     EXPECT_TRUE(Exists("bench.toml")) << "the server did not come up";
