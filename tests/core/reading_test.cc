@@ -1,15 +1,14 @@
-
 #include "tests/core/any_reading.h"
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
-#include "twin/benches/names.h"
+#include "tests/support/memory_log.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/units.h"
 
 namespace twinbench {
 namespace {
 
-using testing::HasSubstr, testing::Not;
+using test::TextOf, testing::HasSubstr, testing::Not;
 
 /// Drifts begin with the run, and not half a century before.
 TEST(ReadReadingsCsv, CountsTimesSince1970FromTheFirstReading) {
@@ -40,12 +39,6 @@ std::vector<Reading> ParseReadings(const std::string& text, const std::string& b
   return ParseReadingsCsv(in, "r.csv", bench);
 }
 
-std::string Write(const std::vector<Reading>& readings, const std::string& bench = kRotaryBench) {
-  std::ostringstream out;
-  WriteReadingsCsv(readings, bench, out);
-  return out.str();
-}
-
 /// The message about one row under kHeader.
 std::string RowError(const std::string& row) {
   return MessageOf([&] { ParseReadings(std::string(kHeader) + "\n" + row + "\n"); });
@@ -63,7 +56,7 @@ TEST(ReadingsCsv, AreReadBackToTheSameBits) {
   for (int i = 0; i < 300; ++i) readings.push_back(RotaryReading(i));
   for (Reading& r : readings) r.extra = {{"operator", ""}, {"humidity_percent", ""}};
   readings[7].extra = {{"operator", "A, B"}, {"humidity_percent", "41"}};
-  const auto read = ParseReadings(Write(readings));
+  const auto read = ParseReadings(TextOf(readings));
   ASSERT_EQ(read.size(), readings.size());
   for (std::size_t i = 0; i < read.size(); ++i) ExpectSame(read[i], readings[i]);
 }
@@ -82,7 +75,7 @@ TEST_P(ReadingsOfABench, AreKnownByTheirColumnsAndComeBackToTheSameBits) {
       if (column.number) column.number(r) = normal(random);
     }
   }
-  std::vector<Reading> again = ParseReadings(Write(readings, GetParam()));
+  std::vector<Reading> again = ParseReadings(TextOf(readings, GetParam()));
   ASSERT_EQ(again.size(), readings.size());
   for (std::size_t i = 0; i < again.size(); ++i) {
     EXPECT_EQ(again[i].status, ReadingStatus::kOk);
@@ -92,7 +85,7 @@ TEST_P(ReadingsOfABench, AreKnownByTheirColumnsAndComeBackToTheSameBits) {
       EXPECT_EQ(column.number(again[i]), column.number(readings[i])) << column.name;
     }
   }
-  EXPECT_EQ(Write(readings, GetParam()).find("psd_a_x_V") != std::string::npos, GetParam() == kRotaryBench);
+  EXPECT_EQ(TextOf(readings, GetParam()).find("psd_a_x_V") != std::string::npos, GetParam() == kRotaryBench);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, ReadingsOfABench, testing::ValuesIn(BenchNames()));
@@ -104,7 +97,7 @@ TEST(ReadingsCsv, KeepTimesToTheNanosecond) {
     reading.time = Time(Duration(ns));
     reading.target_rad = reading.reference_rad = 0.0;
     reading.mean_V.fill(0.0);
-    EXPECT_EQ(ParseReadings(Write({reading})).front().time.time_since_epoch().count(), ns);
+    EXPECT_EQ(ParseReadings(TextOf({reading})).front().time.time_since_epoch().count(), ns);
   }
 }
 
@@ -112,9 +105,9 @@ TEST(ReadingsCsv, HaveNoTimeWhereNobodyMeasuredOne) {
   const std::string first = "\n0,,0,0,1,0,full_circle,0,0,1,1,1,1", next = "\n7,,0,0,1,1,full_circle,10,-10,1,1,1,1";
   const std::vector<Reading> readings = ParseReadings(std::string(kHeader) + ",clock" + first + ",none" + next + ",none\n");
   EXPECT_LT(readings[0].time, readings[1].time) << "their order is known";
-  const std::string text = Write(readings);
+  const std::string text = TextOf(readings);
   EXPECT_THAT(text, HasSubstr("\n0,,0,"));
-  EXPECT_EQ(Write(ParseReadings(text)), text);
+  EXPECT_EQ(TextOf(ParseReadings(text)), text);
   EXPECT_THAT(RowError("0,,0,0,1,0,full_circle,0,0,1,1,1,1"), HasSubstr("time_s is \"\"")) << "with a clock there is a time";
 }
 
@@ -138,16 +131,16 @@ TEST(ReadingsCsv, KeepColumnsThatWeDoNotKnow) {
   const std::string header = "gripper," + std::string(kHeader) + ",\"air, top\"";
   const auto readings = ParseReadings(header + "\nG7,0,0,0,0,1,0,full_circle,0,0,1,2,3,4,calm\n");
   EXPECT_EQ(readings[0].extra, (std::map<std::string, std::string>{{"air, top", "calm"}, {"gripper", "G7"}}));
-  EXPECT_EQ(ParseReadings(Write(readings))[0].extra, readings[0].extra);
+  EXPECT_EQ(ParseReadings(TextOf(readings))[0].extra, readings[0].extra);
 }
 
 TEST(ReadingsCsv, HaveAStatusOnlyIfSomethingWentWrong) {
   std::vector<Reading> readings = {RotaryReading(0), RotaryReading(1)};
-  EXPECT_THAT(Write(readings), Not(HasSubstr("status")));
+  EXPECT_THAT(TextOf(readings), Not(HasSubstr("status")));
   readings[1].status = ReadingStatus::kSaturated;
   readings[1].mean_V.fill(kNaN);
   readings[1].std_V.fill(kNaN);
-  const auto read = ParseReadings(Write(readings));
+  const auto read = ParseReadings(TextOf(readings));
   EXPECT_EQ(read[0].status, ReadingStatus::kOk);
   EXPECT_EQ(read[1].status, ReadingStatus::kSaturated);
   EXPECT_TRUE(std::isnan(read[1].mean_V[0]));

@@ -1,4 +1,3 @@
-
 #include <fmt/ranges.h>
 
 #include "tests/core/input_error.h"

@@ -64,7 +64,7 @@ TEST(TurntableDiagnosis, TakesASingleDisturbedReadingForNoSlips) {
   TurntableOf(sweep).turntable_procedure.phases = {"calibration"};
   TurntableOf(sweep).turntable_procedure.sweep_points = 41;
   for (const std::size_t disturbed : {2u, 20u, 38u}) {
-    std::vector<Reading> readings = twinbench::test::RunTurntable(sweep).readings;
+    std::vector<Reading> readings = twinbench::test::RunBench(sweep).readings;
     readings[disturbed].autocollimator_tilt_rad += 17.0 * TurntableOf(sweep).autocollimator.noise_rad;
     const DiagnosisRun run = Diagnosed(readings, sweep);
     EXPECT_TRUE(OnlyCause(run, "outliers")) << disturbed << ": " << test::Told(run);

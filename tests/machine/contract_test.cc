@@ -41,7 +41,7 @@ TEST_P(MachineContract, GivesTheSameBitsThroughTheNetworkAndWritesDownWhatItAske
 }
 
 TEST_P(MachineContract, IsWhatRunCarriesOut) {
-  EXPECT_EQ(TextOf(ReadingsByRecord(scenario_), scenario_), TextOf(in_process_, scenario_));
+  EXPECT_EQ(TextOf(RunBench(scenario_).readings, scenario_), TextOf(in_process_, scenario_));
 }
 
 TEST_P(MachineContract, AResumedRunMakesTheSameReadings) {
@@ -131,7 +131,7 @@ class SeveralHeads : public ::testing::TestWithParam<Scenario (*)()> {};
 TEST_P(SeveralHeads, AreReadOnATwinOnly) {
   Scenario scenario = GetParam()();
   EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 1.0};
-  EXPECT_EQ(TextOf(DrivenInProcess(scenario), scenario), TextOf(ReadingsByRecord(scenario), scenario));
+  EXPECT_EQ(TextOf(DrivenInProcess(scenario), scenario), TextOf(RunBench(scenario).readings, scenario));
   DrivenTwin twin(scenario);
   twin.bench.simulation = nullptr;
   EXPECT_NE(twin.Fault(), "");

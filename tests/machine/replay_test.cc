@@ -6,6 +6,7 @@
 #include "tests/machine/benches.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/machine_run.h"
+#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 
 /// Recordings of benches that cannot begin again: machine_serve_test.cc plays those of simulated ones.

@@ -308,7 +308,7 @@ TEST(Mangled, AComparisonAtOtherAnglesThanPlannedMayHaveAnyNumberOfReadings) {
 
 TEST(Mangled, AShaftThatStandsWhileItsEncoderCountsIsRefused) {
   const Scenario scenario = LoadScenario(test::ScenarioPath("encoder_comparison.toml"));
-  EXPECT_KEPT(Said(Standing(test::ReadingsByRecord(scenario)), scenario));
+  EXPECT_KEPT(Said(Standing(test::RunBench(scenario).readings), scenario));
 }
 
 }  // namespace

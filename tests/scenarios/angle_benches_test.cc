@@ -13,7 +13,7 @@ namespace {
 using separate::hob::HobAnalysis, separate::hob::OrderStatus, separate::turntable::TurntableAnalysis, units::arcsec;
 
 test::BenchRun Turntable(const std::string& file, const std::vector<std::string>& overrides = {}) {
-  return test::RunTurntable(LoadScenario(test::ScenarioPath(file), overrides));
+  return test::RunBench(LoadScenario(test::ScenarioPath(file), overrides));
 }
 
 TurntableAnalysis Analysed(const test::BenchRun& run) {
@@ -111,7 +111,7 @@ TEST(TurntableShifts, SeparateTurntableAndTeethWithinTheirUncertainties) {
 
 TEST(TurntableShifts, AreScoredByWhatTheyTellApart) {
   for (const char* shifts : {"[0, 60, 120, 300]", "[0, 180, 0, 180]", "[0, 5, 65, 60]", "[0, 120, 240, 0]"}) {
-    const test::BenchRun run = test::RunTurntable(LoadScenario(
+    const test::BenchRun run = test::RunBench(LoadScenario(
         test::ScenarioPath("turntable_shifts.toml"), {std::string("turntable_procedure.shifts_teeth=") + shifts, "mechanics.fidelity=kinematic"}));
     const auto score = benches::turntable::ScoreRun(run.scenario, run.readings, run.truth, Estimator::kRigorous).json;
     for (const char* table : {"turntable", "multitooth"})
@@ -122,7 +122,7 @@ TEST(TurntableShifts, AreScoredByWhatTheyTellApart) {
 // --- hobbing machine ---
 
 test::BenchRun Machine(const std::string& file, const std::vector<std::string>& overrides = {}) {
-  return test::RunHob(LoadScenario(test::ScenarioPath(file), overrides));
+  return test::RunBench(LoadScenario(test::ScenarioPath(file), overrides));
 }
 
 HobAnalysis Analysed(const test::BenchRun& run, Estimator estimator) {

@@ -41,7 +41,7 @@ TEST(TurntablePolygon, KnowsTheEncodersCurveToFourThousandthsOfAnArcsecond) {
   constexpr int kSeeds = 16;
   double expanded = 0.0, encoder = 0.0, faces = 0.0, reading = 0.0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    const test::BenchRun run = test::RunTurntable(PolygonScenario({fmt::format("seed={}", seed)}));
+    const test::BenchRun run = test::RunBench(PolygonScenario({fmt::format("seed={}", seed)}));
     const PolygonAnalysis a = Closed(run.readings, run.scenario);
     ASSERT_TRUE(a.closure);
     EXPECT_TRUE(a.closure->hidden.empty());
@@ -69,7 +69,7 @@ TEST(TurntablePolygon, MayLeanByHundredsOfArcseconds) {
   for (const LeaningPolygon& p : {LeaningPolygon{60, 0, 24}, {100, 70, 24}, {200, 0, 24}, {150, 200, 18}, {400, 310, 36}}) {
     double encoder = 0.0;
     for (int seed = 1; seed <= seeds; ++seed) {
-      const test::BenchRun run = test::RunTurntable(PolygonScenario(
+      const test::BenchRun run = test::RunBench(PolygonScenario(
           {fmt::format("seed={}", seed), fmt::format("turntable_procedure.tilts_arcsec=[{}]", p.tilt_arcsec),
            fmt::format("turntable_procedure.tilt_azimuths_deg=[{}]", p.azimuth_deg), fmt::format("polygon.faces={}", p.faces),
            fmt::format("turntable_procedure.positions={}", p.faces)}));
@@ -86,7 +86,7 @@ TEST(TurntablePolygon, IsScoredByWhatItsClampingsSee) {
                              "{order=12,amplitude_arcsec=0.9},{order=24,amplitude_arcsec=0.3,phase_deg=50}]";
   for (const char* highest : {"turntable_procedure.highest_order=5", "turntable_procedure.highest_order=12"}) {
     // Twelve faces: orders 12 and 24 are in the constants. Five clampings: order 5 is the faces'.
-    const test::BenchRun run = test::RunTurntable(PolygonScenario({"polygon.faces=12", "turntable_procedure.positions=12", orders, highest,
+    const test::BenchRun run = test::RunBench(PolygonScenario({"polygon.faces=12", "turntable_procedure.positions=12", orders, highest,
                                                                    "turntable_procedure.polygon_offsets_deg=[3, 75, 147, 219, 291]"}));
     EXPECT_LT(MeanSquaredScore(run, "turntable"), 4.0) << highest;
     EXPECT_LT(MeanSquaredScore(run, "polygon"), 4.0) << highest;
@@ -99,7 +99,7 @@ TEST(TurntablePolygon, HasTheUnstatedFlatnessOfItsFacesInFull) {
                                            "autocollimator.deadband_arcsec=0.001"});
   Scenario unstated = stated;
   TurntableOf(unstated).mirror.flatness_m = 0.0;
-  const test::BenchRun run = test::RunTurntable(stated);
+  const test::BenchRun run = test::RunBench(stated);
   const auto truth = run.truth.at("turntable").at("ez_arcsec").get<std::vector<double>>();
   const AngleSeries known = Closed(run.readings, stated).closure->turntable;
   const AngleSeries taken = Closed(run.readings, unstated).closure->turntable;
@@ -114,7 +114,7 @@ TEST(TurntablePolygon, HasTheUnstatedFlatnessOfItsFacesInFull) {
 
 TEST(TurntablePolygon, StatesTheBiasOfClosureByMeans) {
   const Scenario uneven = PolygonScenario({"turntable_procedure.polygon_offsets_deg=[0, 57.6, 129.6, 150, 171]"});
-  const test::BenchRun run = test::RunTurntable(uneven);
+  const test::BenchRun run = test::RunBench(uneven);
   const PolygonAnalysis published = Closed(run.readings, uneven, Estimator::kPublished);
   const double of_noise_arcsec = 0.03 * std::sqrt(10.0 / 480.0);
   EXPECT_GT(published.method_bias_rad / arcsec, 10.0 * of_noise_arcsec);
@@ -129,7 +129,7 @@ TEST(TurntablePolygon, StatesTheBiasOfClosureByMeans) {
 
 TEST(TurntablePolygon, SaysWhatItsUncertaintyIsMadeOf) {
   const Scenario uneven = PolygonScenario({"turntable_procedure.polygon_offsets_deg=[0, 57.6, 129.6, 150, 171]"});
-  const test::BenchRun run = test::RunTurntable(uneven);
+  const test::BenchRun run = test::RunBench(uneven);
   for (const Estimator estimator : {Estimator::kRigorous, Estimator::kPublished}) {
     const nlohmann::json results = benches::turntable::Evaluate(uneven, run.readings, estimator).results;
     for (const char* curve : {"turntable", "polygon"}) {
@@ -149,7 +149,7 @@ TEST(TurntablePolygon, SaysWhatItsUncertaintyIsMadeOf) {
 TEST(TurntablePolygon, SaysWhyOneClampingIsNotEnough) {
   const Scenario one = PolygonScenario({"turntable_procedure.polygon_offsets_deg=[0]"});
   const report::Evaluation evaluation =
-      benches::turntable::Evaluate(one, test::RunTurntable(one).readings, Estimator::kRigorous);
+      benches::turntable::Evaluate(one, test::RunBench(one).readings, Estimator::kRigorous);
   EXPECT_FALSE(evaluation.Separated());
   EXPECT_THAT(evaluation.not_separated, testing::HasSubstr("more clampings"));
 }
@@ -157,7 +157,7 @@ TEST(TurntablePolygon, SaysWhyOneClampingIsNotEnough) {
 TEST(TurntablePolygon, RefusesReadingsOfAnotherClamping) {
   const Scenario few = PolygonScenario({kFewClampings});
   const Scenario other = PolygonScenario({"turntable_procedure.polygon_offsets_deg=[0, 67.6, 129.6, 273.6]"});
-  const std::vector<Reading> readings = test::RunTurntable(few).readings;
+  const std::vector<Reading> readings = test::RunBench(few).readings;
   EXPECT_THROW(Closed(readings, other), InputError) << "10 deg off, more than half of a face";
   EXPECT_THROW(Closed(readings, PolygonScenario({"turntable_procedure.polygon_offsets_deg=[0]"})), InputError);
 }
@@ -165,7 +165,7 @@ TEST(TurntablePolygon, RefusesReadingsOfAnotherClamping) {
 TEST(TurntablePolygon, CompensatesTheEncoder) {
   Scenario scenario = PolygonScenario();
   const auto measured = [](const Scenario& s) {
-    return BenchOf(s).index_errors(s, test::RunTurntable(s).readings);
+    return BenchOf(s).index_errors(s, test::RunBench(s).readings);
   };
   const separate::IndexErrors first = measured(scenario);
   const separate::Compensation compensation = Compensate(first);
@@ -183,7 +183,7 @@ TEST(TurntablePolygon, IsDiagnosed) {
   const auto diagnosed = [&](const std::string& effect) {
     std::vector<std::string> overrides = {kFewClampings};
     if (!effect.empty()) overrides.push_back("effect=[" + effect + "]");
-    const auto readings = test::RunTurntable(PolygonScenario(overrides)).readings;
+    const auto readings = test::RunBench(PolygonScenario(overrides)).readings;
     return benches::turntable::Diagnose(readings, scenario, {}).diagnosis;
   };
   EXPECT_EQ(diagnosed("").verdict, diagnose::Verdict::kNone);

@@ -19,9 +19,9 @@ struct WatchedRun {
 WatchedRun Watched(const Scenario& scenario) {
   sim::Twin twin(scenario);
   RotaryBench bench = twin.Bench();
-  test::MemorySink sink;
-  procedure::CarryOut(bench, scenario, sink);
-  return {sink.readings, twin.ScheduledEvents(), twin.RaysTraced()};
+  test::MemoryLog log;
+  procedure::CarryOut(bench, scenario, log);
+  return {log.readings, twin.ScheduledEvents(), twin.RaysTraced()};
 }
 
 TEST(DefaultRun, SchedulesWhatEveryDeviceDoesAndTracesAllItsLight) {

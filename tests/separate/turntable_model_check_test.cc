@@ -201,7 +201,7 @@ positions = 12
 
 Eigen::VectorXd Separated_arcsec(const std::vector<std::string>& overrides) {
   const Scenario scenario = ParseScenario(kScenario, "test", "", overrides);
-  return AnalyseTurntable(test::RunTurntable(scenario).readings, scenario, Estimator::kRigorous).separation->turntable.value_rad /
+  return AnalyseTurntable(test::RunBench(scenario).readings, scenario, Estimator::kRigorous).separation->turntable.value_rad /
          units::arcsec;
 }
 

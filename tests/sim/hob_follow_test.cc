@@ -52,7 +52,7 @@ std::vector<model::Disturbance> FreeOrders(const Scenario& s, const std::vector<
 
 /// Largest differences between the run's readings and what its own twin says [arcsec].
 double Off_arcsec(const Scenario& scenario) {
-  const std::vector<Reading> readings = test::RunHob(scenario).readings;
+  const std::vector<Reading> readings = test::RunBench(scenario).readings;
   const Eigen::MatrixXd predicted_rad = sim::FollowHob(scenario, readings)->Predict(FreeOrders(scenario, readings));
   double off_rad = 0.0;
   for (Eigen::Index i = 0; i < predicted_rad.rows(); ++i) {
@@ -120,7 +120,7 @@ TEST(HobFollow, SlopesAreClosedForms) {
   Scenario s = WithoutFreeOrders();
   HobOf(s).transmission.harmonics.clear();
   HobOf(s).table_encoder.eccentricity_m = 0.0;
-  const std::vector<Reading> readings = test::RunHob(s).readings;
+  const std::vector<Reading> readings = test::RunBench(s).readings;
   const auto follow = sim::FollowHob(s, readings);
   const auto slope = [&](const char* point) { return model::Slope(*follow, model::PointNamed(*follow, point)); };
   const Eigen::MatrixXd motion = slope("transmission"), table = slope("table_encoder"), hob = slope("hob_encoder"),
@@ -154,7 +154,7 @@ Scenario QuietMachine() {
 }
 
 std::vector<Reading> HobReadings(const Scenario& scenario) {
-  return test::RunHob(scenario).readings;
+  return test::RunBench(scenario).readings;
 }
 
 /// table - ratio x hob, its mean over the readings taken out.

@@ -42,7 +42,7 @@ constexpr double kSecondOrder_arcsec = 2e-4;
 TEST(PolygonTwin, ReadsTheErrorOfTheTurntableWhereAFaceIsNulledAndThatOfTheFaceWithTheSameSign) {
   Scenario turning = QuietPolygon(), faced = turning;
   TurntableOf(turning).turntable.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.3}};
-  const auto readings = test::RunTurntable(turning).readings;
+  const auto readings = test::RunBench(turning).readings;
   ASSERT_EQ(readings.size(), 36u);
   for (const Reading& r : readings) {
     EXPECT_NEAR(Value_arcsec(turning, r), 5.0 * std::cos(2.0 * Nominal_rad(turning, r) + 0.3), kSecondOrder_arcsec);
@@ -51,7 +51,7 @@ TEST(PolygonTwin, ReadsTheErrorOfTheTurntableWhereAFaceIsNulledAndThatOfTheFaceW
   std::vector<double>& errors_rad = TurntableOf(faced).polygon.face_errors_rad;
   errors_rad.clear();
   for (int face = 0; face < 12; ++face) errors_rad.push_back((3.0 + face) * arcsec);
-  for (const Reading& r : test::RunTurntable(faced).readings) {
+  for (const Reading& r : test::RunBench(faced).readings) {
     EXPECT_NEAR(r.reference_rad, -30.0 * deg * r.position, 1e-12);
     EXPECT_NEAR(Value_arcsec(faced, r), 3.0 + r.position, kSecondOrder_arcsec);
   }
@@ -63,7 +63,7 @@ TEST(PolygonTwin, ReadsAFaceThatCannotBeNulledAsItIs) {
   TurntableOf(s).autocollimator.noise_rad = 0.0;
   TurntableOf(s).turntable.repeatability_sd[2] = 2.0 * arcsec;
   int within = 0;
-  for (const Reading& r : test::RunTurntable(s).readings) {
+  for (const Reading& r : test::RunBench(s).readings) {
     EXPECT_EQ(r.status, ReadingStatus::kOk);
     within += std::abs(r.autocollimator_yaw_rad) < 1e-3 * arcsec ? 1 : 0;
   }
@@ -74,7 +74,7 @@ TEST(PolygonTwin, ComesToEveryFaceFromTheSideOfItsPass) {
   Scenario s = QuietPolygon();
   TurntableOf(s).turntable_procedure.passes = {1, -1};
   s.effects = {{"backlash", "", {{"width", 3.0 * arcsec}}, "", {}}};
-  const auto readings = test::RunTurntable(s).readings;
+  const auto readings = test::RunBench(s).readings;
   // Behind by half of the gap: forward too little, backward too much.
   for (const Reading& r : readings) EXPECT_NEAR(Value_arcsec(s, r), -1.5 * r.direction, kSecondOrder_arcsec);
 }
@@ -84,13 +84,13 @@ TEST(PolygonTwin, ShowsTheEncodersStepsAndNoise) {
   s.noise_free = false;
   TurntableOf(s).autocollimator.noise_rad = 0.0;
   TurntableOf(s).encoder.step_rad = 0.5 * arcsec;
-  for (const Reading& r : test::RunTurntable(s).readings) {
+  for (const Reading& r : test::RunBench(s).readings) {
     const double steps = r.target_rad / (0.5 * arcsec);
     EXPECT_NEAR(steps, std::round(steps), 1e-4);
   }
   TurntableOf(s).encoder = {0.3 * arcsec, 0.0};
   TurntableOf(s).turntable_procedure.passes = {1, 1, 1, 1, 1, 1, 1, 1};
-  const auto readings = test::RunTurntable(s).readings;
+  const auto readings = test::RunBench(s).readings;
   double squares = 0.0;
   for (const Reading& r : readings) squares += std::pow(Value_arcsec(s, r), 2);
   // 288 readings: the deviation of a variance is sqrt(2 / 288), 8 %.
@@ -100,7 +100,7 @@ TEST(PolygonTwin, ShowsTheEncodersStepsAndNoise) {
 TEST(PolygonTwin, ShowsThePyramidOfAFaceInY) {
   Scenario s = QuietPolygon();
   TurntableOf(s).polygon.pyramid_rms_rad = 4.0 * arcsec;
-  const auto readings = test::RunTurntable(s).readings;
+  const auto readings = test::RunBench(s).readings;
   double squares = 0.0;
   for (const Reading& r : readings) {
     EXPECT_NEAR(r.autocollimator_tilt_rad, readings[static_cast<std::size_t>(r.position)].autocollimator_tilt_rad,
@@ -122,7 +122,7 @@ TEST(PolygonTwin, WalksOverItsFacesWhereItIsEccentric) {
   TurntableOf(s).turntable_procedure.tilt_azimuths_rad = {30.0 * deg};
   // 8 h e / H^2 = 2e-6 rad; a hollow face that stands off to the right is met left of its middle and leans to the
   // right.
-  for (const Reading& r : test::RunTurntable(s).readings) {
+  for (const Reading& r : test::RunBench(s).readings) {
     const double walk_arcsec = -2e-6 * std::cos(Nominal_rad(s, r) + 30.0 * deg) / arcsec;
     EXPECT_NEAR(Value_arcsec(s, r), walk_arcsec, 0.002) << r.reading;
   }
@@ -140,7 +140,7 @@ TEST(PolygonTwin, IsFollowed) {
   own.turntable.backlash_rad = 3.0 * arcsec;
   s.effects = {{"settling", "", {{"amplitude", 2.0 * arcsec}, {"time_constant", 1.0}}, "", {}},
                {"slip", "x", {{"step", 2.0 * arcsec}, {"at_reading", 20.0}}, "", {}}};
-  const test::BenchRun run = test::RunTurntable(s);
+  const test::BenchRun run = test::RunBench(s);
   const auto follow = sim::FollowTurntable(s, run.readings);
   Eigen::VectorXd tilt_rad(std::ssize(run.readings));
   for (Eigen::Index i = 0; i < tilt_rad.size(); ++i) {
@@ -165,7 +165,7 @@ TEST(PolygonTwin, KeepsTheAngleThatIsMeantWhereACompensationIsAtWork) {
   }
   TurntableOf(s).turntable.compensation = table;
   // The table goes where the correction leads it: that is its error now.
-  for (const Reading& r : test::RunTurntable(s).readings)
+  for (const Reading& r : test::RunBench(s).readings)
     EXPECT_NEAR(Value_arcsec(s, r), table.At(Nominal_rad(s, r)) / arcsec, 0.005)
         << "20 arcsec of 20 arcsec a third of a radian";
 }

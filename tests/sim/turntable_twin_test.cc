@@ -25,7 +25,7 @@ Scenario QuietTurntable() {
 }
 
 std::vector<Reading> TurntableReadings(const Scenario& scenario) {
-  return test::RunTurntable(scenario).readings;
+  return test::RunBench(scenario).readings;
 }
 
 double X_arcsec(const Reading& r) {
@@ -222,7 +222,7 @@ std::vector<model::Disturbance> OwnErrors(const test::BenchRun& run) {
 
 /// Largest difference between the run's readings and what its own twin says [arcsec].
 double TurntableOff_arcsec(const Scenario& scenario) {
-  const test::BenchRun run = test::RunTurntable(scenario);
+  const test::BenchRun run = test::RunBench(scenario);
   const auto follow = sim::FollowTurntable(scenario, run.readings);
   const Eigen::MatrixXd predicted_rad = follow->Predict(OwnErrors(run));
   double off_rad = 0.0;
@@ -287,7 +287,7 @@ TEST(TurntableFollow, DiffersFromBulletByLessThanTheServosWindow) {
 
 /// d reading / d point: readings x 2, at the errors of the run.
 Eigen::MatrixXd SlopeAt(const Scenario& scenario, const char* point) {
-  const test::BenchRun run = test::RunTurntable(scenario);
+  const test::BenchRun run = test::RunBench(scenario);
   const auto follow = sim::FollowTurntable(scenario, run.readings);
   return model::Slope(*follow, model::PointNamed(*follow, point), OwnErrors(run));
 }
@@ -313,7 +313,7 @@ TEST(TurntableFollow, HasPointsForWhatItsErrorsAreMadeOf) {
   Scenario s = Careful();
   TurntableOf(s).turntable_procedure.tilts_rad = {0.0};
   TurntableOf(s).collimator.roll_rad = 0.0;
-  const test::BenchRun run = test::RunTurntable(s);
+  const test::BenchRun run = test::RunBench(s);
   const auto follow = sim::FollowTurntable(s, run.readings);
   const Eigen::MatrixXd shown = model::Slope(*follow, model::PointNamed(*follow, "autocollimator.y"));
   EXPECT_NEAR((shown.col(1).array() - 1.0).abs().maxCoeff(), 0.0, 1e-6);

@@ -13,10 +13,9 @@
 #include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
 #include "twin/benches/turntable_autocollimator/procedure.h"
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
-#include "twin/core/run_record.h"
 #include "twin/procedure/machine_options.h"
 
-/// Runs of the turntable's and the hobbing machine's twins without a disk.
+/// Runs of the benches' twins without a disk.
 namespace twinbench::test {
 
 struct BenchRun {
@@ -25,33 +24,16 @@ struct BenchRun {
   nlohmann::json truth;
 };
 
-template <class Twin>
-BenchRun RunBench(const Scenario& scenario) {
-  Twin twin(scenario);
-  MachineBench bench = twin.Devices();
-  MemorySink sink;
-  BenchOf(scenario).drive(bench, scenario, sink, {}, {});
-  return {scenario, sink.readings, twin.Truth()};
-}
-
-inline BenchRun RunTurntable(const Scenario& scenario) {
-  return RunBench<sim::TurntableTwin>(scenario);
-}
-inline BenchRun RunHob(const Scenario& scenario) {
-  return RunBench<sim::HobTwin>(scenario);
+inline BenchRun RunBench(const Scenario& scenario) {
+  const auto twin = BenchOf(scenario).make_twin(scenario);
+  MemoryLog log;
+  twin->CarryOut(log, {});
+  return {scenario, log.readings, twin->Truth()};
 }
 
 inline BenchRun RunCircles(const Scenario& scenario) {
   const sim::CircleRun run(scenario);
   return {scenario, CircleReadings(run), run.Truth()};
-}
-
-/// By the bench's own twin, through a run record: a bench that has no shorter way.
-inline std::vector<Reading> ReadingsByRecord(const Scenario& scenario) {
-  const TemporaryFolder folder;
-  const std::unique_ptr<RunRecord> record = RunRecord::Create(folder.path(), {});
-  BenchOf(scenario).make_twin(scenario)->CarryOut(*record, {});
-  return record->Readings();
 }
 
 /// An effect of the catalogue with its default sizes, at its last place. What has an onset or a share gets ones
@@ -67,11 +49,8 @@ inline EffectSettings PlainEffect(const EffectEntry& entry) {
 /// The readings of any bench's twin.
 inline std::vector<Reading> ReadingsOf(const Scenario& scenario) {
   if (scenario.bench == kEncoderBench) return RunEncoderTwin(scenario).readings;
-  if (scenario.bench == kTurntableBench) return RunTurntable(scenario).readings;
-  if (scenario.bench == kHobBench) return RunHob(scenario).readings;
   if (scenario.bench == kCircularBench) return RunCircles(scenario).readings;
-  if (scenario.bench == kRotaryBench) return RunTwin(scenario).readings;
-  return ReadingsByRecord(scenario);
+  return RunBench(scenario).readings;
 }
 
 }  // namespace twinbench::test

@@ -34,9 +34,7 @@ struct MachineRun {
 };
 
 inline std::string TextOf(const std::vector<Reading>& readings, const Scenario& scenario) {
-  std::ostringstream text;
-  WriteReadingsCsv(readings, scenario.bench, text);
-  return text.str();
+  return TextOf(readings, scenario.bench);
 }
 
 /// The scenario's procedure on its twin inside this program.

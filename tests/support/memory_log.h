@@ -34,9 +34,9 @@ class MemoryLog : public ReadingSink, public RunLog {
 };
 
 /// readings.csv: text keeps every bit of the numbers, and NaN equals NaN in it.
-inline std::string TextOf(const std::vector<Reading>& readings) {
+inline std::string TextOf(const std::vector<Reading>& readings, const std::string& bench = kRotaryBench) {
   std::ostringstream text;
-  WriteReadingsCsv(readings, kRotaryBench, text);
+  WriteReadingsCsv(readings, bench, text);
   return text.str();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tests/support/memory_log.h"
 #include "twin/benches/encoder_comparison/procedure.h"
 #include "twin/benches/encoder_comparison/twin/twin.h"
 #include "twin/benches/rotary_4dof/estimators/separate.h"
@@ -8,13 +9,6 @@
 
 /// Runs of the twin without a disk: what the closure, scenario and hidden tests have in common.
 namespace twinbench::test {
-
-/// Keeps readings in memory.
-class MemorySink : public ReadingSink {
- public:
-  void Append(const Reading& reading, const Acquisition& /*block*/) override { readings.push_back(reading); }
-  std::vector<Reading> readings;
-};
 
 struct TwinRun {
   Scenario scenario;
@@ -26,20 +20,20 @@ struct TwinRun {
 inline TwinRun RunTwin(const Scenario& scenario) {
   sim::Twin twin(scenario);
   RotaryBench bench = twin.Bench();
-  MemorySink sink;
-  procedure::CarryOut(bench, scenario, sink);
-  return {scenario, sink.readings, twin.TheTruth(), twin.RaysTraced()};
+  MemoryLog log;
+  procedure::CarryOut(bench, scenario, log);
+  return {scenario, log.readings, twin.TheTruth(), twin.RaysTraced()};
 }
 
 /// The same of the bench encoder_comparison; its truth is that of the scenario's effects.
 inline TwinRun RunEncoderTwin(const Scenario& scenario) {
   sim::EncoderTwin twin(scenario);
-  MemorySink sink;
-  procedure::CarryOut(twin, scenario, sink);
+  MemoryLog log;
+  procedure::CarryOut(twin, scenario, log);
   sim::Truth truth;
   truth.effects = scenario.effects;
   truth.seed = scenario.seed;
-  return {scenario, sink.readings, truth, 0};
+  return {scenario, log.readings, truth, 0};
 }
 
 /// Readings -> calibration -> motions -> errors of both tables, as `twinbench separate` does it.
