@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -8,6 +9,7 @@
 #include "tests/core/input_error.h"
 #include "twin/benches/evaluated.h"
 #include "twin/benches/freeform_five_axis/columns.h"
+#include "twin/benches/freeform_five_axis/estimators/displacement_fit.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/registry.h"
 #include "twin/core/stream.h"
@@ -257,6 +259,56 @@ TEST(Displacements, StateAnUncertaintyThatMatchesTheirScatter) {
   }
   // 440 values that go together in elevens: a standard deviation of sqrt(2 / 440) if they did not, some twice that.
   EXPECT_NEAR(squares / (kRuns * static_cast<double>(m.errors.size())), 1.0, 0.25);
+}
+
+/// Errors of groups of four about a common mean: the restricted likelihood's maximum is that of the analysis of
+/// variance.
+TEST(Displacements, FindTheLikelySizeOfBelievedTermsAsAnAnalysisOfVarianceDoes) {
+  constexpr int kGroups = 6, kEach = 4;
+  Eigen::MatrixXd groups = Eigen::MatrixXd::Zero(kGroups * kEach, kGroups);
+  Eigen::VectorXd between(kGroups * kEach), within(kGroups * kEach);
+  for (int i = 0; i < kGroups * kEach; ++i) {
+    groups(i, i / kEach) = 1.0;
+    between[i] = std::array{3.0, -1.0, 4.0, -1.0, -5.0, 2.0}[static_cast<std::size_t>(i / kEach)];
+    within[i] = i % 2 == 0 ? 1.0 : -1.0;
+  }
+  const Eigen::MatrixXd mean = Eigen::MatrixXd::Ones(kGroups * kEach, 1);
+  const auto of = [](const Eigen::VectorXd& v) { return (v.array() - v.mean()).square().sum(); };
+  const double of_between = of(between) / (kGroups - 1), of_within = of(within) / (kGroups * (kEach - 1));
+  const double size = estimators::LikelySize(mean, groups, between + within);
+  EXPECT_NEAR(std::log(size), 0.5 * std::log((of_between / of_within - 1.0) / kEach), std::log(1.25));
+  EXPECT_EQ(estimators::LikelySize(mean, groups, 0.1 * between + within), 0.0)
+      << "groups differ by less than their means scatter";
+}
+
+/// A circle, or four angles, do not tell errors of the second order from squareness: the readings show that there
+/// are some.
+TEST(Displacements, StateInTheirUncertaintyWhatComponentsThatTheyDoNotTellMayBe) {
+  constexpr int kMachines = 8;
+  for (const auto& angles_deg : {std::map<char, std::vector<double>>{{'A', {0.0}}, {'C', Steps_deg(0.0, 15.0, 24)}},
+                                 {{'A', {0.0, -30.0, -60.0}}, {'C', Steps_deg(0.0, 90.0, 4)}}}) {
+    double squares = 0.0, count = 0.0;
+    for (int seed = 1; seed <= kMachines; ++seed) {
+      Machine m = TrunnionTable();
+      Stream sizes(static_cast<std::uint64_t>(seed), "machine");
+      for (const char* name : {"ECC2c", "ECC2s", "EAC2c", "EAC2s", "EXC2c", "EYC1s", "EBC1c"})
+        m.errors[name] = 8.0 * sizes.Normal();
+      const bool is_circle = angles_deg.at('A').size() == 1;
+      const nlohmann::json errors =
+          ResultsOf(Grid(m, {kBalls[0]}, angles_deg, true, 0.3, seed),
+                    is_circle ? std::vector<std::string>{"displacement.axes=C"} : std::vector<std::string>{})
+              .at("errors");
+      for (const char* name : {"COY", "AOC", "BOC"})
+        if (errors.contains(name))
+          squares += std::pow((errors.at(name).at("value").get<double>() - m.errors.at(name)) /
+                                  errors.at(name).at("u").get<double>(),
+                              2),
+              count += 1.0;
+    }
+    // A machine has seven of them, and few are told: far from normal, so that no mean of one is expected.
+    EXPECT_GE(count, kMachines);
+    EXPECT_LT(squares / count, 6.0) << "some hundreds without them";
+  }
 }
 
 /// A ball whose place on the table is stated does not say which way the table turns, and a lean of its axis has

@@ -247,20 +247,26 @@ std::string NotObservableText(const Json& not_observable) {
                                      fmt::join(words, "; "));
 }
 
-std::string LeftText(const DisplacementFit& fit) {
+/// What the fit leaves by the stated noise, or by what readings of one pose scatter; neither is less than a file
+/// has digits.
+double LeftOverNoise(const DisplacementSettings& settings, const DisplacementFit& fit) {
+  constexpr double kDigits_um = 0.05;
+  const double noise_um = settings.noise_m > 0.0 ? settings.noise_m / units::um : fit.repeat_um;
+  return std::isfinite(noise_um) && fit.dof > 0 ? fit.residual_um / std::max(noise_um, kDigits_um) : kNaN;
+}
+
+std::string LeftText(const DisplacementFit& fit, double over_noise) {
   std::string text = fmt::format("residual {:.3f} µm rms of {:.3f} µm, {} degrees of freedom", fit.residual_um,
                                  fit.displaced_um, fit.dof);
   if (std::isfinite(fit.repeat_um))
     text += fmt::format("; readings of one pose repeat to {:.3f} µm", fit.repeat_um);
+  constexpr double kDeviations = 4.0;
+  if (over_noise > 1.0 + kDeviations / std::sqrt(2.0 * static_cast<double>(fit.dof)))
+    text += fmt::format(
+        "\nnote: the residual is {:.2g} times the noise: the machine errs as no error that is fitted; u is from "
+        "the residual",
+        over_noise);
   return text + "\n";
-}
-
-/// Against the stated noise, or what readings of one pose scatter; neither is less than a file has digits.
-std::vector<report::Misfit> MisfitOf(const DisplacementSettings& settings, const DisplacementFit& fit) {
-  constexpr double kDigits_um = 0.05;
-  const double noise_um = settings.noise_m > 0.0 ? settings.noise_m / units::um : fit.repeat_um;
-  if (!std::isfinite(noise_um) || fit.dof <= 0) return {};
-  return {{"the fit of the displacements", fit.residual_um / std::max(noise_um, kDigits_um)}};
 }
 
 }  // namespace
@@ -268,6 +274,7 @@ std::vector<report::Misfit> MisfitOf(const DisplacementSettings& settings, const
 report::Evaluation EvaluateDisplacements(const Scenario& scenario, const std::vector<Reading>& readings) {
   const DisplacementSettings& settings = FreeformOf(scenario).displacement;
   const DisplacementFit fit = estimators::FitDisplacements(settings, readings);
+  const double over_noise = LeftOverNoise(settings, fit);
   report::Evaluation evaluation;
   const Json not_observable = NotObservableJson(fit);
   evaluation.separation = {{"errors", ErrorsJsonOf(fit)},
@@ -287,8 +294,11 @@ report::Evaluation EvaluateDisplacements(const Scenario& scenario, const std::ve
   evaluation.results["displaced_rms_um"] = fit.displaced_um;
   if (std::isfinite(fit.repeat_um)) evaluation.results["repeatability_um"] = fit.repeat_um;
   evaluation.summary = MachineText(fit) + LocationsText(fit) + ComponentsText(fit) +
-                       NotObservableText(not_observable) + LeftText(fit);
-  evaluation.misfits = MisfitOf(settings, fit);
+                       NotObservableText(not_observable) + LeftText(fit, over_noise);
+  if (std::isfinite(over_noise)) {
+    evaluation.results["residual_over_noise"] = over_noise;
+    evaluation.misfits = {{"the fit of the displacements", over_noise}};
+  }
   return evaluation;
 }
 

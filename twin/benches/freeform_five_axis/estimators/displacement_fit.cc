@@ -93,51 +93,25 @@ struct ShiftSolution {
   double Residual_um() const { return std::sqrt(squares_um2 / static_cast<double>(std::max<Index>(1, dof))); }
 };
 
-/// @param most_weak  What the values of weak terms are thought to be at most (standard deviation), by the residual: 0: none is
-///                   there, infinite: nothing is thought of them.
-ShiftSolution SolvedFor(const ShiftDesign& design, const std::vector<ChosenTerm>& chosen, double most_weak) {
-  ShiftSolution solution;
-  std::vector<Index> believed;
-  for (const ChosenTerm& term : chosen) {
-    if (term.is_weak && most_weak == 0.0) continue;
-    if (term.is_weak && std::isfinite(most_weak)) believed.push_back(std::ssize(solution.of));
-    solution.of.push_back(term.at);
-  }
-  const Index rows = design.shifts_um.size(), beliefs = std::ssize(believed);
+/// @param believed, size  Terms whose values are thought to be about zero with this standard deviation, by the
+/// residual.
+ShiftSolution SolvedFor(const ShiftDesign& design, std::vector<Index> free, const std::vector<Index>& believed = {},
+                        double size = 0.0) {
+  const Index rows = design.shifts_um.size(), first = std::ssize(free),
+              beliefs = size > 0.0 ? std::ssize(believed) : 0;
+  ShiftSolution solution{std::move(free), {}, {}};
+  solution.of.insert(solution.of.end(), believed.begin(), believed.begin() + beliefs);
   MatrixXd slopes = MatrixXd::Zero(rows + beliefs, std::ssize(solution.of));
   slopes.topRows(rows) = design.slopes(Eigen::all, solution.of);
-  for (Index k = 0; k < beliefs; ++k) slopes(rows + k, believed[static_cast<std::size_t>(k)]) = 1.0 / most_weak;
+  slopes.bottomRightCorner(beliefs, beliefs).diagonal().setConstant(1.0 / size);
   VectorXd shifts_um = VectorXd::Zero(rows + beliefs);
   shifts_um.head(rows) = design.shifts_um;
   const MatrixXd inverse = PseudoInverseOf(slopes);
   solution.values = inverse * shifts_um;
   solution.u = inverse.rowwise().norm();
   solution.squares_um2 = (shifts_um - slopes * solution.values).squaredNorm();
-  solution.dof = rows + beliefs - std::ssize(solution.of);
+  solution.dof = rows - first;
   return solution;
-}
-
-/// How large weak terms are, by the residual: what is most likely by what the others leave (restricted likelihood).
-double SizeOfWeak(const ShiftDesign& design, const std::vector<ChosenTerm>& chosen, const ShiftSolution& strong) {
-  std::vector<Index> weak;
-  for (const ChosenTerm& term : chosen)
-    if (term.is_weak) weak.push_back(term.at);
-  if (weak.empty() || strong.dof < 1) return 0.0;
-  const MatrixXd slopes = design.slopes(Eigen::all, strong.of), inverse = PseudoInverseOf(slopes);
-  const MatrixXd own = design.slopes(Eigen::all, weak) - slopes * (inverse * design.slopes(Eigen::all, weak));
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(own.transpose() * own);
-  const VectorXd strength = parts.eigenvalues().cwiseMax(0.0);
-  const VectorXd shown2 = (parts.eigenvectors().transpose() * (own.transpose() * design.shifts_um)).cwiseAbs2();
-  double best = 0.0, most = -0.5 * static_cast<double>(strong.dof) * std::log(strong.squares_um2);
-  for (double size = 1e-2; size < 1e4; size *= 1.25) {
-    const VectorXd with = 1.0 + size * size * strength.array();
-    const double left_um2 = strong.squares_um2 - (size * size * shown2.array() / with.array()).sum();
-    const double likelihood = -0.5 * (static_cast<double>(strong.dof) * std::log(std::max(left_um2, 1e-300)) + with.array().log().sum());
-    if (likelihood <= most) continue;
-    most = likelihood;
-    best = size;
-  }
-  return best;
 }
 
 /// A chain at its poses, and what its terms make of the readings.
@@ -148,6 +122,7 @@ struct Tried {
   ShiftDesign design;
   std::vector<ChosenTerm> chosen;
   ShiftSolution all;
+  Index told = 0;  // terms; those behind them are beyond what the poses tell
 
   double Residual_um() const { return all.Residual_um(); }
 };
@@ -162,15 +137,18 @@ struct Looked {
     return on_workpiece ? ByWorkpiece(chain, reads, settings.tool_m) : BySlides(chain, reads);
   }
   /// @return nothing if it has too many unknowns for the readings.
-  bool Try(int highest_order, Tried& tried) const {
+  bool Try(int highest_order, int possible_order, Tried& tried) const {
     constexpr double kMostUnknowns = 0.8;  // of the values
-    tried.terms = TermsOf(tried.chain, tried.at.places, highest_order, is_rigid);
+    tried.terms = TermsOf(tried.chain, tried.at.places, highest_order, possible_order, is_rigid);
+    tried.told = std::ranges::count(tried.terms, false, &PoseTerm::is_beyond);
     tried.design = DesignOf(settings, tried.chain, reads, tried.at.places, tried.terms);
-    tried.chosen = ChosenTerms(tried.design.slopes, tried.terms);
+    tried.chosen = ChosenTerms(tried.design.slopes.leftCols(tried.told), tried.terms);
     if (static_cast<double>(tried.chosen.size()) >
         kMostUnknowns * static_cast<double>(tried.design.shifts_um.size()))
       return false;
-    tried.all = SolvedFor(tried.design, tried.chosen, INFINITY);
+    std::vector<Index> chosen;
+    for (const ChosenTerm& term : tried.chosen) chosen.push_back(term.at);
+    tried.all = SolvedFor(tried.design, chosen);
     return true;
   }
 };
@@ -205,7 +183,7 @@ std::vector<Tried> PossibleChains(const Looked& looked) {
 std::vector<Tried> BestChains(const Looked& looked) {
   constexpr double kClearly = 0.8;
   std::vector<Tried> possible = PossibleChains(looked);
-  std::erase_if(possible, [&looked](Tried& tried) { return !looked.Try(0, tried); });
+  std::erase_if(possible, [&looked](Tried& tried) { return !looked.Try(0, 0, tried); });
   if (possible.empty())
     throw InputError("readings", "they are too few for the axes that turn",
                      "three readings and more at each of several poses of every axis");
@@ -249,22 +227,29 @@ std::vector<std::size_t> Alike(const MatrixXd& fitted, const VectorXd& term) {
   return alike;
 }
 
-/// Where the others are found, weak terms are thought to be as large as the readings make likely: their own values are those
-/// beside all, without that.
+/// Locations are found with all components thought to be as large as the readings make likely, those too that the
+/// poses do not tell apart. Values of components of which others do most are those beside all, without that.
 void SetTerms(const Tried& tried, double least_u_um, DisplacementFit& fit) {
-  const ShiftSolution strong = SolvedFor(tried.design, tried.chosen, 0.0);
-  const ShiftSolution used = SolvedFor(tried.design, tried.chosen, SizeOfWeak(tried.design, tried.chosen, strong));
+  std::vector<Index> free, components;
+  for (const ChosenTerm& term : tried.chosen)
+    if (tried.terms[static_cast<std::size_t>(term.at)].kind != TermKind::kComponent) free.push_back(term.at);
+  for (Index k = 0; k < std::ssize(tried.terms); ++k)
+    if (tried.terms[static_cast<std::size_t>(k)].kind == TermKind::kComponent) components.push_back(k);
+  const MatrixXd of_free = tried.design.slopes(Eigen::all, free);
+  const double size = LikelySize(of_free, tried.design.slopes(Eigen::all, components), tried.design.shifts_um);
+  const ShiftSolution used = SolvedFor(tried.design, free, components, size);
   fit.dof = used.dof;
   fit.residual_um = used.Residual_um();
   for (std::size_t k = 0; k < tried.chosen.size(); ++k) {
     const auto own = std::ranges::find(used.of, tried.chosen[k].at);
-    const ShiftSolution& by = tried.chosen[k].is_weak ? tried.all : used;
-    const Index at = tried.chosen[k].is_weak ? static_cast<Index>(k) : own - used.of.begin();
+    const bool is_beside_all = tried.chosen[k].is_weak || own == used.of.end();
+    const ShiftSolution& by = is_beside_all ? tried.all : used;
+    const Index at = is_beside_all ? static_cast<Index>(k) : own - used.of.begin();
     fit.fitted.push_back({tried.terms[static_cast<std::size_t>(tried.chosen[k].at)], by.values[at],
                           std::max(by.Residual_um(), least_u_um) * by.u[at]});
   }
   const MatrixXd slopes = tried.design.slopes(Eigen::all, tried.all.of);
-  for (Index k = 0; k < tried.design.slopes.cols(); ++k) {
+  for (Index k = 0; k < tried.told; ++k) {
     if (std::ranges::binary_search(tried.all.of, k)) continue;
     fit.untold.push_back({tried.terms[static_cast<std::size_t>(k)], Alike(slopes, tried.design.slopes.col(k))});
     for (const std::size_t like : fit.untold.back().looks_like)
@@ -288,7 +273,8 @@ DisplacementFit FitOf(const Looked& looked, Tried& tried) {
   DisplacementFit fit;
   // Without levers an axis that tilts is one that moves.
   fit.highest_order = has_places ? looked.settings.highest_order : 0;
-  while (!looked.Try(fit.highest_order, tried)) --fit.highest_order;
+  const int possible_order = fit.highest_order;
+  while (!looked.Try(fit.highest_order, possible_order, tried)) --fit.highest_order;
   fit.chain = tried.chain;
   fit.on_workpiece = looked.on_workpiece;
   fit.from_tool = IsFromTool(looked.settings, tried.chain);
@@ -298,7 +284,7 @@ DisplacementFit FitOf(const Looked& looked, Tried& tried) {
   fit.displaced_um = tried.design.shifts_um.norm() / std::sqrt(static_cast<double>(fit.values));
   fit.repeat_um = RepeatOf_um(reads);
   SetTerms(tried, looked.settings.noise_m / units::um, fit);
-  SetSpectrum(tried.design.slopes, fit);
+  SetSpectrum(tried.design.slopes.leftCols(tried.told), fit);
   return fit;
 }
 
@@ -325,6 +311,28 @@ void RequireDisplacements(const std::vector<ShiftRead>& reads) {
 }
 
 }  // namespace
+
+double LikelySize(const MatrixXd& free, const MatrixXd& believed, const VectorXd& shifts_um) {
+  const auto rest = [inverse = PseudoInverseOf(free), &free](const auto& of) {
+    return (of - free * (inverse * of)).eval();
+  };
+  const MatrixXd own = rest(believed);
+  const double squares_um2 = rest(shifts_um).squaredNorm(), dof = static_cast<double>(free.rows() - free.cols());
+  if (believed.cols() == 0 || dof < 1.0) return 0.0;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(own.transpose() * own);
+  const VectorXd strength = parts.eigenvalues().cwiseMax(0.0);
+  const VectorXd shown2 = (parts.eigenvectors().transpose() * (own.transpose() * shifts_um)).cwiseAbs2();
+  double best = 0.0, most = -0.5 * dof * std::log(squares_um2);
+  for (double size = 1e-2; size < 1e4; size *= 1.25) {
+    const VectorXd with = 1.0 + size * size * strength.array();
+    const double left_um2 = squares_um2 - (size * size * shown2.array() / with.array()).sum();
+    const double likelihood = -0.5 * (dof * std::log(std::max(left_um2, 1e-300)) + with.array().log().sum());
+    if (likelihood <= most) continue;
+    most = likelihood;
+    best = size;
+  }
+  return best;
+}
 
 std::string WordsOf(const MachineChain& chain) {
   std::string words;

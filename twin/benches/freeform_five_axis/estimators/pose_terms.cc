@@ -134,12 +134,12 @@ int HighestOrderOf(const std::vector<PosePlace>& places, std::size_t stage) {
 void AddComponents(const MachineChain& chain, const std::vector<PosePlace>& places, int order, bool of_turns,
                    std::vector<PoseTerm>& terms) {
   for (std::size_t k = 0; k < chain.stages.size(); ++k) {
-    if (order > HighestOrderOf(places, k)) continue;
+    const bool is_beyond = order > HighestOrderOf(places, k);
     for (std::size_t error = of_turns ? 3 : 0; error < (of_turns ? 6U : 3U); ++error) {
       for (const bool is_sine : {false, true})
         terms.push_back({TermKind::kComponent, fmt::format("E{}{}", kOfBody[error], chain.stages[k].Letter()),
                          UnitOfError(error), order, 0, is_sine, false,
-                         OfStage(k, chain.stages[k].on_table, error, order, is_sine)});
+                         OfStage(k, chain.stages[k].on_table, error, order, is_sine), is_beyond});
     }
   }
 }
@@ -154,7 +154,7 @@ std::string PoseTerm::Words() const {
 }
 
 std::vector<PoseTerm> TermsOf(const MachineChain& chain, const std::vector<PosePlace>& places, int highest_order,
-                              bool is_rigid) {
+                              int possible_order, bool is_rigid) {
   constexpr int kHighestOfLinear = 3;
   std::vector<PoseTerm> terms;
   AddMountings(places, is_rigid, terms);
@@ -164,8 +164,11 @@ std::vector<PoseTerm> TermsOf(const MachineChain& chain, const std::vector<PoseP
   AddSquareness(places, terms);
   AddLinear(places, 1, terms);
   for (const bool of_turns : {false, true})
-    for (int order = 1; order <= highest_order; ++order) AddComponents(chain, places, order, of_turns, terms);
-  for (int order = 2; order <= std::min(kHighestOfLinear, highest_order); ++order) AddLinear(places, order, terms);
+    for (int order = 1; order <= possible_order; ++order) AddComponents(chain, places, order, of_turns, terms);
+  for (int order = 2; order <= std::min(kHighestOfLinear, possible_order); ++order) AddLinear(places, order, terms);
+  for (PoseTerm& term : terms)
+    term.is_beyond |= term.kind == TermKind::kComponent && term.order > std::max(1, highest_order);
+  std::ranges::stable_partition(terms, [](const PoseTerm& term) { return !term.is_beyond; });
   return terms;
 }
 

@@ -21,6 +21,7 @@ struct PoseTerm {
   bool is_of_linear = false;
   std::function<Eigen::Vector3d(const PosePlace&)>
       slope_um;  // what one unit moves the ball, seen from the tool, in machine axes
+  bool is_beyond = false;  // of an order that these poses do not tell from lower ones
 
   bool IsSetUp() const { return kind == TermKind::kMounting || kind == TermKind::kTool; }
   bool IsLocation() const { return kind == TermKind::kLocation || kind == TermKind::kSquareness; }
@@ -29,9 +30,9 @@ struct PoseTerm {
 
 /// Those that poses may show, the ones that are taken first where two move the ball alike: set-up, locations,
 /// squareness, scales, components of rotary axes by rising order, translations before rotations, and of linear
-/// ones.
+/// ones. Components of more than `highest_order`, up to `possible_order`, come last, beyond what the poses tell.
 /// @param is_rigid  What has one number as a ball is a body of many balls, whose place and turn are unknown.
 std::vector<PoseTerm> TermsOf(const MachineChain& chain, const std::vector<PosePlace>& places, int highest_order,
-                              bool is_rigid);
+                              int possible_order, bool is_rigid);
 
 }  // namespace twinbench::benches::freeform::estimators
