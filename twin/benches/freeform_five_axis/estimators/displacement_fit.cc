@@ -227,6 +227,26 @@ std::vector<std::size_t> Alike(const MatrixXd& fitted, const VectorXd& term) {
   return alike;
 }
 
+/// How large components are, by residuals, those of each axis alike but for the order, by which they fall; beside
+/// those of the other axes that are told. Of others than components 0.
+VectorXd SizesOf(const Tried& tried, const std::vector<Index>& free, const std::vector<Index>& components) {
+  const auto term = [&tried](Index k) -> const PoseTerm& { return tried.terms[static_cast<std::size_t>(k)]; };
+  VectorXd sizes = VectorXd::Zero(std::ssize(tried.terms));
+  for (const char axis : {'X', 'Y', 'Z', 'A', 'B', 'C'}) {
+    std::vector<Index> beside = free, own;
+    for (const Index k : components)
+      if (term(k).name.back() == axis) own.push_back(k);
+    for (const ChosenTerm& chosen : tried.chosen)
+      if (term(chosen.at).kind == TermKind::kComponent && term(chosen.at).name.back() != axis)
+        beside.push_back(chosen.at);
+    MatrixXd slopes = tried.design.slopes(Eigen::all, own);
+    for (Index k = 0; k < slopes.cols(); ++k) slopes.col(k) /= term(own[static_cast<std::size_t>(k)]).order;
+    const double size = LikelySize(tried.design.slopes(Eigen::all, beside), slopes, tried.design.shifts_um);
+    for (const Index k : own) sizes[k] = size / term(k).order;
+  }
+  return sizes;
+}
+
 /// Locations are found with all components thought to be as large as the readings make likely, those too that the
 /// poses do not tell apart. Values of components of which others do most are those beside all, without that.
 void SetTerms(const Tried& tried, double least_u_um, DisplacementFit& fit) {
@@ -235,9 +255,11 @@ void SetTerms(const Tried& tried, double least_u_um, DisplacementFit& fit) {
     if (tried.terms[static_cast<std::size_t>(term.at)].kind != TermKind::kComponent) free.push_back(term.at);
   for (Index k = 0; k < std::ssize(tried.terms); ++k)
     if (tried.terms[static_cast<std::size_t>(k)].kind == TermKind::kComponent) components.push_back(k);
-  const MatrixXd of_free = tried.design.slopes(Eigen::all, free);
-  const double size = LikelySize(of_free, tried.design.slopes(Eigen::all, components), tried.design.shifts_um);
-  const ShiftSolution used = SolvedFor(tried.design, free, components, size);
+  const VectorXd sizes = SizesOf(tried, free, components);
+  ShiftDesign by_size = tried.design;
+  for (const Index k : components) by_size.slopes.col(k) *= sizes[k];
+  std::erase_if(components, [&sizes](Index k) { return sizes[k] == 0.0; });
+  const ShiftSolution used = SolvedFor(by_size, free, components, 1.0);
   fit.dof = used.dof;
   fit.residual_um = used.Residual_um();
   for (std::size_t k = 0; k < tried.chosen.size(); ++k) {
@@ -245,8 +267,9 @@ void SetTerms(const Tried& tried, double least_u_um, DisplacementFit& fit) {
     const bool is_beside_all = tried.chosen[k].is_weak || own == used.of.end();
     const ShiftSolution& by = is_beside_all ? tried.all : used;
     const Index at = is_beside_all ? static_cast<Index>(k) : own - used.of.begin();
-    fit.fitted.push_back({tried.terms[static_cast<std::size_t>(tried.chosen[k].at)], by.values[at],
-                          std::max(by.Residual_um(), least_u_um) * by.u[at]});
+    const PoseTerm& term = tried.terms[static_cast<std::size_t>(tried.chosen[k].at)];
+    const double unit = is_beside_all || term.kind != TermKind::kComponent ? 1.0 : sizes[tried.chosen[k].at];
+    fit.fitted.push_back({term, unit * by.values[at], unit * std::max(by.Residual_um(), least_u_um) * by.u[at]});
   }
   const MatrixXd slopes = tried.design.slopes(Eigen::all, tried.all.of);
   for (Index k = 0; k < tried.told; ++k) {
