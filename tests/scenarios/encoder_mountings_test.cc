@@ -208,6 +208,11 @@ TEST(EncoderCoast, HoldsItOverSeeds) {
   EXPECT_NEAR(chi2, 1.0, kChi2 / 2.0);
 }
 
+/// By the angles of its lines the curve was 13 arcsec wrong, with u = 0.003.
+TEST(EncoderCoast, HasTheErrorsOfALargeRingWhereItsLinesAre) {
+  EXPECT_LT(Chi2(Coasted({"device.graduation_arcsec=360", "encoder_procedure.turns=5"})), 8.0);
+}
+
 TEST(EncoderCoast, AtOneSpeedMistakesTheTorqueForTheRingAndSaysSo) {
   const EncoderScenarioRun run = Coasted({"encoder_procedure.speeds_deg_s=[1800]", "encoder_procedure.turns=6"});
   EXPECT_FALSE(run.Results().at("not_separable").empty());

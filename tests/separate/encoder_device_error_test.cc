@@ -244,6 +244,48 @@ TEST(SeparateDeviceUncertainty, CoversDeviceAndReferenceWithThreeMountings) {
   EXPECT_NEAR(c.reference, 1.0, 0.15);
 }
 
+/// Mean over seeds, of rings whose orders fall as 1 / order up to `highest`.
+Coverage CoverageOfFalling(int highest, Comparison bench) {
+  Coverage mean;
+  constexpr int kRings = 20;
+  for (int seed = 0; seed < kRings; ++seed) {
+    Stream stream(static_cast<std::uint64_t>(seed), "test.ring");
+    bench.seed = static_cast<std::uint64_t>(seed);
+    bench.device.clear();
+    for (int k = 1; k <= highest; ++k)
+      bench.device.push_back({k, 20.0 / k * std::abs(stream.Normal()), 2.0 * units::kPi * stream.Uniform()});
+    const DeviceError e = SeparateDevice(bench.Readings());
+    mean.device += MeanChi2(e.curves.device, bench.device) / kRings;
+    if (!e.curves.reference.orders.empty()) mean.reference += MeanChi2(e.curves.reference, {}) / kRings;
+  }
+  return mean;
+}
+
+// Orders above half the stops fold into those below: without them in u the squares are some tens and hundreds. The
+// few that count most make the mean over 20 rings uncertain by a fifth, and the level is found with the folded ones
+// in it.
+TEST(SeparateDeviceUncertainty, CoversOrdersThatTheStopsDoNotTell) {
+  const Coverage folded = CoverageOfFalling(150, {.noise_arcsec = 0.05});
+  EXPECT_NEAR(folded.device, 0.8, 0.5);
+  const Coverage two = CoverageOfFalling(150, {.mounting_rad = {0.0, 122.0 * deg}, .noise_arcsec = 0.05});
+  EXPECT_NEAR(two.device, 0.7, 0.6);
+  EXPECT_NEAR(two.reference, 0.7, 0.6) << "what two mountings fold in different ways is no error of the reference";
+  EXPECT_NEAR(CoverageOfFalling(150, {.stops = 360, .noise_arcsec = 0.05}).device, 0.8, 0.5) << "orders above 64";
+  // The stops tell orders up to 179, and the readings show none above 64.
+  EXPECT_NEAR(CoverageOfFalling(64, {.stops = 360, .noise_arcsec = 0.05}).device, 1.0, 0.15);
+}
+
+/// 72 stops show order 80 as order 8, and 144 not at all.
+TEST(SeparateDeviceUncertainty, HoldsThatLinesMayBeTheOrderThatTheyLookLike) {
+  const Comparison bench{.device = {{1, 5.0, 0.4}, {80, 3.0, 1.0}}, .noise_arcsec = 0.1};
+  const DeviceError unknown = SeparateDevice(bench.Readings());
+  const DeviceError known = SeparateDevice(bench.Readings(), {.of_lines = {80, 144}});
+  EXPECT_GT(MeanChi2(unknown.curves.device, bench.device), 100.0);
+  EXPECT_LT(MeanChi2(known.curves.device, bench.device), 4.0);
+  EXPECT_THAT(known.notes, Contains(HasSubstr("lower ones: 80;")));
+  EXPECT_THAT(known.notes, Contains(HasSubstr("no u: 144")));
+}
+
 TEST(SeparateDeviceUncertainty, CoversASingleTurnByTheResidualsOfItsFit) {
   const Coverage c = CoverageOf({.device = kSmallDevice, .passes = {1, -1}, .turns = 1.0, .noise_arcsec = 7.0});
   EXPECT_NEAR(c.device, 1.0, 0.15);

@@ -72,8 +72,8 @@ Eigen::VectorXd Resample(const HarmonicSeries& series, int points) {
 }
 
 Eigen::VectorXd ResampledUncertainty(const HarmonicSeries& series, int points) {
-  return SumOnGrid(series, points, [](const Coefficient& c, const Eigen::Vector2d& d) { return d.dot(c.cov * d); })
-      .cwiseSqrt();
+  const auto variance = [](const Coefficient& c, const Eigen::Vector2d& d) { return d.dot(c.cov * d); };
+  return (SumOnGrid(series, points, variance).array() + series.unresolved_rad2).sqrt();
 }
 
 double ChanceOf(const Coefficient& c, double dof) {

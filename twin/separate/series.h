@@ -31,6 +31,7 @@ Coefficient Shifted(const Coefficient& c, int order, double shift_rad);
 struct HarmonicSeries {
   std::vector<Coefficient> orders = {};
   double dof = kNaN;  // degrees of freedom behind the covariances
+  double unresolved_rad2 = 0.0;  // variance at any angle of orders above the highest, which are not in `orders`
 
   int Highest() const { return static_cast<int>(orders.size()); }
   const Coefficient& At(int order) const { return orders.at(static_cast<std::size_t>(order - 1)); }

@@ -25,7 +25,18 @@ nlohmann::json CurveJson(const HarmonicSeries& series, const std::string& name) 
     json[name + "_arcsec"].push_back(report::Arcsec(curve.value_rad[i]));
     json["u_" + name + "_arcsec"].push_back(report::Arcsec(curve.u_rad[i]));
   }
+  if (series.unresolved_rad2 > 0.0)
+    json["unresolved"] = {{"above_order", series.Highest()},
+                          {"assumed_rms_arcsec", report::Arcsec(std::sqrt(series.unresolved_rad2))},
+                          {"assumption", "the amplitude of an order falls as 1 / order above those that are seen"}};
   return json;
+}
+
+std::string UnresolvedText(const HarmonicSeries& series, const AxisUnit& unit) {
+  if (!(series.unresolved_rad2 > 0.0)) return "";
+  return fmt::format(
+      "orders above {}: {:.4g} {} (rms) between the measuring positions, if they fall as 1 / order; counted in u\n",
+      series.Highest(), std::sqrt(series.unresolved_rad2) / unit.to_SI, unit.name);
 }
 
 void AddCalibration(nlohmann::json separation, const std::vector<std::string>& notes, report::Evaluation& evaluation) {

@@ -17,6 +17,9 @@ inline constexpr int kCurvePoints = 360;  // a degree
 /// {"position_deg", name + "_arcsec", "u_" + name + "_arcsec"} at every degree.
 nlohmann::json CurveJson(const separate::harmonics::HarmonicSeries& series, const std::string& name);
 
+/// What orders above the highest may make of it; empty: nothing.
+std::string UnresolvedText(const separate::harmonics::HarmonicSeries& series, const AxisUnit& unit);
+
 /// A calibration without a standard as results.json has it: what separation.json says, with notes beside it.
 void AddCalibration(nlohmann::json separation, const std::vector<std::string>& notes, report::Evaluation& evaluation);
 

@@ -131,7 +131,7 @@ std::string HeadsSummary(const SeveralHeads& heads, const AxisUnit& unit) {
                       heads.residual_rms_rad / unit.to_SI, unit.name);
   if (std::isfinite(heads.reference_rms_rad))
     text += fmt::format("the reference to       {:10.4f} {}\n", heads.reference_rms_rad / unit.to_SI, unit.name);
-  text += LostOrdersText(heads, unit);
+  text += UnresolvedText(heads.ring, unit) + LostOrdersText(heads, unit);
   for (const std::string& note : heads.notes) text += "note: " + note + "\n";
   return text;
 }

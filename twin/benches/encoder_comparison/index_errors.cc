@@ -9,7 +9,8 @@
 namespace twinbench::benches::encoder {
 
 separate::IndexErrors IndexErrorsOf(const Scenario& scenario, const std::vector<Reading>& readings) {
-  const separate::encoder::DeviceError device = separate::encoder::SeparateDevice(readings, {.steps = StepsOf(EncoderOf(scenario))});
+  const separate::encoder::DeviceError device =
+      separate::encoder::SeparateDevice(readings, DeviceOptionsOf(EncoderOf(scenario)));
   if (device.highest_order == 0) throw InputError("readings", device.not_separated, "readings over a whole turn");
   std::vector<separate::IndexReading> values;
   double squares_rad2 = 0.0;

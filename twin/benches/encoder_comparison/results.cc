@@ -161,7 +161,7 @@ std::string SummaryOf(const DeviceError& e, const AxisUnit& unit) {
         fmt::format("device behind by       {:10.4f} ± {:.4f} ms\n", e.lag_s / units::ms, e.u_lag_s / units::ms);
   text += fmt::format("a reading repeats to   {:10.3f} {} (standard deviation)\n", e.residual_rms_rad / unit.to_SI,
                       unit.name);
-  text += LostText(e);
+  text += UnresolvedText(e.curves.device, unit) + LostText(e);
   for (const std::string& note : e.notes) text += "note: " + note + "\n";
   return text;
 }
@@ -186,7 +186,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   if (separate::encoder::HaveHeads(readings)) return EvaluateHeads(scenario, readings, estimator);
   if (separate::encoder::HaveStamps(readings)) return EvaluateCoast(scenario, readings, estimator);
   const measure::AngleComparison comparison = measure::CompareAngles(readings);
-  const DeviceError device = separate::encoder::SeparateDevice(readings, {.steps = StepsOf(EncoderOf(scenario))});
+  const DeviceError device = separate::encoder::SeparateDevice(readings, DeviceOptionsOf(EncoderOf(scenario)));
   const DeviceSettings device_settings = DeviceOfMeans(EncoderOf(scenario));
   report::Evaluation evaluation{
       ToJson(comparison), {}, device.not_separated, Summary(comparison, CoarseUnit(device_settings))};
@@ -212,7 +212,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
                            const nlohmann::json& truth, Estimator estimator) {
   if (separate::encoder::HaveHeads(readings)) return ScoreHeads(scenario, readings, truth, estimator);
   if (separate::encoder::HaveStamps(readings)) return ScoreCoast(readings, truth, estimator);
-  const DeviceError device = separate::encoder::SeparateDevice(readings, {.steps = StepsOf(EncoderOf(scenario))});
+  const DeviceError device = separate::encoder::SeparateDevice(readings, DeviceOptionsOf(EncoderOf(scenario)));
   if (device.highest_order == 0) throw InputError("the run", device.not_separated, "a run with complete turns");
   const auto [of_device, of_reference] = TruthAsSeen(device, truth);
   std::vector<report::CurveScore> curves = {ScoreOf("device", device.curves.device, of_device)};

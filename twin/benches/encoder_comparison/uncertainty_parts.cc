@@ -22,10 +22,11 @@ double StepShareOf(const DeviceError& device, const DeviceSettings& settings) {
 }
 
 /// Where white noise makes this share of a variance, and rounding that repeats another.
-nlohmann::json WithWhiteShare(double white, double of_steps, double rounding = 0.0) {
+nlohmann::json WithWhiteShare(double white, double of_steps, double rounding = 0.0, double folded = 0.0) {
   return report::PartsJson({{"noise", (1.0 - of_steps) * white},
                             {"quantisation", of_steps * white + rounding},
-                            {"repeatability", 1.0 - white - rounding}});
+                            {"model", folded},
+                            {"repeatability", 1.0 - white - rounding - folded}});
 }
 
 std::vector<double> ListOf(const Eigen::ArrayXd& values) {
@@ -55,6 +56,15 @@ separate::encoder::ScaleSteps StepsOf(const EncoderSettings& settings) {
   return {settings.device.resolution_rad, static_cast<double>(settings.encoder_procedure.ReadingsAtOnce())};
 }
 
+separate::encoder::DeviceOptions DeviceOptionsOf(const EncoderSettings& settings) {
+  separate::encoder::DeviceOptions options{.steps = StepsOf(settings)};
+  for (const int once : {settings.device.lines, settings.device.teeth, settings.device.signal_periods}) {
+    for (const int order : {once, 2 * once})
+      if (order > 0) options.of_lines.push_back(order);
+  }
+  return options;
+}
+
 double StepShare(double reading_rad, const DeviceSettings& settings) {
   const double of_step = std::pow(settings.resolution_rad / reading_rad, 2) / 12.0;
   return std::isfinite(of_step) ? std::min(1.0, of_step) : 0.0;
@@ -65,14 +75,20 @@ nlohmann::json CurveParts(const separate::harmonics::HarmonicSeries& series, con
   const double of_steps = StepShareOf(device, settings);
   const Eigen::ArrayXd u2 = Curve(series, points).u_rad.array().square(),
                        white = Curve(OfShare(series, device.white_share), points).u_rad.array().square(),
-                       rounding = Curve(OfShare(series, device.rounding_share), points).u_rad.array().square();
+                       rounding = Curve(OfShare(series, device.rounding_share), points).u_rad.array().square(),
+                       folded = Curve(OfShare(series, device.folded_share), points).u_rad.array().square() +
+                                series.unresolved_rad2;
   return report::PartsJson(ListOf(u2), {{"noise", ListOf((1.0 - of_steps) * white)},
-                                      {"quantisation", ListOf(of_steps * white + rounding)},
-                                      {"repeatability", ListOf(u2 - white - rounding)}});
+                                        {"quantisation", ListOf(of_steps * white + rounding)},
+                                        {"model", ListOf(folded)},
+                                        {"repeatability", ListOf(u2 - white - rounding - folded)}});
 }
 
 uncertainty::Joint CurveJoint(const std::string& name, const separate::harmonics::HarmonicSeries& series, int points) {
-  uncertainty::Joint joint{name, {}, Eigen::MatrixXd::Zero(points, points)};
+  uncertainty::Joint joint{
+      name,
+      {},
+      Eigen::MatrixXd::Identity(points, points) * series.unresolved_rad2 / (units::arcsec * units::arcsec)};
   for (int i = 0; i < points; ++i) joint.names.push_back(fmt::format("{}.ez_arcsec[{}]", name, i));
   for (int k = 1; k <= series.Highest(); ++k) {
     const Eigen::Matrix2d& cov = series.At(k).cov;
@@ -89,7 +105,8 @@ uncertainty::Joint CurveJoint(const std::string& name, const separate::harmonics
 
 nlohmann::json OrderParts(int order, const DeviceError& device, const DeviceSettings& settings) {
   const auto at = static_cast<std::size_t>(order - 1);
-  return WithWhiteShare(device.white_share.at(at), StepShareOf(device, settings), device.rounding_share.at(at));
+  return WithWhiteShare(device.white_share.at(at), StepShareOf(device, settings), device.rounding_share.at(at),
+                        device.folded_share.at(at));
 }
 
 nlohmann::json ReversalParts(const DeviceError& device, const DeviceSettings& settings) {

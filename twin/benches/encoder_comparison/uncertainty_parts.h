@@ -11,6 +11,10 @@ namespace twinbench::benches::encoder {
 /// The steps of what is read.
 separate::encoder::ScaleSteps StepsOf(const EncoderSettings& settings);
 
+/// What an evaluation of the device knows of it: its steps, orders of its lines, teeth and signals with their
+/// doubles.
+separate::encoder::DeviceOptions DeviceOptionsOf(const EncoderSettings& settings);
+
 /// `u_parts` of a curve at 0, 360 / points, ... deg: white noise of the readings, of it what the least step of the
 /// device's reading makes (LSB^2 / 12), and what scatters between turns and passes beyond that.
 nlohmann::json CurveParts(const separate::harmonics::HarmonicSeries& series,

@@ -56,6 +56,21 @@ harmonics::PositionError SeenBy(const FittedGroup& fitted, const OrderNoise& noi
   return seen;
 }
 
+FitRest RestOf(const std::vector<FittedGroup>& groups, const OrderNoise& noise, const DeviceOptions& options) {
+  const double pooled = noise.between_laps ? 2.0 * options.pooled_orders + 1.0 : 1.0;
+  FitRest rest{.visible = (DistinctAngles(groups.front().th_rad) - 1) / 2,
+               .of_lines = options.of_lines,
+               .white_rad2 = noise.white_rad2,
+               .noise_dof = pooled * noise.dof,
+               .step_rad = options.steps.step_rad};
+  for (const FittedGroup& group : groups) {
+    rest.th_rad.insert(rest.th_rad.end(), group.th_rad.begin(), group.th_rad.end());
+    rest.rest_rad.insert(rest.rest_rad.end(), group.fit.rest_rad.begin(), group.fit.rest_rad.end());
+    rest.visible = std::min(rest.visible, (DistinctAngles(group.th_rad) - 1) / 2);
+  }
+  return rest;
+}
+
 }  // namespace
 
 double ValueAt(const harmonics::HarmonicSeries& series, double angle_rad) {
@@ -101,6 +116,13 @@ ComparisonFit FitComparison(const UsableGroups& groups, const DeviceOptions& opt
     for (const FittedGroup& group : fitted.groups)
       seen.push_back(SeenBy(group, fitted.noise, fitted.mounting_rad.at(group.group->setup)));
     fitted.curves = SeparateMountings(seen, options.max_noise_factor, fitted.rounding);
+    if (round + 1 < kRounds) continue;
+    fitted.unresolved = UnresolvedBy(fitted.curves.device, RestOf(fitted.groups, fitted.noise, options));
+    fitted.rounding.AddFolded(fitted.groups, fitted.unresolved);
+    fitted.curves = SeparateMountings(seen, options.max_noise_factor, fitted.rounding);
+    for (harmonics::HarmonicSeries* series :
+         {&fitted.curves.device, &fitted.curves.forward, &fitted.curves.backward})
+      series->unresolved_rad2 = fitted.unresolved.Variance_rad2();
   }
   return fitted;
 }

@@ -14,6 +14,7 @@ struct DeviceOptions {
   double max_noise_factor = 10.0;  // SeparateMountings
   int pooled_orders = 4;           // NoiseOf
   ScaleSteps steps = {};           // of the device
+  std::vector<int> of_lines = {};  // orders of its lines, teeth and signals, as far as they are known
 };
 
 /// The groups that have turns, and the highest order that all of them determine. A group that allows less than half
@@ -28,6 +29,7 @@ struct ComparisonFit {
   std::vector<FittedGroup> groups;  // they point to the groups handed in
   OrderNoise noise;
   Rounding rounding;
+  Unresolved unresolved;
   std::map<int, double> mounting_rad;  // by set-up: device angle where the reference shows 0
   SeparatedCurves curves;
 };

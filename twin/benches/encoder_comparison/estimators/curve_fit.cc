@@ -95,16 +95,6 @@ double Inflation(const Normal& normal, int order, int readings) {
   return half->rightCols(2 * order).colwise().squaredNorm().maxCoeff() * readings / 2.0;
 }
 
-/// Angles of the turn that were read, to a ten-thousandth of it.
-int DistinctAngles(const ScaleAngles& th_rad) {
-  std::set<long> seen;
-  for (const Eigen::VectorXd& pass : th_rad) {
-    for (const double th : pass)
-      seen.insert(std::lround((th / units::turn - std::floor(th / units::turn)) * 1e4) % 10000);
-  }
-  return static_cast<int>(seen.size());
-}
-
 void FillPasses(const ModelColumns& columns, const Eigen::VectorXd& solution, CurveFit& fit) {
   for (std::size_t p = 0; p < columns.slope.size(); ++p) {
     const int slope = columns.slope[p];
@@ -125,6 +115,15 @@ void FillOrders(const Normal& normal, const Eigen::VectorXd& solution, const Eig
 }
 
 }  // namespace
+
+int DistinctAngles(const ScaleAngles& th_rad) {
+  std::set<long> seen;
+  for (const Eigen::VectorXd& pass : th_rad) {
+    for (const double th : pass)
+      seen.insert(std::lround((th / units::turn - std::floor(th / units::turn)) * 1e4) % 10000);
+  }
+  return static_cast<int>(seen.size());
+}
 
 double CurveFit::RestSum2() const {
   double sum = 0.0;

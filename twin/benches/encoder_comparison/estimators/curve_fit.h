@@ -11,6 +11,9 @@ namespace twinbench::separate::encoder {
 /// Where the readings of a pass were taken on the device's scale [rad]; one vector a pass of the group.
 using ScaleAngles = std::vector<Eigen::VectorXd>;
 
+/// Angles of the turn that were read, to a ten-thousandth of it.
+int DistinctAngles(const ScaleAngles& th_rad);
+
 /// What one pass has besides the curve.
 struct PassTerm {
   double constant_rad = kNaN;        // x in the middle of the pass and at its mean velocity, without the curve

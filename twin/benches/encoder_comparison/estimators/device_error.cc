@@ -41,14 +41,17 @@ void FillLag(const ComparisonFit& fitted, DeviceError& result) {
 void FillShares(const ComparisonFit& fitted, DeviceError& result) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(fitted.noise.variance_rad2.size()); ++k) {
     const double scatter_rad2 = fitted.noise.variance_rad2[static_cast<Eigen::Index>(k)];
-    double scatter = 0.0, rounding = 0.0;
+    double scatter = 0.0, rounding = 0.0, folded = 0.0;
     for (std::size_t g = 0; g < fitted.groups.size(); ++g) {
       scatter += scatter_rad2 * fitted.groups[g].fit.cofactor[k].trace();
-      rounding += fitted.rounding.Between(g, g, static_cast<int>(k) + 1).trace();
+      rounding += fitted.rounding.StepsBetween(g, g, static_cast<int>(k) + 1).trace();
+      folded += fitted.rounding.FoldedBetween(g, g, static_cast<int>(k) + 1).trace();
     }
-    const double share = rounding > 0.0 ? rounding / (scatter + rounding) : 0.0;
-    result.rounding_share.push_back(share);
-    result.white_share.push_back((1.0 - share) * std::min(1.0, fitted.noise.white_rad2 / scatter_rad2));
+    const auto share = [all = scatter + rounding + folded](double part) { return part > 0.0 ? part / all : 0.0; };
+    result.rounding_share.push_back(share(rounding));
+    result.folded_share.push_back(share(folded));
+    result.white_share.push_back((1.0 - share(rounding) - share(folded)) *
+                                 std::min(1.0, fitted.noise.white_rad2 / scatter_rad2));
   }
 }
 
@@ -74,6 +77,19 @@ void AddNotes(const UsableGroups& groups, const ComparisonFit& fitted, DeviceErr
   if (!fitted.curves.disagreeing.empty())
     result.notes.push_back("the mountings contradict each other in order " + List(fitted.curves.disagreeing) +
                            ": an error that changed with the mounting; its uncertainty is widened");
+}
+
+void AddNotesOfLines(const Unresolved& unresolved, DeviceError& result) {
+  std::vector<int> folded;
+  for (const auto& [order, square_rad2] : unresolved.lines) folded.push_back(order);
+  if (!folded.empty())
+    result.notes.push_back(
+        "these measuring positions do not tell orders of lines, teeth or signals from lower ones: " + List(folded) +
+        "; u holds that they may be either");
+  if (!unresolved.hidden.empty())
+    result.notes.push_back(
+        "orders of lines, teeth or signals err alike at all measuring positions and are in no u: " +
+        List(unresolved.hidden));
 }
 
 /// Turns of the device for one of the reference, by a line through each pass.
@@ -126,10 +142,12 @@ DeviceError SeparateDevice(const std::vector<Reading>& readings, const DeviceOpt
   result.dof = 0.0;
   for (const FittedGroup& group : fitted.groups) result.dof += group.fit.dof;
   AddNotes(groups, fitted, result);
+  AddNotesOfLines(fitted.unresolved, result);
   return result;
 }
 
 harmonics::HarmonicSeries OfShare(harmonics::HarmonicSeries series, const std::vector<double>& share) {
+  series.unresolved_rad2 = 0.0;
   for (int k = 1; k <= series.Highest(); ++k) series.At(k).cov *= share.at(static_cast<std::size_t>(k - 1));
   return series;
 }

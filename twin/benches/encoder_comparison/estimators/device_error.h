@@ -34,12 +34,13 @@ struct DeviceError {
   double residual_rms_rad = kNaN;   // of a reading about its fit: noise, and what does not repeat
   double low_order_scatter = kNaN;  // order 1 scatters so many times more between turns than white noise would
   double dof = kNaN;
-  // [k - 1]: of the variance of order k, what white noise of the readings makes, and what rounding repeats; 0 to 1
-  std::vector<double> white_share, rounding_share;
+  // [k - 1]: of the variance of order k, what white noise of the readings makes, what rounding repeats, and what
+  // orders above the highest may add; 0 to 1
+  std::vector<double> white_share, rounding_share, folded_share;
   std::vector<std::string> notes;
 };
 
-/// The series with these shares of its covariance.
+/// The series with these shares of its covariance, without what is not resolved.
 harmonics::HarmonicSeries OfShare(harmonics::HarmonicSeries series, const std::vector<double>& share);
 
 /// Takes measured - reference apart into the device's repeatable error, the reference's and what belongs to single
@@ -53,11 +54,11 @@ harmonics::HarmonicSeries OfShare(harmonics::HarmonicSeries series, const std::v
 /// Readings at rest between sweeps (direction 0) are not used. Positions need not be even and readings may be
 /// missing; both limit the highest order.
 ///
-/// Uncertainty: scatter of each order between turns, or white noise where there is one turn only; besides it what the
-/// steps of the device (stated, or those that its readings have in common) round alike in every pass. Not included:
-/// what repeats every turn with neither device nor reference (shaft and coupling count as the device), content
-/// above the highest order, the angle at which D is read when the shaft between both
-/// gives way.
+/// Uncertainty: scatter of each order between turns, or white noise where there is one turn only; besides it what
+/// the steps of the device (stated, or those that its readings have in common) round alike in every pass, and
+/// orders above the highest, as far as those below show them (Unresolved). Not included: what repeats every turn
+/// with neither device nor reference (shaft and coupling count as the device), the angle at which D is read when
+/// the shaft between both gives way.
 DeviceError SeparateDevice(const std::vector<Reading>& readings, const DeviceOptions& options = {});
 
 /// A curve at 0, 360 / points, ... deg [rad].

@@ -101,6 +101,7 @@ TimeReversal DynamicReversal(const std::vector<Reading>& readings, const CoastOp
         "device and a torque that repeats with the angle, all orders: all turns have about the same speed; it is "
         "counted as the device's");
   result.ring_by_noise = result.ring;
+  SetByOwnAngle(result.ring);
   const std::string biased = WidenByDistance(SeparateByTime(readings, options).ring, result.ring);
   if (!biased.empty()) result.notes.push_back(BiasNote(biased));
   return result;

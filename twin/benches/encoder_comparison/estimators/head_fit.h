@@ -70,6 +70,10 @@ enum class StopRows { kAllHeads, kFirstAgainstMean };
 void AddRounding(const HeadReadings& sorted, const OrdersToFit& orders, StopRows which, const ScaleSteps& steps,
                  HeadSolution& solution);
 
+/// Enters orders above the highest in the ring's covariance (Unresolved).
+void AddUnresolved(const HeadReadings& sorted, const OrdersToFit& orders, StopRows which,
+                   const HeadSolution& solution, double step_rad, harmonics::HarmonicSeries& ring);
+
 /// The ring's curve with its covariance, and what its lost orders may be.
 void EnterCurve(const HeadSolution& solution, const OrdersToFit& orders, SeveralHeads& result);
 

@@ -102,4 +102,29 @@ void AddRounding(const HeadReadings& sorted, const OrdersToFit& orders, StopRows
   }
 }
 
+void AddUnresolved(const HeadReadings& sorted, const OrdersToFit& orders, StopRows which,
+                   const HeadSolution& solution, double step_rad, harmonics::HarmonicSeries& ring) {
+  const StackedHeads all = Stack(sorted, orders, which, solution);
+  FitRest left{.visible = (DistinctAngles({all.ring_rad}) - 1) / 2, .noise_dof = solution.dof, .step_rad = step_rad};
+  double squares_rad2 = 0.0;
+  for (const auto& [setup, of_head] : all.rest) {
+    left.th_rad.emplace_back(std::ssize(of_head));
+    left.rest_rad.emplace_back(std::ssize(of_head));
+    for (std::size_t i = 0; i < of_head.size(); ++i) {
+      left.th_rad.back()[static_cast<Eigen::Index>(i)] = of_head[i].first;
+      left.rest_rad.back()[static_cast<Eigen::Index>(i)] = of_head[i].second;
+    }
+    squares_rad2 += left.rest_rad.back().squaredNorm();
+  }
+  // Of one head: what is solved for may be its difference from the others.
+  left.white_rad2 = std::max(solution.Variance_rad2(), squares_rad2 / static_cast<double>(all.ring_rad.size()));
+  const Unresolved unresolved = UnresolvedBy(ring, left);
+  const Eigen::MatrixXd moved = solution.cofactor * (all.rows.transpose() * unresolved.Waves(all.ring_rad));
+  for (std::size_t i = 0; i < orders.orders.size(); ++i) {
+    const auto of_order = moved.middleRows<2>(2 * static_cast<Eigen::Index>(i));
+    ring.At(orders.orders[i]).cov += of_order * of_order.transpose();
+  }
+  ring.unresolved_rad2 = unresolved.Variance_rad2();
+}
+
 }  // namespace twinbench::separate::encoder

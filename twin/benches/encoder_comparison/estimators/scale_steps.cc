@@ -107,13 +107,32 @@ Eigen::MatrixXd SamePlaces(const std::vector<FittedGroup>& groups, double step_r
 
 }  // namespace
 
-Eigen::Matrix2d Rounding::Between(std::size_t a, std::size_t b, int order) const {
+Eigen::Matrix2d Rounding::StepsBetween(std::size_t a, std::size_t b, int order) const {
   if (None()) return Eigen::Matrix2d::Zero();
   const auto k = static_cast<std::size_t>(order - 1);
   const double same = same_places(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
   const Eigen::Matrix2d together = groups[a].waves[k] * groups[b].waves[k].transpose() +
                                    0.5 * same * (groups[a].smeared[k] + groups[b].smeared[k]);
   return (direction[a] == direction[b] ? 1.0 : kBothWays) * together;
+}
+
+Eigen::Matrix2d Rounding::FoldedBetween(std::size_t a, std::size_t b, int order) const {
+  if (folded.empty()) return Eigen::Matrix2d::Zero();
+  const auto k = static_cast<std::size_t>(order - 1);
+  return folded[a].waves[k] * folded[b].waves[k].transpose();
+}
+
+void Rounding::AddFolded(const std::vector<FittedGroup>& fitted, const Unresolved& unresolved) {
+  if (unresolved.Waves(Eigen::VectorXd(0)).cols() == 0) return;
+  for (const FittedGroup& group : fitted) {
+    Eigen::VectorXd th_rad(group.group->Readings());
+    Eigen::Index at = 0;
+    for (const Eigen::VectorXd& pass : group.th_rad) {
+      th_rad.segment(at, pass.size()) = pass;
+      at += pass.size();
+    }
+    folded.push_back(OfWaves(group, unresolved.Waves(th_rad), group.fit.Highest()));
+  }
 }
 
 ScaleSteps WithOwnStep(ScaleSteps stated, const std::vector<Reading>& readings) {

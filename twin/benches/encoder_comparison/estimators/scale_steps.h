@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "twin/benches/encoder_comparison/estimators/lap_scatter.h"
+#include "twin/benches/encoder_comparison/estimators/unresolved.h"
 
 /// Steps of the device: what they round alike in every visit of a place is in no scatter, and no mean makes it less.
 namespace twinbench::separate::encoder {
@@ -51,11 +52,18 @@ struct Rounding {
   double place_rad2 = 0.0;            // variance at one place, in the mean of all its visits
   double visits = 1.0;                // of a place, in one group
 
+  std::vector<GroupRounding> folded;  // likewise, what orders above the highest add to those fitted; empty: nothing
+
   bool None() const { return groups.empty() || groups.front().waves.empty(); }
+  void AddFolded(const std::vector<FittedGroup>& fitted, const Unresolved& unresolved);
   /// Covariance of (re, im) of order k between two groups. A place of the device is rounded alike in every mounting. In
   /// both directions half of it counts as common: a backlash of some steps makes it none, no backlash all, and which of
   /// the two it is rounded readings do not tell.
-  Eigen::Matrix2d Between(std::size_t a, std::size_t b, int order) const;
+  Eigen::Matrix2d StepsBetween(std::size_t a, std::size_t b, int order) const;
+  Eigen::Matrix2d FoldedBetween(std::size_t a, std::size_t b, int order) const;
+  Eigen::Matrix2d Between(std::size_t a, std::size_t b, int order) const {
+    return StepsBetween(a, b, order) + FoldedBetween(a, b, order);
+  }
 };
 
 /// Noise before rounding is what visits of one place scatter by (NoiseBehindRounding); readings less than half a step

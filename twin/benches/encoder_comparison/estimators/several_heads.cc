@@ -35,6 +35,8 @@ SeveralHeads SeparateHeads(const std::vector<Reading>& readings, const HeadOptio
   EnterCurve(solution, orders, result);
   EnterReference(sorted, solution, orders, result);
   result.ring_by_noise = result.ring;
+  AddUnresolved(sorted, orders, StopRows::kAllHeads, solution, WithOwnStep(options.steps, readings).step_rad,
+                result.ring);
   return result;
 }
 
@@ -60,6 +62,8 @@ SeveralHeads EqualDivision(const std::vector<Reading>& readings, const HeadOptio
   result.residual_rms_rad *= std::sqrt(heads / (heads - 1.0));  // of the difference: one head less 1 / N of itself
   EnterReference(sorted, WithMeanOfHeads(solution), orders, result);
   result.ring_by_noise = result.ring;
+  AddUnresolved(sorted, orders, StopRows::kFirstAgainstMean, solution,
+                WithOwnStep(options.steps, readings).step_rad, result.ring);
   const std::string biased = WidenByDistance(SeparateHeads(readings, options).ring, result.ring);
   if (!biased.empty()) result.notes.push_back(BiasNote(biased));
   return result;

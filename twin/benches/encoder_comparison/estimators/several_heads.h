@@ -47,10 +47,10 @@ double Likeness(const std::vector<double>& heads_rad, int order);
 /// All orders of the ring and of the reference by least squares over the readings of all heads, the angle of the
 /// shaft free at each instant. The heads may stand anywhere and fail now and then.
 ///
-/// Uncertainty: white noise of the heads, from the residuals, and steps that round every visit of a place alike. Not included: what all heads have in common at each
-/// place of the ring (lost orders), motion of the shaft across its axis, orders above the highest.
-/// Reference: docs/theory.md 12.1. For even stops the variance is formula (V) of section 2 there with the heads for
-/// shifts.
+/// Uncertainty: white noise of the heads, from the residuals, steps that round every visit of a place alike, and
+/// orders above the highest (Unresolved). Not included: what all heads have in common at each place of the ring
+/// (lost orders), motion of the shaft across its axis. Reference: docs/theory.md 12.1. For even stops the variance
+/// is formula (V) of section 2 there with the heads for shifts.
 SeveralHeads SeparateHeads(const std::vector<Reading>& readings, const HeadOptions& options = {});
 
 /// As published for N heads at equal division, the first being the one that is calibrated: its reading less the mean

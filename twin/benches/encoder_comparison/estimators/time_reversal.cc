@@ -80,6 +80,7 @@ TimeReversal SeparateByTime(const std::vector<Reading>& readings, const CoastOpt
         SeriesOfRow(x.row(model.friction), unit_rad2 * cofactor(model.friction, model.friction), result.dof);
   SayWhatIsNotTold(model, result);
   result.ring_by_noise = result.ring;
+  SetByOwnAngle(result.ring);
   return result;
 }
 

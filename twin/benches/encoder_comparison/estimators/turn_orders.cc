@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/encoder_comparison/estimators/comparison_fit.h"
+#include "twin/core/units.h"
+
 namespace twinbench::separate::encoder {
 
 TurnModel ModelOf(const std::vector<CoastTurn>& turns) {
@@ -38,6 +41,26 @@ Eigen::VectorXd Pooled(const Eigen::VectorXd& of_order, int pooled) {
     means[k] = of_order.segment(k - side, 2 * side + 1).mean();
   }
   return means;
+}
+
+void SetByOwnAngle(harmonics::HarmonicSeries& ring) {
+  constexpr int kRounds = 6;  // each takes what is left down by the slope of the curve
+  const int points = 4 * ring.Highest();
+  Eigen::VectorXd error_rad = Eigen::VectorXd::Zero(points);
+  double slope2 = 0.0;
+  for (int k = 1; k <= ring.Highest(); ++k) slope2 += 0.5 * k * k * std::norm(ring.At(k).value);
+  const Eigen::VectorXd before_rad = harmonics::Resample(ring, points);
+  for (int round = 0; round < kRounds; ++round) {
+    for (int i = 0; i < points; ++i) error_rad[i] = ValueAt(ring, units::turn * i / points + error_rad[i]);
+  }
+  const double left_rad2 = slope2 * (error_rad - before_rad).squaredNorm() / points;
+  for (int k = 1; k <= ring.Highest(); ++k) {
+    ring.At(k).cov += left_rad2 / ring.Highest() * Eigen::Matrix2d::Identity();
+    ring.At(k).value = 0.0;
+    for (int i = 0; i < points; ++i)
+      ring.At(k).value +=
+          2.0 / points * std::polar(1.0, -units::turn * (static_cast<double>(k) * i / points)) * error_rad[i];
+  }
 }
 
 TimeReversal BeginCoast(const CoastPasses& coast) {

@@ -22,6 +22,11 @@ TurnModel ModelOf(const std::vector<CoastTurn>& turns);
 /// Pools each order with `pooled` neighbours on either side.
 Eigen::VectorXd Pooled(const Eigen::VectorXd& of_order, int pooled);
 
+/// Lines show a ring's error where they stand on an ideal ring; this is by the angle at which they are. What
+/// that leaves out, as many orders as before being kept, is of one order more in the slope of the curve; its
+/// covariance has it.
+void SetByOwnAngle(harmonics::HarmonicSeries& ring);
+
 /// Beginning of a result: counts, or why there is no curve.
 TimeReversal BeginCoast(const CoastPasses& coast);
 
