@@ -112,12 +112,12 @@ TEST_F(Live, APortThatIsTakenIsRefused) {
 }
 
 TEST_F(Live, HearsAStopHoweverManyPagesListen) {
-  std::vector<std::unique_ptr<Client>> pages;
+  std::vector<std::unique_ptr<TcpClient>> pages;
   int listening = 0;
   for (int k = 0; k < 60; ++k) {
-    pages.push_back(std::make_unique<Client>(server_.port()));
-    pages.back()->Say(Asking("GET", Target("/events")));
-    listening += pages.back()->HearUntil("\r\n\r\n").starts_with("HTTP/1.1 200") ? 1 : 0;
+    pages.push_back(std::make_unique<TcpClient>(server_.port()));
+    pages.back()->Send(Asking("GET", Target("/events")));
+    listening += pages.back()->Until("\r\n\r\n").starts_with("HTTP/1.1 200") ? 1 : 0;
   }
   EXPECT_EQ(listening, 40);
   EXPECT_THAT(Ask(Asking("POST", Target("/stop"))), StartsWith("HTTP/1.1 202"));
