@@ -144,9 +144,9 @@ TEST_F(Importing, TakesAFirmwaresTableOverItsComments) {
 
 TEST_F(Importing, TakesNeighboursOfALargeTableTogetherAndSaysSo) {
   const auto error = [](double angle_deg, int) { return 0.2 * test::Cosine(4.0, angle_deg, 30.0); };
-  const Imported imported = Take(test::FirmwareTable(error, 16384), "lookup_table");
-  EXPECT_LT(imported.readings.size(), 6250u);
-  EXPECT_GT(imported.readings.size(), 3000u);
+  const Imported imported = Take(test::FirmwareTable(error, 65536), "lookup_table");
+  EXPECT_LT(imported.readings.size(), 25000u);
+  EXPECT_GT(imported.readings.size(), 12000u);
   EXPECT_NEAR(Worst_deg(imported.readings), 0.2, 0.002);
   EXPECT_THAT(imported.story, HasSubstr("averaged in blocks of up to 4 rows"));
 }
@@ -176,9 +176,9 @@ TEST_F(Importing, TakesRunsSideBySideInMicrometresWithDecimalCommas) {
 
 TEST_F(Importing, CountsTheSamplesOfHalsampler) {
   const Imported imported =
-      Take(test::HalSamples(test::DriveAxis({.turns = 0.5, .speed_deg_s = 90.0, .interval_s = 0.001}, NoError)),
+      Take(test::HalSamples(test::DriveAxis({.turns = 2.0, .speed_deg_s = 90.0, .interval_s = 0.001}, NoError)),
            "halsampler");
-  EXPECT_LE(imported.readings.size(), 6250u) << "5000 and a quarter";
+  EXPECT_LE(imported.readings.size(), 25000u) << "20000 and a quarter";
   EXPECT_THAT(imported.story, HasSubstr("averaged in blocks"));
   EXPECT_LT(Worst_deg(imported.readings), 0.012);
   EXPECT_NEAR(imported.readings[500].velocity_rad_s, 90.0 * units::deg, 0.01);
@@ -208,10 +208,10 @@ TEST_F(Importing, KeepsAWaveOfTheOrderThatItSays) {
   const auto wave = [](double angle_deg, int) { return 0.2 * test::Cosine(40.0, angle_deg, 0.0); };
   std::string text = "time_s,reference_deg,measured_deg\n";
   for (const auto& s : test::DriveAxis(
-           {.turns = 4.0, .speed_deg_s = 36.0, .interval_s = 0.002, .passes = {1, -1}, .noise_deg = 0.0}, wave))
+           {.turns = 4.0, .speed_deg_s = 36.0, .interval_s = 0.001, .passes = {1, -1}, .noise_deg = 0.0}, wave))
     text += fmt::format("{:.4f},{:.6f},{:.6f}\n", s.time_s, s.angle_deg, s.shown_deg);
   const Imported imported = Take(text);
-  EXPECT_LT(imported.readings.size(), 6250u);
+  EXPECT_LT(imported.readings.size(), 25000u);
   double sum = 0.0;
   int count = 0;
   for (const Reading& r : imported.readings) {

@@ -82,7 +82,7 @@ bool Gives(const Map& map, const std::string& column) {
 
 /// Means in blocks lower a largest value and raise a smallest one, which are results of a circle: who wants them says so.
 std::size_t MostReadings(const BenchFormat& bench, const Map& map) {
-  constexpr std::size_t kCompared = 5000;
+  constexpr std::size_t kCompared = 20000;
   if (map.average.most_readings > 0) return static_cast<std::size_t>(map.average.most_readings);
   return bench.compared ? kCompared : std::numeric_limits<std::size_t>::max();
 }

@@ -101,7 +101,7 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
   Table average(keys, "average");
   average.Add(
       "most_readings", kPure, {12, 1000000}, &map.average.most_readings,
-      "longer recordings are averaged in blocks (5000 where two quantities are compared, else all rows are kept)");
+      "longer recordings are averaged in blocks (20000 where two quantities are compared, else all rows are kept)");
   top.Records(
       "sought", map.sought,
       [](Table& t, Sought& s) {

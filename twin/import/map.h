@@ -30,7 +30,7 @@ struct CourseSettings {
 };
 
 struct AverageSettings {
-  int most_readings = 0;  // longer recordings are averaged in blocks; 0: 5000 where two quantities are compared, else none is
+  int most_readings = 0;  // longer recordings are averaged in blocks; 0: 20000 where two quantities are compared, else none is
 };
 
 /// A quantity that formulas need and files give under many names: in a column, or in a line of text above its rows.

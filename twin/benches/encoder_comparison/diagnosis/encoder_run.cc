@@ -187,6 +187,7 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   encoder.context =
       ContextOf(run.schedule, run.schedule.reference_rad + encoder.offset_rad, EncoderOf(scenario).device);
   encoder.context.has_clock = HasClock(used);
+  encoder.context.has_means = encoder.context.Moves() && used[used.size() / 2].n_samples > 1;
   if (model::HasTemperature(run.schedule))
     encoder.context.above_K = model::Above_K(run.schedule, scenario.environment.reference_degC);
   run.place = PlacesOf(encoder.context.device_rad, run.schedule.setup);

@@ -81,7 +81,10 @@ int LargestOrder(const SignalContext& context) {
   constexpr double kMost = 720.0, kLeastPart = 0.05;
   const double range_rad = context.reference_rad.maxCoeff() - context.reference_rad.minCoeff();
   const double part = std::clamp(range_rad / units::turn, kLeastPart, 1.0);
-  return model::HighestOrder(FinestSpacing_rad(context), static_cast<int>(kMost / part));
+  constexpr double kDimmed =
+      6.4;  // times as wide a step has the Nyquist order that means over it lower by a hundredth
+  const double step_rad = (context.has_means ? kDimmed : 1.0) * FinestSpacing_rad(context);
+  return model::HighestOrder(step_rad, static_cast<int>(kMost / part));
 }
 
 std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::string>& excluded) {

@@ -31,7 +31,7 @@ double FinestSpacing_rad(const SignalContext& context);
 int LeastOrder(const SignalContext& context);
 
 /// The largest whole order that readings of this spacing can tell from lower ones; at most 720 of a turn, of a part
-/// of one as much more.
+/// of one as much more; of means over the way from one to the next, that they lower by no more than a hundredth.
 int LargestOrder(const SignalContext& context);
 
 }  // namespace twinbench::diagnose::encoder

@@ -23,6 +23,7 @@ struct SignalContext {
   Eigen::VectorXd above_K;         // temperature above the reference; empty if none was logged
   DeviceSettings device;
   bool has_clock = true;  // false: times count the rows
+  bool has_means = false;  // a reading in motion is the mean over the way to the next
 
   Eigen::Index Readings() const { return reference_rad.size(); }
   bool Moves() const { return velocity_rad_s.cwiseAbs().maxCoeff() > 0.0; }
