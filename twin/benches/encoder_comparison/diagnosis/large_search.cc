@@ -7,6 +7,7 @@
 
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
+#include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/answer.h"
 
@@ -72,7 +73,10 @@ LargeSearch::LargeSearch(const std::vector<Reading>& readings, const Scenario& s
 
 std::optional<LargeCauses> LargeSearch::Go(double most_left) {
   Begin();
-  TakeSignals();
+  if (IsNothingButWalk(large_.first->encoder.run))
+    large_.first->analysis.found.terms.clear();
+  else
+    TakeSignals();
   TakeLarge();
   if (power_ - kFewCauses * kLarge * kLarge > most_left) return std::nullopt;  // what is not large has yet to be taken
   while (SearchOn()) TakeLarge();

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "twin/benches/encoder_comparison/diagnosis/memory.h"
+#include "twin/core/distributions.h"
 #include "twin/core/linear_algebra.h"
+#include "twin/core/units.h"
 #include "twin/diagnose/cause_groups.h"
 #include "twin/diagnose/engine/base.h"
 #include "twin/diagnose/folds.h"
@@ -70,6 +73,15 @@ Walk WalkOf(const DiagnosisRun& result, const SecondOrder& bent) {
 struct Means {
   std::vector<double> value;
   std::vector<int> setup;
+
+  bool IsNext(std::size_t k) const { return setup[k] == setup[k - 1]; }
+  std::vector<double> Steps() const {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < value.size(); ++k) {
+      if (IsNext(k)) steps.push_back(value[k] - value[k - 1]);
+    }
+    return steps;
+  }
 };
 
 Means MeansOf(const Walk& walk, Eigen::Index each) {
@@ -89,15 +101,15 @@ bool ComesBack(const Walk& walk) {
   constexpr Eigen::Index kMeans = 64;
   constexpr double kMost = -2.86;  // t of a walk is above it in 95 of 100
   const Means means = MeansOf(walk, walk.left.size() / kMeans);
-  std::vector<double> from, steps;
+  const std::vector<double> steps = means.Steps();
+  std::vector<double> from;
   for (std::size_t k = 1; k < means.value.size(); ++k) {
-    if (means.setup[k] != means.setup[k - 1]) continue;
-    from.push_back(means.value[k - 1]);
-    steps.push_back(means.value[k] - means.value[k - 1]);
+    if (means.IsNext(k)) from.push_back(means.value[k - 1]);
   }
   if (from.size() < 3) return false;
   const auto count = static_cast<Eigen::Index>(from.size());
-  Eigen::ArrayXd x = Eigen::Map<Eigen::ArrayXd>(from.data(), count), d = Eigen::Map<Eigen::ArrayXd>(steps.data(), count);
+  Eigen::ArrayXd x = Eigen::Map<Eigen::ArrayXd>(from.data(), count),
+                 d = Eigen::Map<const Eigen::ArrayXd>(steps.data(), count);
   x -= x.mean();
   d -= d.mean();
   const double slope = (x * d).sum() / x.square().sum();
@@ -113,6 +125,51 @@ bool IsWalk(const Walk& walk, double noise) {
   const double to_next = std::max(walk.Change(1), 2.0 * noise * noise);
   const bool goes_on = walk.Change(2 * walk.lag) > kFurther * walk.Change(walk.lag / 4);
   return goes_on && walk.Change(walk.lag) > kMost * to_next && !ComesBack(walk);
+}
+
+/// Whether one of so many whole multiples of a frequency has far more power than those beside it, which noise
+/// spreads as an exponential distribution does.
+/// @param phase_rad  Of the lowest one, by value.
+bool HasLine(const std::vector<double>& values, const Eigen::ArrayXd& phase_rad, Eigen::Index count) {
+  constexpr double kFar = 30.0;  // medians, as a few dozen beside it tell them
+  constexpr Eigen::Index kBeside = 20;
+  const Eigen::ArrayXcd turn = (std::complex<double>(0.0, 1.0) * phase_rad).exp();
+  Eigen::ArrayXcd wave = Eigen::Map<const Eigen::ArrayXd>(values.data(), std::ssize(values)) * turn;
+  std::vector<double> power;
+  for (Eigen::Index k = 0; k < count; ++k, wave *= turn) power.push_back(std::norm(wave.sum()));
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto first = std::clamp<Eigen::Index>(k - kBeside, 0, std::max<Eigen::Index>(0, count - 2 * kBeside));
+    const auto beside = power.begin() + first;
+    if (power[static_cast<std::size_t>(k)] > kFar * Median({beside, beside + std::min(2 * kBeside, count - first)}))
+      return true;
+  }
+  return false;
+}
+
+/// Of steps: one that is far larger than a normal distribution has them, or more of one sign.
+bool HaveStepOrDrift(const std::vector<double>& steps) {
+  constexpr double kFourth = 4.5, kFar = 4.5;  // 3 of a normal distribution; standard uncertainties of the mean
+  const Eigen::Map<const Eigen::ArrayXd> d(steps.data(), std::ssize(steps));
+  const auto count = static_cast<double>(d.size());
+  return d.pow(4).mean() > kFourth * std::pow(d.square().mean(), 2) ||
+         std::abs(d.mean()) > kFar * std::sqrt(d.square().mean() / count);
+}
+
+/// Steps from reading to reading, but for those over a gap, beside their times in shares of the run.
+bool HasLine(const LinearRun& run) {
+  constexpr double kGap = 3.0, kMost = 10000.0;
+  const Eigen::VectorXd& time_s = run.schedule.time_s;
+  std::vector<double> apart_s, steps, at;
+  for (Eigen::Index i = 1; i < run.Rows(); ++i) apart_s.push_back(time_s[i] - time_s[i - 1]);
+  const double usual_s = Median(apart_s), all_s = time_s[run.Rows() - 1] - time_s[0];
+  for (Eigen::Index i = 1; i < run.Rows(); ++i) {
+    if (apart_s[static_cast<std::size_t>(i - 1)] > kGap * usual_s) continue;
+    steps.push_back(run.residual[i] - run.residual[i - 1]);
+    at.push_back(units::turn * (time_s[i] - time_s[0]) / all_s);
+  }
+  const double count = std::min(kMost, 0.5 * all_s / usual_s);
+  return HasLine(steps, Eigen::Map<const Eigen::ArrayXd>(at.data(), std::ssize(at)),
+                 static_cast<Eigen::Index>(count));
 }
 
 /// How likely a walk of this kind would not show as much by chance. A wave comes back to where it was after some lags,
@@ -278,6 +335,18 @@ void TellWalk(Walk& walk, DiagnosisRun& result) {
 }
 
 }  // namespace
+
+bool IsNothingButWalk(const LinearRun& run) {
+  constexpr Eigen::Index kTogether = 16, kFewestMeans = 64;
+  const Walk walk{run.residual, run.schedule.setup, run.Rows() / 16};
+  if (run.Channels() != 1 || run.Rows() < kTogether * kFewestMeans || !IsWalk(walk, run.sigma.minCoeff()))
+    return false;
+  const std::vector<double> steps = MeansOf(walk, kTogether).Steps();
+  const Eigen::Index count = std::ssize(steps);
+  const Eigen::ArrayXd phase_rad = units::turn / static_cast<double>(count) *
+                                   Eigen::ArrayXd::LinSpaced(count, 0.0, static_cast<double>(count - 1));
+  return !HaveStepOrDrift(steps) && !HasLine(steps, phase_rad, count / 2) && !HasLine(run);
+}
 
 bool FollowsWalk(const Family& family, const Eigen::MatrixXd& columns) {
   return family.takes_any_course && columns.cols() > tuning::kWanderTogether;
