@@ -66,6 +66,38 @@ TEST_F(Importing, TakesAServoThatHuntsAboutItsPlaceForOneThatArrived) {
   EXPECT_THAT(imported.story, Not(HasSubstr("still on its way")));
 }
 
+/// A servo goes to 180 deg three times; there a hand pushes it to and fro, and it stays where it is pushed.
+/// @param push  How far, in counts of 0.1 deg; how long is seven rows.
+std::string Held(int push, int places = 1) {
+  std::string text = "time [s],target [deg],position [deg]\n";
+  int row = 0;
+  const auto add = [&](double at_deg, int counts) {
+    text += fmt::format("{:.1f},{},{:.1f}\n", 0.1 * row++, at_deg, at_deg + 0.1 * counts);
+  };
+  for (int rest = 0; rest < 3; ++rest) {
+    for (int i = 0; i < 11; ++i) add(171.0, 4);
+    const double at_deg = 180.0 + 9.0 * (rest % places);
+    for (const int counts : {-90, -60, -20}) add(at_deg, counts);
+    for (int i = 0; i < 56; ++i) add(at_deg, (i / 7 % 2 == 0 ? push : -push) + (i % 3 == 0 ? 1 : 0));
+  }
+  return text;
+}
+
+TEST_F(Importing, TellsWhichWayADeviceIsPushedWhileItsCommandRests) {
+  const Imported held = Take(Held(4)), elsewhere = Take(Held(4, 3));
+  EXPECT_NEAR(static_cast<double>(held.readings.size()), 3.0 * 56.0, 3.0)
+      << "without the rests elsewhere and the rows on the way";
+  EXPECT_EQ(held.readings.back().pass, 3 * 8 - 1) << "each push, and each rest";
+  for (const Reading& r : held.readings) EXPECT_EQ(r.direction, r.measured_rad > r.reference_rad ? -1 : 1);
+  EXPECT_EQ(elsewhere.readings.size(), held.readings.size());
+  EXPECT_NEAR(elsewhere.readings.back().reference_rad / units::deg, 198.0, 1e-9);
+  EXPECT_THAT(held.story, HasSubstr("the direction of a row is the side on which the device stands"));
+}
+
+TEST_F(Importing, TakesNeighbouringCountsForNoPush) {
+  EXPECT_THAT(Take(Held(0)).story, Not(HasSubstr("pushed to and fro")));
+}
+
 TEST_F(Importing, SaysWhichRestsADeviceNeverReached) {
   const Imported some = Take(StepTest({.last_rest_s = 0.5}));
   EXPECT_EQ(some.readings.size(), 19u);

@@ -8,6 +8,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/reading_clock.h"
 #include "twin/core/units.h"
+#include "twin/import/pushed.h"
 #include "twin/import/said.h"
 #include "twin/import/whole_rows.h"
 
@@ -64,6 +65,9 @@ void Maker::Take(const Session& session, std::size_t most, Imported& imported) {
     const std::string remark = RequireOneToOne(session, course.reference, one_place, bench_, map_);
     if (!remark.empty()) tally.remarks.push_back(remark);
   }
+  const bool may_be_pushed =
+      (course.stop_and_go || (one_place && session.has_clock)) && !session.value.contains("direction");
+  if (bench_.compared && may_be_pushed && TakePushed(session, course, imported)) return EndSetUp();
   const Blocks cut = CutIntoBlocks(course, session.time_s, most, RestsIn(session, course));
   Count(session, course, cut);
   if (course.stop_and_go) {
@@ -76,8 +80,43 @@ void Maker::Take(const Session& session, std::size_t most, Imported& imported) {
       if (block.begin >= on_way) Append(session, course, block, {block.begin, MeanOf(course.reference, block)}, imported);
     }
   }
+  EndSetUp();
+}
+
+void Maker::EndSetUp() {
   ++setup_;
   first_pass_ = last_pass_ + 1;
+}
+
+/// Nothing else says as much as rests in which the device is pushed to and fro: every row of them is a reading.
+/// @return false if it is pushed nowhere.
+bool Maker::TakePushed(const Session& session, Course course, Imported& imported) {
+  const std::vector<double>& shown = session.value.at(bench_.compared->shown);
+  const std::vector<Rest> rests =
+      course.stop_and_go ? RestsOf(course, {}, 0.0) : std::vector<Rest>{{0, session.Rows(), 0, true}};
+  const Pushed pushed = PushedIn(course, rests, shown, linear_ ? 0.0 : units::turn);
+  if (pushed.rows.empty()) return false;
+  course.stops = true, course.stop_and_go = false;
+  course.reversals = pushed.pass.back();
+  Blocks cut;
+  for (std::size_t k = 0; k < pushed.rows.size(); ++k) {
+    const std::size_t row = pushed.rows[k];
+    course.direction[row] = pushed.direction[k];
+    course.pass[row] = pushed.pass[k];
+    course.motion[row] = Motion::kStop;
+    cut.blocks.push_back({row, row + 1, 0});
+  }
+  Count(session, course, cut);
+  if (const std::size_t others = session.Rows() - pushed.rows.size(); others > 0)
+    tally.left_out.push_back(
+        {others,
+         "rows on the way to places where the device is pushed to and fro, between its sides there, or elsewhere"});
+  tally.remarks.push_back(
+      "the command rests while the device is pushed to and fro: the direction of a row is the side on which the "
+      "device stands");
+  for (const Block& block : cut.blocks)
+    Append(session, course, block, {block.begin, course.reference[block.begin]}, imported);
+  return true;
 }
 
 /// Said once, however many set-ups there are.

@@ -47,6 +47,8 @@ class Maker {
   std::vector<Rest> RestsIn(const Session& session, const Course& course) const;
   std::string CourseColumn(const Session& session) const;
   bool IsOnePlace(const Session& session) const;
+  bool TakePushed(const Session& session, Course course, Imported& imported);
+  void EndSetUp();
   void Count(const Session& session, const Course& course, const Blocks& cut);
   void TakeStops(const Session& session, const Course& course, const Blocks& cut, Imported& imported);
   Reading& Append(const Session& session, const Course& course, const Block& block, const Place& place, Imported& imported);

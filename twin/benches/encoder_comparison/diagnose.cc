@@ -12,7 +12,6 @@
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 #include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
 #include "twin/benches/encoder_comparison/diagnosis/pieces_of_curve.h"
-#include "twin/benches/encoder_comparison/diagnosis/pushed_both_ways.h"
 #include "twin/benches/encoder_comparison/diagnosis/speed_limit.h"
 #include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
 #include "twin/benches/encoder_comparison/diagnosis/wander.h"
@@ -40,7 +39,7 @@ std::vector<Reading> AnglesOf(const std::vector<Reading>& readings) {
 }
 
 std::vector<Reading> LookedAt(const std::vector<Reading>& recorded) {
-  return diagnose::encoder::PartOf(diagnose::encoder::WithSides(AnglesOf(recorded)));
+  return diagnose::encoder::PartOf(AnglesOf(recorded));
 }
 
 void TellPart(std::size_t looked_at, std::size_t recorded, diagnose::Diagnosis& diagnosis) {

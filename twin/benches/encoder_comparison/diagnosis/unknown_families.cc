@@ -105,7 +105,8 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   if (LeastOrder(c) > tuning::kPassOrders)
     std::erase_if(families, [](const Family& family) { return family.effect == "pass harmonic"; });
   if (is_one_place)
-    std::erase_if(families, [](const Family& family) { return family.effect == "transition" || family.effect == "reversal"; });
+    // How far it is pushed each time is another force.
+    std::erase_if(families, [](const Family& family) { return family.effect == "transition" || family.effect == "reversal" || family.effect == "pass"; });
   // Without a clock nothing has a frequency or a time constant.
   if (!c.has_clock)
     std::erase_if(families, [](const Family& family) { return family.effect == "tone" || family.effect == "restart"; });
