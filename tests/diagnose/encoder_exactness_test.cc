@@ -145,26 +145,6 @@ TEST(EncoderExactness, OffsetsOfPassesHideNoReversal) {
   }
 }
 
-TEST(EncoderExactness, WhatIsPushedToAndFroAtOnePlaceShowsItsPlay) {
-  for (const double width_deg : {1.0, 0.3}) {
-    std::mt19937_64 random(14);
-    std::normal_distribution<double> noise_deg(0.0, 0.06 * width_deg);
-    std::uniform_int_distribution<int> stay(4, 30);
-    Record record;
-    record.kind = "stops";
-    double side = 1.0;
-    for (int k = 0, until = 20; k < 600; ++k) {
-      if (k == until) side = -side, until += stay(random);
-      record.Add(0.03 * k, 40.0, 40.0 + 0.5 * width_deg * side + noise_deg(random), 0, 0);
-    }
-    const Answer answer = Ask(record);
-    SCOPED_TRACE(answer.Words());
-    EXPECT_TRUE(answer.Names("backlash", 0.8));
-    EXPECT_NEAR(answer.Value("backlash", "width"), width_deg, 0.02 * width_deg);
-    EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
-  }
-}
-
 TEST(EncoderExactness, ACurveOverAPartOfATurnIsNoSumOfOrders) {
   for (const unsigned seed : {15u, 16u}) {
     std::mt19937_64 random(seed);

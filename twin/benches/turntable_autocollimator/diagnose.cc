@@ -170,7 +170,7 @@ void LeaveFree(const std::vector<Reading>& readings, const Scenario& scenario, T
     if (courses(readings).cols() > 0) comparison.free_courses.push_back({point, courses, of, sd});
   };
   add("multitooth.ez", Teeth, own.HasPolygon() ? "a face" : "a tooth",
-      own.HasPolygon() ? kFree_rad : std::max(own.Tooth_rad(), kLeastNoise_rad));
+      own.HasPolygon() ? kFree_rad : std::max(own.multitooth.u_tooth_rad, kLeastNoise_rad));
   add("multitooth.ex", Teeth, own.HasPolygon() ? "a face" : "a tooth", kToothTilt_rad);
   add("turntable.ez", Sweeps_rad, "a sweep", TypicalSlope(readings));
   AddThermometer(readings, scenario, comparison);
