@@ -145,6 +145,23 @@ TEST(EncoderExactness, OffsetsOfPassesHideNoReversal) {
   }
 }
 
+/// Of which a part is looked at.
+TEST(EncoderExactness, AStepInALongRecordingIsWhereItIs) {
+  constexpr int kReadings = 9000, kStep = 5207;
+  std::mt19937_64 random(21);
+  std::normal_distribution<double> noise_deg(0.0, 0.0005);
+  Record record;
+  for (int k = 0; k < kReadings; ++k) {
+    const double angle_deg = 0.2 * k, error_deg = 0.01 * std::cos(angle_deg * units::deg) + (k < kStep ? 0.0 : 0.03);
+    record.Add(0.01 * k, angle_deg, angle_deg + error_deg + noise_deg(random), 1, 0);
+  }
+  const Answer answer = Ask(record);
+  SCOPED_TRACE(answer.Words());
+  EXPECT_TRUE(answer.Names("slip", 0.8));
+  EXPECT_NEAR(answer.Value("slip", "at_reading"), kStep, 1.0);
+  EXPECT_FALSE(answer.Names("outliers", 0.1));
+}
+
 TEST(EncoderExactness, ACurveOverAPartOfATurnIsNoSumOfOrders) {
   for (const unsigned seed : {15u, 16u}) {
     std::mt19937_64 random(seed);

@@ -38,15 +38,16 @@ std::vector<Reading> AnglesOf(const std::vector<Reading>& readings) {
   return separate::encoder::HaveStamps(readings) ? separate::encoder::AsComparison(readings) : readings;
 }
 
-std::vector<Reading> LookedAt(const std::vector<Reading>& recorded) {
-  return diagnose::encoder::PartOf(AnglesOf(recorded));
-}
-
-void TellPart(std::size_t looked_at, std::size_t recorded, diagnose::Diagnosis& diagnosis) {
-  if (looked_at == recorded) return;
-  diagnosis.notes.push_back(fmt::format(
-      "{} of {} readings were looked at, in groups of neighbours: where something began is known to a group",
-      looked_at, recorded));
+/// Reading numbers at which something happens once. Beside what has no name, a walk above all, steps may be its pieces.
+std::vector<double> EventsOf(const diagnose::Diagnosis& found) {
+  constexpr double kLikely = 0.5;
+  std::vector<double> events;
+  for (const diagnose::Cause& cause : found.causes) {
+    for (const diagnose::ParameterEstimate& p : cause.parameters)
+      if (p.name == "at_reading" && cause.probability >= kLikely) events.push_back(p.value);
+  }
+  if (!found.unknown.signature.empty()) events.clear();
+  return events;
 }
 
 /// Of causes that were taken out before the search, which the conclusion did not see.
@@ -56,12 +57,8 @@ void TellNextMeasurements(std::vector<diagnose::Cause>& causes) {
       cause.next_measurement = NextMeasurement(cause.effect, cause.indistinguishable_from.front().effect);
 }
 
-}  // namespace
-
-diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scenario& scenario,
-                                const diagnose::DiagnoseOptions& options) {
-  std::vector<Reading> readings = LookedAt(recorded);
-  const std::size_t looked_at = readings.size();
+diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario& scenario,
+                                   const diagnose::DiagnoseOptions& options) {
   std::optional<diagnose::encoder::SpeedLimit> limit;
   if (!options.design_only) limit = diagnose::encoder::SpeedLimitOf(readings, scenario, FollowRecord);
   if (limit) readings = limit->allowed;
@@ -80,7 +77,6 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
   diagnose::encoder::TellWander(large.bent, result);
   diagnose::encoder::TellGlitches(large.first->encoder.glitches, scenario, result);
   if (limit) diagnose::encoder::TellSpeedLimit(*limit, result);
-  TellPart(looked_at, AnglesOf(recorded).size(), result.diagnosis);
   result.diagnosis.left_out = (limit ? limit->asked : searched.encoder).left_out;
   result.diagnosis.harmonics =
       diagnose::encoder::HarmonicTable(large.first->encoder, {searched.encoder.run.sigma, {}});
@@ -89,8 +85,28 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
   return result;
 }
 
+}  // namespace
+
+diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scenario& scenario,
+                                const diagnose::DiagnoseOptions& options) {
+  const std::vector<Reading> all = AnglesOf(recorded);
+  std::vector<Reading> looked_at = diagnose::encoder::PartOf(all);
+  diagnose::DiagnosisRun result = DiagnoseAll(looked_at, scenario, options);
+  if (looked_at.size() == all.size()) return result;
+  const std::vector<double> events = EventsOf(result.diagnosis);
+  if (!events.empty()) {
+    looked_at = diagnose::encoder::PartOf(all, events);
+    result = DiagnoseAll(looked_at, scenario, options);
+  }
+  result.diagnosis.notes.push_back(fmt::format("{} of {} readings were looked at, in groups of neighbours{}",
+                                               looked_at.size(), all.size(),
+                                               events.empty() ? ": where something began is known to a group"
+                                                              : ", and all about what happens once"));
+  return result;
+}
+
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
-  return diagnose::encoder::BuildRun(LookedAt(readings), scenario, FollowRecord).run;
+  return diagnose::encoder::BuildRun(diagnose::encoder::PartOf(AnglesOf(readings)), scenario, FollowRecord).run;
 }
 
 }  // namespace twinbench::benches::encoder

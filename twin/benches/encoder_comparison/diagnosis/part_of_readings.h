@@ -12,6 +12,8 @@ namespace twinbench::diagnose::encoder {
 /// They are taken in groups of neighbours, so that distances, speeds and the usual step stay what they are, and
 /// every pass begins with its first reading, so that what remembers the way still finds where it turned: play and
 /// hysteresis do not care how many readings lie on a way that goes on.
-std::vector<Reading> PartOf(const std::vector<Reading>& readings);
+///
+/// @param events  Reading numbers at which something happens once: about them all readings are taken.
+std::vector<Reading> PartOf(const std::vector<Reading>& readings, const std::vector<double>& events = {});
 
 }  // namespace twinbench::diagnose::encoder
