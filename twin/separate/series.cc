@@ -66,6 +66,15 @@ Coefficient Shifted(const Coefficient& c, int order, double shift_rad) {
   return {c.value * std::polar(1.0, -order * shift_rad), turn * c.cov * turn.transpose()};
 }
 
+double ValueAt(const HarmonicSeries& series, double th_rad) {
+  double value_rad = 0.0;
+  for (int k = 1; k <= series.Highest(); ++k) {
+    const Complex c = series.At(k).value;
+    if (std::isfinite(c.real())) value_rad += (c * std::polar(1.0, k * th_rad)).real();
+  }
+  return value_rad;
+}
+
 Eigen::VectorXd Resample(const HarmonicSeries& series, int points) {
   return SumOnGrid(series, points,
                    [](const Coefficient& c, const Eigen::Vector2d& d) { return d.dot(Parts(c.value)); });

@@ -38,6 +38,9 @@ struct HarmonicSeries {
   Coefficient& At(int order) { return orders.at(static_cast<std::size_t>(order - 1)); }
 };
 
+/// Re sum C_k exp(j k th) over the orders that are known.
+double ValueAt(const HarmonicSeries& series, double th_rad);
+
 /// Values at th = 2 pi i / points, i = 0 .. points - 1 [rad], and their standard uncertainties. Orders that are NaN
 /// are left out.
 Eigen::VectorXd Resample(const HarmonicSeries& series, int points);

@@ -42,11 +42,11 @@ std::vector<Reading> AnglesOf(const std::vector<Reading>& readings) {
 std::vector<double> EventsOf(const diagnose::Diagnosis& found) {
   constexpr double kLikely = 0.5;
   std::vector<double> events;
+  if (!found.unknown.signature.empty()) return events;
   for (const diagnose::Cause& cause : found.causes) {
     for (const diagnose::ParameterEstimate& p : cause.parameters)
       if (p.name == "at_reading" && cause.probability >= kLikely) events.push_back(p.value);
   }
-  if (!found.unknown.signature.empty()) events.clear();
   return events;
 }
 

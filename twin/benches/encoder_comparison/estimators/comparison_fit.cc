@@ -73,15 +73,6 @@ FitRest RestOf(const std::vector<FittedGroup>& groups, const OrderNoise& noise, 
 
 }  // namespace
 
-double ValueAt(const harmonics::HarmonicSeries& series, double angle_rad) {
-  double value_rad = 0.0;
-  for (int k = 1; k <= series.Highest(); ++k) {
-    const harmonics::Complex c = series.At(k).value;
-    if (std::isfinite(c.real())) value_rad += (c * std::polar(1.0, k * angle_rad)).real();
-  }
-  return value_rad;
-}
-
 UsableGroups PickUsable(const std::vector<PassGroup>& groups, const DeviceOptions& options) {
   const std::map<int, double> mounting_rad = RoughMountings(groups);
   std::vector<int> highest;

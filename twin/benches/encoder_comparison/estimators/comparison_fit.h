@@ -38,7 +38,4 @@ struct ComparisonFit {
 /// the fit: a few rounds, each of which takes what is wrong down by the slope of the curves.
 ComparisonFit FitComparison(const UsableGroups& groups, const DeviceOptions& options);
 
-/// Re sum C_k exp(j k angle) over the orders that are known.
-double ValueAt(const harmonics::HarmonicSeries& series, double angle_rad);
-
 }  // namespace twinbench::separate::encoder

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/benches/encoder_comparison/estimators/comparison_fit.h"
 #include "twin/core/units.h"
 
 namespace twinbench::separate::encoder {

@@ -114,13 +114,9 @@ void AddRoundingAtStops(const std::vector<HobSample>& at_rest, const Transmissio
   Eigen::Index rows = 0;
   for (const HobSample& s : at_rest) {
     if (!std::isfinite(s.interferometer_rad)) continue;
-    const double at_rad =
-        s.table_encoder_rad - (options.zero == EncoderZero::kTableOrigin ? s.head_rad : 0.0);  // of the ring
-    double deviation_rad = s.interferometer_rad;  // and what the ring errs there, as its heads have told
-    for (int k = 1; k <= analysis.encoder.Highest(); ++k) {
-      const Complex c = analysis.encoder.At(k).value;
-      if (std::isfinite(c.real())) deviation_rad += (c * std::polar(1.0, k * at_rad)).real();
-    }
+    const double at_rad = RingAngle_rad(s, options.zero == EncoderZero::kTableOrigin);
+    // What the ring errs there its heads have told.
+    const double deviation_rad = s.interferometer_rad + ValueAt(analysis.encoder, at_rad);
     th_rad[rows] = at_rad;
     table_rad[rows] = options.table_turns_per_hob_turn * s.hob_encoder_rad + deviation_rad;
     hob_rad[rows++] = s.table_encoder_rad - deviation_rad;

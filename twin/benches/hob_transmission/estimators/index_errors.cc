@@ -24,10 +24,6 @@ double ValueOfLines(const HarmonicSeries& series, const std::vector<int>& orders
   return sum_rad;
 }
 
-double RingAngle_rad(const HobSample& s, bool from_origin) {
-  return s.table_encoder_rad - (from_origin ? s.head_rad : 0.0);
-}
-
 /// Samples fall due once a step of the procedure, at edges that lie half a line apart in both directions: one
 /// place. Samples that were taken otherwise are sorted by lines of the ring.
 class PlaceGrid {

@@ -30,6 +30,12 @@ struct HobSample {
   bool is_at_rest = false;
 };
 
+/// What the head sees of the ring, from its mark on.
+/// @param from_origin  The encoder counts from the table's origin.
+inline double RingAngle_rad(const HobSample& s, bool from_origin) {
+  return s.table_encoder_rad - (from_origin ? s.head_rad : 0.0);
+}
+
 /// Where the table encoder counts from.
 enum class EncoderZero {
   kTableOrigin,    // th = table encoder

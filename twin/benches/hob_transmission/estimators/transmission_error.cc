@@ -79,12 +79,7 @@ void FillFromOneTurn(const TurnFit& fit, PositionError& position) {
 
 /// Where the hob was at the samples, as the table turns meanwhile: what the fit says, which no count rounds.
 Eigen::VectorXd HobPlaces_rad(const Eigen::VectorXd& th_rad, const HarmonicSeries& series) {
-  return th_rad.unaryExpr([&series](double at_rad) {
-    double error_rad = 0.0;
-    for (int k = 1; k <= series.Highest(); ++k)
-      error_rad += (series.At(k).value * std::polar(1.0, k * at_rad)).real();
-    return at_rad - error_rad;
-  });
+  return th_rad.unaryExpr([&series](double at_rad) { return at_rad - ValueAt(series, at_rad); });
 }
 
 /// What counting repeats in every turn is no scatter between them; where it would not be seen beside that, it is left out.
