@@ -120,7 +120,7 @@ TEST_F(Importing, SaysByHowMuchClocksOfTwoFilesMissEachOther) {
 
 TEST_F(Importing, PutsGuidePulsesBackIntoWhatTheMountDid) {
   const auto error_arcsec = [](double angle_deg) { return 12.0 * test::Cosine(60.0, angle_deg, 20.0); };
-  const Imported imported = Take(test::GuideLog(error_arcsec, 1500), "phd2");
+  const Imported imported = Take(test::GuideLog(error_arcsec, 1500));
   EXPECT_THAT(imported.story, HasSubstr("3 rows without"));
   double sum = 0.0, squares = 0.0;
   for (const Reading& r : imported.readings) {

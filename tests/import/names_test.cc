@@ -225,5 +225,46 @@ TEST_F(Importing, LeavesOtherQuantitiesAside) {
   EXPECT_LT(Worst_deg(Take(text).readings), 1e-9);
 }
 
+/// A reference, a device and a third column, or two that are alike.
+std::string Beside(const std::string& third, const std::string& names = "reference [deg];measured [deg]") {
+  std::string text = names + ";" + third + "\n";
+  for (int i = 0; i < 72; ++i) {
+    const std::string value = fmt::format("{}", 20 + 0.25 * (i % 5));
+    text += fmt::format("{};{};{}\n", 5 * i, 5 * i + 0.1, third.find(';') < third.size() ? value + ";" + value : value);
+  }
+  return text;
+}
+
+TEST_F(Importing, TakesATemperatureWhateverItIsCalled) {
+  for (const char* name : {"Temperature [°C]", "Air temperature [°C]", "T [°C]", "Temp. [°C]", "temp_C", "T_air [°C]", "T_chamber",
+                           "Temperatur (°C)", "température (°C)", "scale temperature"})
+    EXPECT_EQ(Take(Beside(name)).readings.at(3).temperature_degC, 20.75) << name;
+  EXPECT_THAT(Take(Beside("T1 [°C];T2 [°C]")).story, HasSubstr("the first of 2"));
+}
+
+TEST_F(Importing, LeavesAsideWhatAUnitAtTheEndOfANameSaysToBeNoAngle) {
+  for (const char* third : {"iq_A", "supply_V", "torque_Nm", "humidity"})
+    EXPECT_LT(Worst_deg(Take(Beside(third, "theta_ref_rad;theta_motor_rad")).readings), 1e-9) << third;
+}
+
+TEST_F(Importing, TakesATargetAndWhereItSettledForAComparison) {
+  EXPECT_LT(Worst_deg(Take(Beside("comment", "target_deg;settled_deg")).readings), 1e-9);
+}
+
+TEST_F(Importing, TakesADeviationThatGoesWithTheReferenceForTheDevice) {
+  EXPECT_LT(Worst_deg(Take(Beside("iq_A", "ref_deg;dev_deg")).readings), 1e-9);
+}
+
+TEST_F(Importing, TakesAUnitOfTimeForTheNameOfAClock) {
+  std::string text = "ms\tcmd\tact\n";
+  for (int i = 0; i < 72; ++i) text += fmt::format("{}\t{}\t{}\n", 10 * i, 5 * i, 5 * i + 0.1);
+  EXPECT_NEAR(ToSeconds(Take(text).readings.at(71).time), 0.71, 1e-9);
+}
+
+TEST_F(Importing, TakesColumnsInAnyOrderOfTheOptions) {
+  const std::vector<std::string> columns = {"temperature_degC=c", "reference_deg=a", "measured_deg=b"};
+  EXPECT_EQ(Take(Beside("c", "a;b"), "", columns).readings.at(3).temperature_degC, 20.75);
+}
+
 }  // namespace
 }  // namespace twinbench::imports

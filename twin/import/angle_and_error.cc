@@ -7,20 +7,25 @@
 
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
+#include "twin/import/follows.h"
 
 namespace twinbench::imports {
 namespace {
-
-/// 0, 1, 2, ...: the number of a row, where nobody says what it is.
-bool IsCounter(const Column& column) {
-  const std::vector<double> steps = StepsOf(column.value);
-  return column.unit.empty() && steps.size() + 1 == column.value.size() && std::ranges::all_of(steps, [](double step) { return step == 1.0; });
-}
 
 /// Columns beside which nothing else is: an angle, and by how much the device is off there.
 struct AngleAndError {
   const Choice *angle = nullptr, *error = nullptr;
 };
+
+/// An error is small beside the angle; what goes with it is where the device stands, whatever it is called ("dev").
+bool RunsLike(const Column& column, const Column& angle) {
+  constexpr double kLike = 0.99, kFar = 0.5;  // of the way
+  const auto way = [](const Column& c) {
+    const auto [least, most] = std::ranges::minmax(c.value);
+    return most - least;
+  };
+  return way(column) > kFar * way(angle) && FollowingOf(angle.value, column.value).correlation > kLike;
+}
 
 /// Nothing where columns are left that may be where the device stands.
 AngleAndError Find(const std::vector<Choice>& columns, const std::string& reference, const Map& map) {
@@ -32,7 +37,7 @@ AngleAndError Find(const std::vector<Choice>& columns, const std::string& refere
   }
   if (angles.size() > 1) std::erase_if(angles, [](const Choice* c) { return IsCounter(*c->column); });
   const bool are = angles.size() == 1 && errors.size() == 1 && (given.empty() || given == angles[0]->name);
-  return are ? AngleAndError{angles[0], errors[0]} : AngleAndError{};
+  return are && !RunsLike(*errors[0]->column, *angles[0]->column) ? AngleAndError{angles[0], errors[0]} : AngleAndError{};
 }
 
 }  // namespace

@@ -58,6 +58,11 @@ bool Changes(const Choice& choice) {
   return std::ranges::any_of(choice.column->value, [&](double x) { return x != choice.column->value[0]; });
 }
 
+bool IsCounter(const Column& column) {
+  const std::vector<double> steps = StepsOf(column.value);
+  return column.unit.empty() && steps.size() + 1 == column.value.size() && std::ranges::all_of(steps, [](double step) { return step == 1.0; });
+}
+
 bool IsGiven(const Map& map, const std::string& column) {
   return std::ranges::any_of(map.columns, [&column](const MappedColumn& c) { return c.column == column; });
 }

@@ -23,6 +23,9 @@ std::vector<Choice> NumberColumns(const std::vector<Recording>& recordings);
 /// A column that never changes is nobody's reference and no device: it is not guessed to be one.
 bool Changes(const Choice& choice);
 
+/// 0, 1, 2, ...: the number of a row, where nobody says what it is.
+bool IsCounter(const Column& column);
+
 bool IsGiven(const Map& map, const std::string& column);
 
 /// What the map takes a column of the bench from; empty if nothing.

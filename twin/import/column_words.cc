@@ -25,9 +25,9 @@ const std::vector<std::string>& WordsFor(Speaks of) {
   static const std::vector<std::string> device = {
       "measured", "meas",     "device",   "dut",      "encoder",     "sensor",    "actual",    "actpos",  "posact",
       "present",  "resolver", "feedback", "fb",       "fbk",         "act",       "dial",      "gauge",   "indicator",
-      "messuhr",  "position", "ist",      "istwert",  "istposition", "istwinkel", "messwert",  "gemessen", "mesure",
+      "messuhr",  "settled",  "reached", "arrived", "position", "ist",      "istwert",  "istposition", "istwinkel", "messwert",  "gemessen", "mesure",
       "mesuré",   "medido",   "medida",   "misurato", "misura",      "zmierzona", "измерено",  "实际",    "测量",
-      "反馈",     "编码器",   "reading",  "angle",    "enc",         "probe",     "pos",       "load"};
+      "反馈",     "编码器",   "reading",  "angle",    "enc",         "probe",     "pos",       "load",     "counts"};
   return of == Speaks::kReference ? reference : device;
 }
 
@@ -158,15 +158,24 @@ int DirectionOfWord(std::string_view word) {
   return TurnIn(small);
 }
 
+bool IsCalledTemperature(const std::string& name) {
+  return name.starts_with("T_") || name.starts_with("T ") ||
+         HasAny(name, std::array{"temperature", "temp", "temperatur", "température", "temperatura", "температура"});
+}
+
 bool IsOtherQuantity(const Column& column) {
+  for (const std::string_view end : {"_A", "_mA", "_V", "_mV", "_W", "_Nm", "_N", "_Hz", "_rpm", "_pct", "_hPa", "_K"}) {
+    if (column.name.ends_with(end)) return true;
+  }
   const auto unit = UnitNamed(column.unit);
   if (unit) return unit->dimension != Dimension::kAngle && unit->dimension != Dimension::kLength;
   if (column.unit.find("/s") != std::string::npos || column.unit.find("/min") != std::string::npos) return true;
   for (const std::string_view other : {"rpm", "A", "mA", "Hz", "Nm", "%", "N", "W"}) {
     if (column.unit == other) return true;
   }
-  return HasAny(column.name, std::array{"velocity", "vel", "speed", "torque", "voltage", "temperature", "temp", "geschwindigkeit",
-                                        "acceleration", "acc", "pwm"}) &&
+  if (IsCalledTemperature(column.name)) return true;
+  return HasAny(column.name, std::array{"velocity", "vel", "speed", "torque", "voltage", "current", "geschwindigkeit",
+                                        "acceleration", "acc", "pwm", "humidity", "pressure"}) &&
          !HasAny(column.name, std::array{"position", "pos", "angle", "encoder", "enc"});
 }
 

@@ -39,6 +39,9 @@ int TurnIn(const std::string& text);
 /// How clearly a name speaks of a quantity by these words, the clearest first; 0: not at all. Of "cmd x" it has to have both parts.
 int ClearnessBy(const std::string& name, const std::vector<std::string>& words);
 
+/// "Temp. [°C]", "T_air", "Temperatur".
+bool IsCalledTemperature(const std::string& name);
+
 /// A speed, a current, a temperature by its name or unit: neither where the axis should stand nor where it does.
 bool IsOtherQuantity(const Column& column);
 

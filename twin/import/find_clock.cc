@@ -22,7 +22,7 @@ bool IsCalledTime(const Column& column) {
         name.ends_with(std::string("_") + word))
       return column.IsNumber();
   }
-  const auto unit = UnitNamed(column.unit);
+  const auto unit = UnitNamed(column.unit.empty() && name != "min" ? name : column.unit);  // "ms"; "min" is the least
   return column.IsNumber() && unit && unit->dimension == Dimension::kTime &&
          name.find("dwell") == std::string::npos;
 }

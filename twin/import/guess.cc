@@ -68,6 +68,24 @@ void TakeNamesakes(const std::vector<Choice>& columns, const BenchFormat& bench,
   }
 }
 
+/// Whatever it is called: degrees Celsius are nothing else. Of several the one that is read first.
+void TakeTemperature(const std::vector<Choice>& columns, const BenchFormat& bench, Map& map, std::vector<std::string>& remarks) {
+  const auto is_temperature = [](const std::optional<NamedUnit>& unit) {
+    return unit && unit->dimension == Dimension::kTemperature;
+  };
+  const auto target = std::ranges::find_if(bench.columns, [&](const ReadingColumn& c) {
+    return c.number && is_temperature(UnitAtEnd(c.name));
+  });
+  if (target == bench.columns.end() || IsGiven(map, target->name)) return;
+  std::vector<const Choice*> found;
+  for (const Choice& c : columns) {
+    const auto unit = UnitNamed(c.column->unit);
+    if (unit ? is_temperature(unit) : IsNoUnit(c.column->unit) && IsCalledTemperature(c.name)) found.push_back(&c);
+  }
+  if (found.empty()) return;
+  Put(target->name, *found.front(), found.size() > 1 ? fmt::format("the first of {} such", found.size()) : "as a temperature", map, remarks);
+}
+
 const Choice* Clearest(const std::vector<Choice>& columns, Speaks of, const std::set<std::string>& taken) {
   const Choice* best = nullptr;
   int clearness = 0;
@@ -152,6 +170,7 @@ void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Record
                          [&taken](const Choice& c) { return !taken.contains(c.name); });
     const std::size_t missing = static_cast<std::size_t>(
         std::ranges::count_if(compared, [&map](const auto& c) { return !IsGiven(map, c); }));
+    if (left.size() > missing) std::erase_if(left, [](const Choice& c) { return IsCounter(*c.column); });
     if (left.size() == missing) {
       Put(compared[k], left[0], "the first column that is left", map, remarks);
       continue;
@@ -170,6 +189,7 @@ void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
             const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks) {
   std::vector<Choice> columns = NumberColumns(recordings);
   TakeNamesakes(columns, bench, compared, map, remarks);
+  TakeTemperature(columns, bench, map, remarks);
   if (compared.empty()) return;
   TakeDirection(columns, map, remarks);
   TakeReferenceByName(columns, compared, map, remarks);
@@ -199,7 +219,9 @@ void TakeReadyMapOfList(const std::vector<Recording>& recordings, Map& map, std:
 
 const BenchFormat& BenchFor(const std::vector<Recording>& recordings, const Map& map) {
   if (!map.bench.empty()) return FormatOf(map.bench);
+  // Where an axis was sent to is called alike everywhere: what it showed says whose readings they are.
   const BenchFormat* by_name = FormatByColumns([&](const ReadingColumn& column) {
+    if (column.role != ColumnRole::kShown) return false;
     if (IsGiven(map, column.name)) return true;
     return std::ranges::any_of(recordings, [&column](const Recording& recording) {
       return std::ranges::any_of(recording.tracks, [&column](const Track& track) {

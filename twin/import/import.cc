@@ -13,6 +13,7 @@
 #include "twin/import/sought.h"
 #include "twin/import/source.h"
 #include "twin/import/story.h"
+#include "twin/import/text.h"
 #include "twin/import/unnamed_clock.h"
 #include "twin/import/whole_rows.h"
 #include "twin/import/wrap_gaps.h"
@@ -47,21 +48,25 @@ std::string CostOf(const std::vector<LeftOut>& left_out) {
   return cost;
 }
 
-/// Where nothing was said: the ready map of whose kind the files are by their columns.
-void TakeReadyMap(const std::vector<std::string>& files, Map& map) {
-  if (!map.name.empty() || !map.columns.empty() || !map.bench.empty()) return;
-  if (const auto ready = ReadyMapOf(BeginOfTable(files.front()))) map = *ready;
+/// Where nothing was said: the ready map of whose kind the files are.
+/// @return by what; empty if there is none.
+std::string TakeReadyMap(const std::vector<std::string>& files, Map& map) {
+  if (!map.name.empty() || !map.columns.empty() || !map.bench.empty()) return "";
+  const auto by_line = ReadyMapByBegin(LoadText(files.front()));
+  const auto ready = by_line ? by_line : ReadyMapOf(BeginOfTable(files.front()));
+  if (!ready) return "";
+  map = *ready;
+  return by_line ? "first line" : "columns";
 }
 
 std::vector<Recording> ReadAll(const std::vector<std::string>& files, Map& map) {
-  const bool was_said = !map.name.empty();
-  TakeReadyMap(files, map);
+  const std::string by = TakeReadyMap(files, map);
   std::vector<Recording> recordings;
   Layout layout = map.file;
   layout.columns_are_open = map.columns.empty() && map.bench.empty();
   for (const std::string& file : files) {
     recordings.push_back(ReadRecording(file, layout, map.clock));
-    if (!was_said && !map.name.empty()) recordings.back().remarks.push_back(fmt::format("by its columns a {}: taken as --map {}", map.title, map.name));
+    if (!by.empty()) recordings.back().remarks.push_back(fmt::format("by its {} a {}: taken as --map {}", by, map.title, map.name));
     const std::string others = layout.columns_are_open && map.name.empty() ? ReadyMapsByNames(recordings.back()) : "";
     if (!others.empty()) recordings.back().remarks.push_back("by its names it may be of another kind" + others);
     TakeSought(map, recordings.back());

@@ -118,6 +118,7 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
   Table guess(keys, "guess");
   guess.Add("by", kPure, {}, &map.guess_by,
             "lists of quantities sought, \"angle_deg, deviation_um\": a file with such columns is of this kind");
+  guess.Text("begins", &map.guess_begins, {}, "how the first line begins: such a file is of this kind");
   guess.Text("only", &map.guess_only, {}, "formula of them: a file of which it gives no number is of another kind");
   guess.Text("clock", &map.guess_clock, {"any", "none"}, "none: only if it has no time");
   Table scenario(keys, "scenario");
@@ -194,8 +195,8 @@ bool SetClock(const std::string& key, const std::string& column, Map& map) {
 
 namespace {
 
-/// "radius_mm=100": a quantity that this map seeks, or a ready one where none was said.
-bool SetSought(const std::string& key, const std::string& formula, Map& map) {
+/// "radius_mm=100": a quantity that this map seeks, or, if no bench has it, a ready one where none was said.
+bool SetSought(const std::string& key, const std::string& formula, bool is_of_bench, Map& map) {
   const auto unit = UnitAtEnd(key);
   const auto seeks = [&](Sought& s) {
     const auto own = UnitAtEnd(s.name);
@@ -208,7 +209,7 @@ bool SetSought(const std::string& key, const std::string& formula, Map& map) {
     return true;
   };
   if (std::ranges::any_of(map.sought, seeks)) return true;
-  if (!map.name.empty() || !map.columns.empty()) return false;
+  if (is_of_bench || !map.name.empty() || !map.columns.empty()) return false;
   for (const ReadyMap& ready : ReadyMaps()) {
     Map other = ParseMap(ready.text, ready.name);
     if (!std::ranges::any_of(other.sought, seeks)) continue;
@@ -226,11 +227,11 @@ void SetColumn(const std::string& assignment, Map& map) {
   if (equals == std::string::npos)
     throw InputError(where, "there is no =", "QUANTITY=COLUMN, as in reference_deg=angle");
   const std::string key = assignment.substr(0, equals);
-  if (SetClock(key, assignment.substr(equals + 1), map) || SetSought(key, assignment.substr(equals + 1), map))
-    return;
+  const std::string formula = assignment.substr(equals + 1);
   const ColumnKeys columns(map.bench.empty() ? BenchFormats() : std::vector{&FormatOf(map.bench)});
   const auto found =
       std::ranges::find_if(columns.entries, [&key](const MappedColumn& e) { return ColumnKeys::Key(e) == key; });
+  if (SetClock(key, formula, map) || SetSought(key, formula, found != columns.entries.end(), map)) return;
   if (found == columns.entries.end()) {
     std::vector<std::string> known = {"time_s"};
     for (const MappedColumn& entry : columns.entries) known.push_back(ColumnKeys::Key(entry));
@@ -239,7 +240,7 @@ void SetColumn(const std::string& assignment, Map& map) {
   }
   std::erase_if(map.columns, [&found](const MappedColumn& e) { return e.column == found->column; });
   map.columns.push_back(*found);
-  map.columns.back().expression = assignment.substr(equals + 1);
+  map.columns.back().expression = formula;
   map.columns.back().where = where;
 }
 

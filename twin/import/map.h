@@ -55,6 +55,7 @@ struct Map {
   AverageSettings average;
   std::vector<Sought> sought;
   std::vector<std::string> guess_by;  // lists of names that are sought: a file that has the columns of one is of this kind
+  std::string guess_begins;           // a file that begins so is of this kind; empty: none
   std::string guess_clock = "any";    // any | none
   std::string guess_only;             // formula of quantities sought that gives a number of such a file; empty: any
   std::vector<std::string> set;       // keys of the scenario, as in --set; {name}: what was found of a quantity that is sought

@@ -305,6 +305,14 @@ void DropWithout(const Sought& sought, Map& map) {
 
 }  // namespace
 
+std::optional<Map> ReadyMapByBegin(const std::string& text) {
+  for (const ReadyMap& ready : ReadyMaps()) {
+    Map map = ParseMap(ready.text, ready.name);
+    if (!map.guess_begins.empty() && text.starts_with(map.guess_begins)) return map;
+  }
+  return std::nullopt;
+}
+
 std::optional<Map> ReadyMapOf(const Recording& recording) {
   if (recording.tracks.empty()) return std::nullopt;
   std::optional<Map> best;
