@@ -31,6 +31,7 @@ void Fill(const foreign::Answer& answer, Row& row) {
   if (answer.second) row.marks[kSecondSilent] = answer.second->empty();
   if (answer.second_run) row.marks[kSecondRunSilent] = answer.second_run->empty();
   row.marks[kGainRight] = IsGainRight(answer);
+  if (row.marks[kGainRight]) row.answer += fmt::format("; gain {:.3f}, stated {:.3f}", answer.file_gain, answer.stated_gain);
 }
 
 /// @param machines  Of any bench: those of the wanted one are taken.

@@ -19,12 +19,12 @@ Columns ColumnsOf(const std::vector<Accepted>& accepted, int rows) {
   return all;
 }
 
-Eigen::VectorXd RelativeVariances(const Projector& projector, const Eigen::MatrixXd& S,
-                                  const Eigen::VectorXd& prior_precision) {
+Eigen::MatrixXd RelativeCovariance(const Projector& projector, const Eigen::MatrixXd& S,
+                                   const Eigen::VectorXd& prior_precision) {
   const Eigen::MatrixXd scaled = S * prior_precision.cwiseSqrt().cwiseInverse().asDiagonal();
   Eigen::MatrixXd normal = scaled.transpose() * projector.Apply(scaled);
   normal.diagonal().array() += 1.0;
-  return normal.llt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols())).diagonal();
+  return normal.llt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
 }
 
 Eigen::VectorXd FitAmplitudes(const Projector& projector, const Eigen::MatrixXd& S, const Eigen::MatrixXd& y,

@@ -20,10 +20,10 @@ Columns ColumnsOf(const std::vector<Accepted>& accepted, int rows);
 Eigen::VectorXd FitAmplitudes(const Projector& projector, const Eigen::MatrixXd& S, const Eigen::MatrixXd& y,
                               const Eigen::VectorXd& prior_precision);
 
-/// Posterior variances of these amplitudes for unit noise, over their prior variances: 1 where the data say
-/// nothing.
-Eigen::VectorXd RelativeVariances(const Projector& projector, const Eigen::MatrixXd& S,
-                                  const Eigen::VectorXd& prior_precision);
+/// Posterior covariance of these amplitudes for unit noise, in units of their prior deviations: ones on the diagonal
+/// where the data say nothing.
+Eigen::MatrixXd RelativeCovariance(const Projector& projector, const Eigen::MatrixXd& S,
+                                   const Eigen::VectorXd& prior_precision);
 
 /// What the model leaves of the readings, in SI, once the free unknowns have been fitted: without the accepted
 /// causes and with them.

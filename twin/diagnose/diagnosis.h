@@ -51,7 +51,8 @@ struct Gain {
   double noise_floor_m = kNaN;             // what a perfect model would leave
   double fraction_removed = kNaN;          // of the removable variance
   std::array<double, 2> interval95 = {kNaN, kNaN};  // of fraction_removed, bootstrap over blocks
-  double another_run = kNaN;  // the same of a run taken at another time: tables of this run tell nothing of it
+  double another_run = kNaN;        // what is expected of a run taken at another time (held_out.h)
+  bool has_tables_of_run = false;   // which tell nothing of another, and are left out of that
   bool positive = false;                            // the gain is above zero at 95 %
   int folds = 0;
 };

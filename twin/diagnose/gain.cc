@@ -28,7 +28,8 @@ constexpr double kLeastInformation = 0.3;  // on an amplitude; four passes leave
 struct FoldErrors {
   Eigen::VectorXd before, after;
   Eigen::VectorXd variance;   // of the prediction, in units of the row's noise
-  Eigen::VectorXd amplitude;  // relative variances of the amplitudes that it was predicted with
+  Eigen::VectorXd fold_sizes, all_sizes;  // likewise: what the uncertainty of the fold's amplitudes, and of all, adds
+  Eigen::VectorXd amplitude;              // relative variances of the amplitudes that it was predicted with
   double steps = 1.0;         // half the mean square of what neighbours' errors differ by in noise alone
 };
 
@@ -57,6 +58,7 @@ Eigen::VectorXd VarianceOfHeld(const Projector& fit, const Eigen::VectorXd& held
 struct Model {
   Columns columns;
   Eigen::VectorXd amplitudes;  // from all readings
+  Eigen::MatrixXd covariance;  // of these, RelativeCovariance
   Eigen::VectorXd repeated;    // 1 for a column that the file has at its own readings only
   const Eigen::VectorXd& written;
 };
@@ -64,6 +66,14 @@ struct Model {
 /// What the file would show, had it these amplitudes.
 Eigen::VectorXd ShownWith(const Model& model, const Eigen::VectorXd& amplitudes) {
   return model.written + model.columns.S * (amplitudes - model.amplitudes);
+}
+
+/// Variance of what is predicted with amplitudes of this covariance, by row, in units of its noise.
+/// @param shown  What each amplitude shows in the rows beside the unknowns that were fitted.
+Eigen::VectorXd VarianceOf(const Eigen::MatrixXd& shown, const Eigen::MatrixXd& relative_covariance,
+                           const Columns& columns, const NoiseModel& noise) {
+  const Eigen::MatrixXd scaled = shown * columns.prior_precision.array().rsqrt().matrix().asDiagonal();
+  return (scaled * relative_covariance).cwiseProduct(scaled).rowwise().sum().cwiseQuotient(noise.sigma.cwiseAbs2());
 }
 
 /// Neighbours that are predicted from readings of their own differ by the noise of these, too: by simulation.
@@ -104,7 +114,13 @@ FoldErrors PredictFold(const LinearRun& run, const NoiseModel& noise, const Mode
   const Eigen::MatrixXd left = run.residual - predicted;
   const Eigen::MatrixXd train_left = (1.0 - held.array()).matrix().asDiagonal() * noise.Whiten(run, left);
   errors.after = left - run.nuisance.jacobian * fit.Solve(train_left);
-  errors.amplitude = RelativeVariances(fit, S, columns.prior_precision);
+  const Eigen::MatrixXd covariance = RelativeCovariance(fit, S, columns.prior_precision);
+  errors.amplitude = covariance.diagonal();
+  const Eigen::MatrixXd lasting = columns.S * (1.0 - model.repeated.array()).matrix().asDiagonal();
+  const Eigen::MatrixXd train_lasting = (1.0 - held.array()).matrix().asDiagonal() * noise.Whiten(run, lasting);
+  const Eigen::MatrixXd shown = lasting - run.nuisance.jacobian * fit.Solve(train_lasting);
+  errors.fold_sizes = VarianceOf(shown, covariance, columns, noise);
+  errors.all_sizes = VarianceOf(shown, model.covariance, columns, noise);
   errors.variance = VarianceOfHeld(fit, held);
   for (int k = 0; k < run.Rows(); ++k) {
     if (!(errors.variance[k] < kDeterminedVariance)) errors.before[k] = errors.after[k] = kNaN;
@@ -124,6 +140,7 @@ void AddFold(const LinearRun& run, const NoiseModel& noise, const FoldErrors& er
     HeldOutSums& block = blocks[At(block_of[At(reading)])];
     block += {squared(errors.before[k] / sigma), squared(errors.after[k] / sigma), 1.0 + errors.variance[k],
               1.0 / squared(sigma)};
+    block += {.fold_sizes = errors.fold_sizes[k], .all_sizes = errors.all_sizes[k]};
     if (!HasNext(run.schedule, reading) || std::isnan(errors.after[next])) continue;
     block +=
         {.steps = 0.5 * squared(errors.after[next] / noise.sigma[next] - errors.after[k] / sigma) / errors.steps, .pairs = 1.0};
@@ -145,10 +162,8 @@ struct Predicted {
 };
 
 Predicted Predict(const LinearRun& run, const NoiseModel& noise, const Model& model, const Folds& folds) {
-  const Columns& columns = model.columns;
   const std::vector<int> block_of = BlocksOfReadings(run.schedule);
-  const Projector all(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
-  const Eigen::VectorXd full = RelativeVariances(all, noise.Whiten(run, columns.S), columns.prior_precision);
+  const Eigen::VectorXd full = model.covariance.diagonal();
   Predicted predicted{folds.count, {}, 1.0};
   predicted.blocks.resize(At(1 + *std::max_element(block_of.begin(), block_of.end())));
   for (int fold = 0; fold < folds.count; ++fold) {
@@ -166,11 +181,12 @@ using TellsNothing = bool (*)(const Accepted& accepted, const LinearRun& run);
 
 Model ModelOf(const LinearRun& run, const NoiseModel& noise, const std::vector<Accepted>& accepted,
               const Eigen::VectorXd& written, TellsNothing tells_nothing) {
-  Model model{ColumnsOf(accepted, run.Rows()), {}, {}, written};
+  Model model{ColumnsOf(accepted, run.Rows()), {}, {}, {}, written};
   const Projector all(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
   const Eigen::MatrixXd y = run.residual;
-  model.amplitudes =
-      FitAmplitudes(all, noise.Whiten(run, model.columns.S), noise.Whiten(run, y), model.columns.prior_precision);
+  const Eigen::MatrixXd S = noise.Whiten(run, model.columns.S);
+  model.amplitudes = FitAmplitudes(all, S, noise.Whiten(run, y), model.columns.prior_precision);
+  model.covariance = RelativeCovariance(all, S, model.columns.prior_precision);
   model.repeated.resize(model.amplitudes.size());
   Eigen::Index column = 0;
   for (const Accepted& a : accepted) {
@@ -193,13 +209,9 @@ Gain GainOf(const LinearRun& run, const NoiseModel& noise, const Model& model) {
   return gain;
 }
 
-/// Tables by time tell of this run's readings and not of another's.
-double OnAnotherRun(const LinearRun& run, const NoiseModel& noise, const std::vector<Accepted>& accepted,
-                    const Eigen::VectorXd& written, const Gain& gain) {
-  const bool only_here = std::ranges::any_of(
-      accepted, [&](const Accepted& a) { return IsTabulated(a, run) && !IsRepeatedOnly(a, run); });
-  if (!only_here) return gain.fraction_removed;
-  return GainOf(run, noise, ModelOf(run, noise, accepted, written, IsTabulated)).fraction_removed;
+/// A table by time tells of this run's readings and not of another's.
+bool IsOfThisRun(const Accepted& accepted, const LinearRun& run) {
+  return IsTabulated(accepted, run) && !IsRepeatedOnly(accepted, run);
 }
 
 }  // namespace
@@ -208,7 +220,9 @@ Gain MeasureGain(const LinearRun& run, const NoiseModel& noise, const std::vecto
                  const Eigen::VectorXd& written) {
   if (accepted.empty()) return {};
   Gain gain = GainOf(run, noise, ModelOf(run, noise, accepted, written, IsRepeatedOnly));
-  gain.another_run = OnAnotherRun(run, noise, accepted, written, gain);
+  gain.has_tables_of_run = std::ranges::any_of(accepted, [&](const Accepted& a) { return IsOfThisRun(a, run); });
+  if (gain.has_tables_of_run)
+    gain.another_run = GainOf(run, noise, ModelOf(run, noise, accepted, written, IsTabulated)).another_run;
   return gain;
 }
 

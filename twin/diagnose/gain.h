@@ -23,7 +23,7 @@ namespace twinbench::diagnose {
 ///
 /// How before, after and floor become fraction_removed and its interval: held_out.h.
 ///
-/// another_run: the same without the tables of this run, by reading or by time.
+/// another_run: what is expected without the tables of this run, by reading or by time.
 ///
 /// @param written  What the written scenario takes from the residual, by row [SI].
 /// @return folds = 0 and NaN if nothing was accepted or nothing can be held out.

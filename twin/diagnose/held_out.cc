@@ -1,10 +1,12 @@
 #include "twin/diagnose/held_out.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "twin/core/errors.h"
 #include "twin/core/stream.h"
+#include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -58,12 +60,46 @@ double MeanWithin(const std::vector<double>& sorted, const std::array<double, 2>
   return sum / count;
 }
 
+double Deviation(const std::vector<double>& values) {
+  const Eigen::Map<const Eigen::ArrayXd> v(values.data(), std::ssize(values));
+  return std::sqrt((v - v.mean()).square().mean());
+}
+
+/// What is expected of a power that no size's uncertainty explains: nothing, or anything.
+/// @param seen  It, with a deviation of `sd`.
+double ExpectedUnmodelled(double seen, double sd) {
+  constexpr int kSteps = 400;
+  constexpr double kLeast = 1.0, kFarOff = 5.0;  // of the noise of a reading; in deviations
+  const double most = seen + kFarOff * sd;
+  if (!(sd > 0.0) || !(most > kLeast)) return std::max(seen, 0.0);
+  const auto likelihood = [&](double power) { return std::exp(-0.5 * std::pow((seen - power) / sd, 2)); };
+  double any = 0.0, mean = 0.0;
+  for (int k = 0; k < kSteps; ++k) {
+    const double power = kLeast * std::pow(most / kLeast, (k + 0.5) / kSteps);
+    const double weight = likelihood(power) / kSteps;
+    any += weight;
+    mean += weight * power;
+  }
+  const double all = tuning::kListed * likelihood(0.0) + (1.0 - tuning::kListed) * any;
+  return all > 0.0 ? (1.0 - tuning::kListed) * mean / all : std::max(seen, 0.0);
+}
+
+/// @param sd  Of what remains.
+double OnAnotherRun(const HeldOutSums& sum, const Shares& shares, double scale, double sd) {
+  const double sizes = scale * sum.fold_sizes;
+  const double unmodelled = ExpectedUnmodelled(shares.remaining - sizes, sd);
+  const double removable = shares.removed + unmodelled + sizes;
+  return 1.0 - (unmodelled + scale * sum.all_sizes) / removable;
+}
+
 }  // namespace
 
 HeldOutSums& HeldOutSums::operator+=(const HeldOutSums& other) {
   before += other.before;
   after += other.after;
   floor += other.floor;
+  fold_sizes += other.fold_sizes;
+  all_sizes += other.all_sizes;
   weight += other.weight;
   steps += other.steps;
   pairs += other.pairs;
@@ -77,10 +113,11 @@ void FillGain(const std::vector<HeldOutSums>& blocks, bool noise_is_stated, doub
     return SharesOf(sum, NoiseScale(sum, noise_is_stated, correlation));
   };
   Stream stream(1, "diagnose.gain");
-  std::vector<double> fractions, removed;
+  std::vector<double> fractions, removed, remaining;
   for (int draw = 0; draw < kDraws; ++draw) {
     const Shares shares = shares_of(Drawn(blocks, stream));
     removed.push_back(shares.removed);
+    remaining.push_back(shares.remaining);
     fractions.push_back(shares.Fraction());
   }
   std::ranges::sort(fractions);
@@ -94,6 +131,10 @@ void FillGain(const std::vector<HeldOutSums>& blocks, bool noise_is_stated, doub
   gain.fraction_removed =
       gain.positive ? 2.0 * shares.Fraction() - MeanWithin(fractions, gain.interval95) : shares.Plain();
   if (!std::isfinite(gain.fraction_removed)) gain.fraction_removed = kNaN;
+  gain.another_run = gain.fraction_removed;
+  if (gain.positive)
+    gain.another_run =
+        OnAnotherRun(all, shares, NoiseScale(all, noise_is_stated, correlation), Deviation(remaining));
 }
 
 }  // namespace twinbench::diagnose

@@ -85,9 +85,9 @@ std::string RemovedInWords(const diagnose::Gain& gain) {
   std::string text = fmt::format("{} (95 % interval {} to {}) of what a perfect model would remove there",
                                  diagnose::Percent(gain.fraction_removed), diagnose::Percent(gain.interval95[0]),
                                  diagnose::Percent(gain.interval95[1]));
-  if (gain.another_run != gain.fraction_removed && std::isfinite(gain.another_run))
-    text += fmt::format("; {} on another run, of which this run's tables say nothing: leave them out there",
-                        diagnose::Percent(gain.another_run));
+  if (std::isfinite(gain.another_run))
+    text += fmt::format("; {} expected on another run{}", diagnose::Percent(gain.another_run),
+                        gain.has_tables_of_run ? ", of which this run's tables say nothing: leave them out there" : "");
   return Sentence("Removed: ", text);
 }
 
