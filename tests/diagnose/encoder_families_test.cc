@@ -26,6 +26,19 @@ SignalContext Steps(const std::vector<double>& angle_deg, const std::vector<int>
   return ContextOf(s, s.reference_rad, {});
 }
 
+TEST(LeastOrder, ShowsMostOfAPeriodInOneSetUpAndAllOfItWhereNoReasonSpeaksForIt) {
+  const auto of_range = [](double range_deg) { return LeastOrder(Steps({0.0, range_deg}, {1, 1})); };
+  EXPECT_EQ(of_range(360.0), 1);
+  EXPECT_EQ(of_range(270.0), 1) << "a scale off its axis, in a joint";
+  EXPECT_EQ(of_range(120.0), 2);
+  EXPECT_EQ(of_range(90.0), 4) << "order 3 would be 0.75 of a period";
+  EXPECT_EQ(of_range(59.0), 6);
+  SignalContext two = Steps({0.0, 59.0, 100.0, 159.0}, {1, 1, 1, 1});
+  EXPECT_EQ(LeastOrder(two), 2);
+  two.setup = {0, 0, 1, 1};
+  EXPECT_EQ(LeastOrder(two), 6) << "each stands where it likes";
+}
+
 /// A single step is a slip.
 TEST(LostCounts, AreOfferedWhereASpotIsPassedAgain) {
   unknown::Design design;

@@ -47,7 +47,7 @@ struct SearchCase {
     noise = WhiteNoise(run);
     projector = std::make_unique<Projector>(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
     const Scanner scanner(run, noise, *projector, families);
-    return Search(run, noise, *projector, scanner, LogPriors(families), threshold, most_causes);
+    return Search(run, noise, *projector, scanner, LogPriors(families), threshold, {most_causes});
   }
   LinearRun run;
   NoiseModel noise;
@@ -222,7 +222,7 @@ Term FindDecay(LinearRun run, std::uint64_t seed, double noise) {
   const NoiseModel model{run.sigma, {}};
   const Projector projector = ProjectorOf(run, model);
   const Scanner scanner(run, model, projector, families);
-  return Search(run, model, projector, scanner, LogPriors(families), kAnything, 1).terms.at(0);
+  return Search(run, model, projector, scanner, LogPriors(families), kAnything, {1}).terms.at(0);
 }
 
 struct Coverage {

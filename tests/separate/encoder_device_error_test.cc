@@ -396,5 +396,17 @@ TEST(NoiseBehindRounding, IsWhatMakesRoundedReadingsScatterAsTheyDo) {
   EXPECT_EQ(NoiseBehindRounding(1.0, 0.0), 0.0);
 }
 
+TEST(CommonStep, IsFoundBehindADecimalPrint) {
+  constexpr double kStep = 360.0 / 4096.0, kPrint = 1e-4;
+  Eigen::VectorXd rounded(720), any(720);
+  for (Eigen::Index i = 0; i < rounded.size(); ++i) {
+    const double value = 0.5 * static_cast<double>(i) + 0.137;
+    rounded[i] = std::round(std::round(value / kStep) * kStep / kPrint) * kPrint;
+    any[i] = std::round((value + 0.2 * std::sin(static_cast<double>(i * i))) / kPrint) * kPrint;
+  }
+  EXPECT_NEAR(CommonStep(rounded), kStep, 1e-3 * kStep);
+  EXPECT_NEAR(CommonStep(any), kPrint, 1e-9) << "no coarser one";
+}
+
 }  // namespace
 }  // namespace twinbench::separate::encoder

@@ -37,6 +37,27 @@ bool IsEven(const Eigen::VectorXd& values, double step) {
   return static_cast<double>(other) < kMostOther * static_cast<double>(values.size());
 }
 
+/// Of values that were printed with few digits: all gaps are whole steps but for that, none is as small.
+/// @param gaps  Of values in their order, ascending.  @param print  The last digit.
+double PrintedStep(const std::vector<double>& gaps, double print) {
+  constexpr double kCoarse = 10.0, kOff = 1.5;  // prints
+  constexpr double kMostOff = 0.01;          // of the gaps
+  constexpr int kRounds = 4;
+  double step = *std::ranges::min_element(gaps);
+  if (!(print > 0.0) || step < kCoarse * print) return 0.0;
+  for (const double difference : GapsOf(gaps, kCoarse * print)) step = std::min(step, difference);
+  for (int round = 0; round < kRounds; ++round) {
+    double way = 0.0, steps = 0.0;
+    for (const double gap : gaps) {
+      way += gap;
+      steps += std::round(gap / step);
+    }
+    step = way / steps;
+  }
+  const auto off = std::ranges::count_if(gaps, [&](double gap) { return std::abs(gap - step * std::round(gap / step)) > kOff * print; });
+  return static_cast<double>(off) <= kMostOff * static_cast<double>(gaps.size()) ? step : 0.0;
+}
+
 }  // namespace
 
 double CommonStep(const Eigen::VectorXd& values) {
@@ -51,8 +72,9 @@ double CommonStep(const Eigen::VectorXd& values) {
     const double step = least / parts;
     const auto off = std::ranges::count_if(
         gaps, [step](double gap) { return std::abs(gap / step - std::round(gap / step)) > kOff; });
-    if (static_cast<double>(off) <= kMostOff * static_cast<double>(gaps.size()))
-      return IsEven(values, step) ? 0.0 : step;
+    if (static_cast<double>(off) > kMostOff * static_cast<double>(gaps.size())) continue;
+    const double printed = PrintedStep(gaps, step), common = printed > 0.0 ? printed : step;
+    return IsEven(values, common) ? 0.0 : common;
   }
   return 0.0;
 }

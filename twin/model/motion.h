@@ -13,4 +13,15 @@ namespace twinbench::model {
 /// ends there, and what goes with the acceleration is largest.
 Eigen::VectorXd RateOfChange(const Course& course, const Eigen::VectorXd& values);
 
+/// Values with noise of their own, as what an encoder shows in motion has, and their rate of change.
+struct SteadyCourse {
+  Eigen::VectorXd values, rate;
+  bool is_smoothed = false;
+};
+
+/// The parabola through as many neighbours (32 on either side at most) as make the noise small in its slope, a hundredth of
+/// the slope's rms: differences of neighbours would hold the noise of the very reading that they are compared with. Where the
+/// noise is small, and about corners of the motion, the values as they are.
+SteadyCourse SteadyCourseOf(const Course& course, const Eigen::VectorXd& values);
+
 }  // namespace twinbench::model

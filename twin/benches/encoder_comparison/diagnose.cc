@@ -13,6 +13,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
 #include "twin/benches/encoder_comparison/diagnosis/pieces_of_curve.h"
 #include "twin/benches/encoder_comparison/diagnosis/speed_limit.h"
+#include "twin/benches/encoder_comparison/diagnosis/steady_reference.h"
 #include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
 #include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/benches/encoder_comparison/estimators/coast_passes.h"
@@ -34,8 +35,9 @@ void TellLengths(const AxisUnit& unit, diagnose::Diagnosis& diagnosis) {
 }
 
 /// Times of lines as the comparison of angles that they come to.
-std::vector<Reading> AnglesOf(const std::vector<Reading>& readings) {
-  return separate::encoder::HaveStamps(readings) ? separate::encoder::AsComparison(readings) : readings;
+std::vector<Reading> AnglesOf(const std::vector<Reading>& readings, const Scenario& scenario) {
+  return separate::encoder::HaveStamps(readings) ? separate::encoder::AsComparison(readings)
+                                                 : diagnose::encoder::OnSteadyCourse(readings, scenario);
 }
 
 /// Reading numbers at which something happens once. Beside what has no name, a walk above all, steps may be its pieces.
@@ -89,7 +91,7 @@ diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  const std::vector<Reading> all = AnglesOf(recorded);
+  const std::vector<Reading> all = AnglesOf(recorded, scenario);
   std::vector<Reading> looked_at = diagnose::encoder::PartOf(all);
   diagnose::DiagnosisRun result = DiagnoseAll(looked_at, scenario, options);
   if (looked_at.size() == all.size()) return result;
@@ -106,7 +108,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
-  return diagnose::encoder::BuildRun(diagnose::encoder::PartOf(AnglesOf(readings)), scenario, FollowRecord).run;
+  return diagnose::encoder::BuildRun(diagnose::encoder::PartOf(AnglesOf(readings, scenario)), scenario, FollowRecord).run;
 }
 
 }  // namespace twinbench::benches::encoder

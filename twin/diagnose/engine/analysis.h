@@ -17,6 +17,7 @@ struct AnalysisOptions {
   const NullCalibration* null = nullptr;  // of a design that is the same but for its unknowns; else simulated
   bool design_only = false;               // no search
   bool largest_only = false;              // the first large cause with a name, to be asked about: see Search
+  int most_orders = 0;                    // see SearchExtent
 };
 
 /// A run searched with a noise model that its own residuals do not refute.

@@ -40,6 +40,20 @@ bool IsRounding(const SearchProblem& problem, const Deflation& others, const Ter
   return sigma * std::sqrt(power / problem.run.Rows()) < largest;
 }
 
+/// A cause that is a wave of a whole order.
+bool IsWholeOrder(const Family& family) {
+  return family.kind == Kind::kNamed && !family.at && family.amplitudes.front().name == "cosine";
+}
+
+bool HasRoom(const SearchProblem& problem, const std::vector<Term>& terms, const Term& more) {
+  const auto count = std::ssize(terms);
+  const auto is_order = [&](const Term& term) {
+    return IsWholeOrder(problem.scanner.Families()[static_cast<std::size_t>(term.family)]);
+  };
+  return count < problem.extent.most_causes ||
+         (count < problem.extent.most_orders && is_order(more) && std::ranges::all_of(terms, is_order));
+}
+
 void Forward(const SearchProblem& problem, SearchResult& result) {
   while (true) {
     const Deflation others(problem.projector, ColumnsWithout(problem, result.terms, -1));
@@ -51,10 +65,10 @@ void Forward(const SearchProblem& problem, SearchResult& result) {
       result.first_statistic = term.statistic;
       result.alone = evidence;
     }
-    if (term.statistic < problem.threshold || std::ssize(result.terms) == problem.most_causes) return;
+    if (term.statistic < problem.threshold || !HasRoom(problem, result.terms, term)) return;
     result.joint_evidence += term.statistic;
     result.terms.push_back(term);
-    if (problem.largest_only && problem.IsNamed(term.family)) return;
+    if (problem.extent.largest_only && problem.IsNamed(term.family)) return;
   }
 }
 
@@ -131,11 +145,11 @@ void TryFirst(SearchProblem problem, const IsOneOf& is_last, int most, SearchRes
   if (!HasAny(problem, result.terms, is_last)) return;
   SearchResult first;
   SearchProblem plain = Without(problem, is_last);
-  plain.most_causes = std::max(most, problem.most_causes);
+  plain.extent.most_causes = std::max(most, problem.extent.most_causes);
   Forward(plain, first);
   if (first.terms.size() < 2 || first.joint_evidence <= result.joint_evidence) return;
   if (AreInPieces(problem, first.terms)) return;
-  problem.most_causes = std::max(plain.most_causes, static_cast<int>(std::ssize(first.terms)) + 1);
+  problem.extent.most_causes = std::max(plain.extent.most_causes, static_cast<int>(std::ssize(first.terms)) + 1);
   Forward(problem, first);
   Settle(problem, first);
   first.first_statistic = result.first_statistic;
@@ -146,20 +160,20 @@ void TryFirst(SearchProblem problem, const IsOneOf& is_last, int most, SearchRes
 }  // namespace
 
 SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
-                    const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold, int most_causes,
-                    bool largest_only) {
-  const SearchProblem problem{run,       noise,       projector,    scanner,
-                        log_priors, threshold,  most_causes,  largest_only, noise.Whiten(run, run.residual)};
+                    const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold,
+                    const SearchExtent& extent) {
+  const SearchProblem problem{run,        noise,     projector, scanner,
+                              log_priors, threshold, extent,    noise.Whiten(run, run.residual)};
   SearchResult result;
   Forward(problem, result);
-  if (!largest_only) {
+  if (!extent.largest_only) {
     Settle(problem, result);
     TryFirst(problem, [](const Family& f) { return f.takes_any_course; }, tuning::kMostBeforeCourses, result);
-    TryFirst(problem, [](const Family& f) { return f.kind == Kind::kUnknown; }, most_causes, result);
+    TryFirst(problem, [](const Family& f) { return f.kind == Kind::kUnknown; }, extent.most_causes, result);
   }
   MeasureShares(problem, result.terms);
   EstimateTerms(run, noise, projector, scanner, problem.white, result.terms);
-  if (!largest_only && HasNamedWave(scanner.Families(), result.terms))
+  if (!extent.largest_only && HasNamedWave(scanner.Families(), result.terms))
     result.overtones = ProbabilityOfOvertones(run, noise, projector, scanner.Families(), problem.white, result.terms,
                                               ColumnsWithout(problem, result.terms, -1));
   return result;

@@ -32,15 +32,22 @@ struct SearchResult {
   Evidence alone;                // the first scan
 };
 
-/// Finds up to `most_causes` simultaneous causes: scan, take the most probable, refine its shape, scan what
+/// How far a search goes.
+struct SearchExtent {
+  int most_causes;
+  int most_orders = 0;  // causes where all that are found are whole orders, if that is more: what there is no room for
+                        // would look like noise that remembers itself
+  /// Only the first cause with a name is wanted, and what it stands behind: the largest first, and of what explains nearly
+  /// as much the one that has a name. As long as much is not explained, shapes without one follow parts of it. Nothing is
+  /// selected again.
+  bool largest_only = false;
+};
+
+/// Finds simultaneous causes: scan, take the most probable, refine its shape, scan what
 /// remains; then select every term again with the others accepted (swaps), and drop those that are not
 /// needed any more.
-///
-/// @param largest_only  Only the first cause with a name is wanted, and what it stands behind: the largest first, and of
-/// what explains nearly as much the one that has a name. As long as much is not explained, shapes without one follow
-/// parts of it. Nothing is selected again.
 SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
-                    const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold, int most_causes,
-                    bool largest_only = false);
+                    const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold,
+                    const SearchExtent& extent);
 
 }  // namespace twinbench::diagnose

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "twin/core/errors.h"
 #include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/engine/holding.h"
 #include "twin/diagnose/engine/prior.h"
@@ -74,9 +75,9 @@ Eigen::VectorXd LogPosterior(const SearchProblem& problem, const Evidence& evide
 int FirstOfTheBest(const Eigen::VectorXd& log_posterior) {
   constexpr double kSame = 0.1;  // log
   const double best = log_posterior.maxCoeff();
-  int first = 0;
-  while (!(log_posterior[first] >= best - kSame)) ++first;
-  return first;
+  const auto found = std::ranges::find_if(log_posterior, [&](double log) { return log >= best - kSame; });
+  Require(found != log_posterior.end(), "evidence is a number");
+  return static_cast<int>(found - log_posterior.begin());
 }
 
 /// Leaves the place to what has a name and explains nearly as much as the shape without one that is more probable
@@ -101,7 +102,7 @@ void TakeAmong(const SearchProblem& problem, const std::map<int, Eigen::VectorXd
                Term& term) {
   term.log_posterior = LogPosterior(problem, evidence);
   term.family = FirstOfTheBest(term.log_posterior.head(evidence.log_bayes.rows()));
-  if (problem.largest_only && !problem.IsNamed(term.family)) {
+  if (problem.extent.largest_only && !problem.IsNamed(term.family)) {
     LeaveToNamed(problem, evidence, term.family, term.log_posterior);
     term.family = FirstOfTheBest(term.log_posterior.head(evidence.log_bayes.rows()));
   }

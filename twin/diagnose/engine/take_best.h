@@ -18,8 +18,7 @@ struct SearchProblem {
   const Scanner& scanner;
   Eigen::VectorXd log_priors;
   double threshold;
-  int most_causes;
-  bool largest_only;
+  SearchExtent extent;
   Eigen::MatrixXd white;  // the residual, rows x 1
 
   bool IsNamed(int family) const {

@@ -93,7 +93,7 @@ void AddBySpeed(Collector& collect) {
   collect.Add("speed", speed, "proportional to the speed, even in direction");
   is_constant("speed");
   collect.Add("speed", v.cwiseProduct(speed), "proportional to the square of the speed, odd in direction");
-  collect.Add("speed", model::Unit(model::RateOfChange(d.course, d.velocity)), "proportional to the acceleration");
+  collect.Add("speed", model::Unit(model::SteadyCourseOf(d.course, d.velocity).rate), "proportional to the acceleration");
   if (d.angles.empty()) return;
   const Angle& angle = d.angles.front();
   const std::string order = "order {} synchronous with " + angle.name;

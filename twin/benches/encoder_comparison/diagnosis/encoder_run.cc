@@ -93,7 +93,7 @@ double Roughness_rad(const LinearRun& run) {
 /// then their median says nothing.
 /// @return that error where it is what the readings scatter by; 0 otherwise.
 double RoundedReference_rad(const LinearRun& run, double noise_rad) {
-  constexpr double kNothing = 0.01, kAlike = 2.0, kFine = 0.1;  // the last: of the way to the next reading
+  constexpr double kNothing = 0.01, kAlike = 2.0, kFine = 0.25;  // the last: of the way to the next reading
   const double roughness_rad = Roughness_rad(run);
   const double step_rad = CommonStep(run.schedule.reference_rad), rounded_rad = step_rad / std::sqrt(12.0);
   const bool is_alike = rounded_rad > roughness_rad / kAlike && rounded_rad < roughness_rad * kAlike;
@@ -114,9 +114,10 @@ void SetNoise(LinearRun& run, const EncoderSettings& bench, const std::vector<Re
   double noise_rad = run.sigma_stated
                          ? DeviceOfMeans(bench).noise_rad
                          : std::max(EstimateNoise_rad(run.schedule, run.residual, relative), kArithmetic_rad);
-  if (!run.sigma_stated) noise_rad = std::max(noise_rad, RoundedReference_rad(run, noise_rad));
+  const double of_reference_rad = run.sigma_stated ? 0.0 : RoundedReference_rad(run, noise_rad);
+  noise_rad = std::max(noise_rad, of_reference_rad);
   const RoundingInMean rounding_rad2 = RoundingOf(step_rad, std::sqrt(count) * noise_rad, count);
-  run.rounding = std::sqrt(12.0 * rounding_rad2.repeated);
+  run.rounding = std::sqrt(12.0 * std::max(rounding_rad2.repeated, of_reference_rad * of_reference_rad));
   const double rounded_rad = std::sqrt(rounding_rad2.all);
   const auto and_rounding = [=](double own_rad) { return std::hypot(own_rad, rounded_rad); };
   run.sigma = relative * noise_rad;

@@ -34,6 +34,19 @@ std::vector<double> Spacings_rad(const SignalContext& c) {
   return spacings;
 }
 
+/// Gone through in one set-up, the longest: each has an offset of its own.
+double RangeOfSetUp_rad(const SignalContext& c) {
+  std::map<int, std::pair<double, double>> ends_rad;  // least and largest angle
+  for (Eigen::Index i = 0; i < c.Readings(); ++i) {
+    auto& [least, largest] = ends_rad.try_emplace(c.setup[i], c.reference_rad[i], c.reference_rad[i]).first->second;
+    least = std::min(least, c.reference_rad[i]);
+    largest = std::max(largest, c.reference_rad[i]);
+  }
+  double range_rad = 0.0;
+  for (const auto& [setup, ends] : ends_rad) range_rad = std::max(range_rad, ends.second - ends.first);
+  return range_rad;
+}
+
 /// How much of what is left, in units of noise, columns explain that the free unknowns cannot.
 double ExplainedBy(const EncoderRun& encoder, const Eigen::MatrixXd& columns) {
   const Eigen::MatrixXd free = encoder.run.nuisance.jacobian.toDense();
@@ -70,9 +83,12 @@ double FinestSpacing_rad(const SignalContext& context) {
 }
 
 int LeastOrder(const SignalContext& context) {
-  constexpr double kLeast = 0.6;  // of a period
-  const double range_rad = context.reference_rad.maxCoeff() - context.reference_rad.minCoeff();
-  return range_rad > 0.0 ? std::max(1, static_cast<int>(std::ceil(kLeast * units::turn / range_rad))) : 1;
+  constexpr int kLastWithReason = 2;                  // a scale off its axis, out of round or tilted
+  constexpr double kLeast = 0.6, kWithoutReason = 0.9;  // of a period; less is a curve like any other
+  const double range_rad = RangeOfSetUp_rad(context);
+  if (!(range_rad > 0.0)) return 1;
+  const auto of = [&](double periods) { return static_cast<int>(std::ceil(periods * units::turn / range_rad)); };
+  return of(kLeast) <= kLastWithReason ? std::max(1, of(kLeast)) : std::max(kLastWithReason + 1, of(kWithoutReason));
 }
 
 int LargestOrder(const SignalContext& context) {

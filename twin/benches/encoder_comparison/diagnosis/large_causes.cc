@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_search.h"
 #include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
 #include "twin/benches/encoder_comparison/diagnosis/twin_fit.h"
@@ -17,11 +18,11 @@ namespace {
 constexpr std::array kLoops = {"backlash", "hysteresis"};
 
 /// Large or not.
-bool HasLoop(const LargeCauses& large) {
+std::ptrdiff_t LoopsIn(const LargeCauses& large) {
   const auto is_loop = [](const std::string& effect) { return std::ranges::count(kLoops, effect) > 0; };
   const Searched& last = large.Last();
-  return std::ranges::any_of(large.causes, [&](const LargeCause& cause) { return is_loop(cause.effect.name); }) ||
-         std::ranges::any_of(last.analysis.found.terms, [&](const Term& term) {
+  return std::ranges::count_if(large.causes, [&](const LargeCause& cause) { return is_loop(cause.effect.name); }) +
+         std::ranges::count_if(last.analysis.found.terms, [&](const Term& term) {
            return is_loop(last.families[static_cast<std::size_t>(term.family)].effect);
          });
 }
@@ -47,15 +48,36 @@ bool IsBetterNamed(const LargeCauses& a, const LargeCauses& b) {
   return more < -kStrongly;
 }
 
+/// A gap that is over before the shaft has gone over it: the device would go back, which a delay does where the shaft turns at
+/// once.
+bool HasCrossedTooSoon(const LargeCauses& large) {
+  constexpr double kTooSoon = 0.7, kFine = 0.3;  // of the width
+  const double spacing_rad = FinestSpacing_rad(large.first->encoder.context);
+  const auto is_too_soon = [&](double width_rad, double way_rad) {
+    return way_rad < kTooSoon * std::abs(width_rad) && spacing_rad < kFine * std::abs(width_rad);
+  };
+  const Searched& last = large.Last();
+  return std::ranges::any_of(large.causes, [&](const LargeCause& cause) {
+    return cause.effect.name == "backlash" &&
+           is_too_soon(cause.effect.parameters.at("width"), cause.effect.parameters.at("crossed_over"));
+  }) || std::ranges::any_of(last.analysis.found.terms, [&](const Term& term) {
+    const Family& family = last.families[static_cast<std::size_t>(term.family)];
+    const bool has_way = family.effect == "backlash" && family.shapes.front().name == "crossed_over";
+    return has_way && is_too_soon(term.amplitudes[0], term.shape[0]);
+  });
+}
+
 /// On the move a loop may stand for several causes at once that are plain: for a lag and a scale, say.
 LargeCauses OrWithoutLoops(LargeCauses found, const std::vector<Reading>& readings, const Scenario& scenario,
                            DiagnoseOptions options, const model::FollowMaker& follow) {
-  constexpr double kNearly = 1.02;
-  if (!HasLoop(found) || !found.first->encoder.context.Moves()) return found;
+  constexpr double kNearly = 1.02, kRoughly = 1.5;
+  if (LoopsIn(found) == 0 || !found.first->encoder.context.Moves()) return found;
   options.excluded.insert(options.excluded.end(), kLoops.begin(), kLoops.end());
   options.excluded.emplace_back("slip");  // an onset is no plainer than a reversal
-  std::optional<LargeCauses> plain = LargeSearch(readings, scenario, options, follow, {}).Go(kNearly * found.left);
-  return plain && IsBetterNamed(*plain, found) ? *std::move(plain) : std::move(found);
+  const bool is_implausible = HasCrossedTooSoon(found) || LoopsIn(found) > 1;  // one against the other they show anything
+  std::optional<LargeCauses> plain =
+      LargeSearch(readings, scenario, options, follow, {}).Go((is_implausible ? kRoughly : kNearly) * found.left);
+  return plain && (is_implausible || IsBetterNamed(*plain, found)) ? *std::move(plain) : std::move(found);
 }
 
 /// A scale that errs, where a straight line leaves little of what is seen at some targets: these have then no more
@@ -95,6 +117,8 @@ LargeCauses FindLargeCauses(const std::vector<Reading>& readings, const Scenario
                                      options, follow);
   const Eigen::MatrixXd targets = Targets(plain.first->encoder.context);
   if (targets.size() == 0 || !LeaveErrorsOfTargets(plain, targets)) return plain;
+  const Eigen::MatrixXd few = TargetsThatStandOut(plain.first->encoder, targets);
+  if (few.cols() < targets.cols()) return *LargeSearch(readings, scenario, options, follow, few).Go();
   const TwinFit fit(plain, scenario, follow);
   std::optional<LargeCause> line = LineThroughTargets(fit, targets.cols());
   if (!line) return *LargeSearch(readings, scenario, options, follow, targets).Go();

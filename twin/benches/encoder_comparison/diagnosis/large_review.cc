@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
+#include <map>
 
+#include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/diagnosis/memory.h"
 #include "twin/benches/encoder_comparison/diagnosis/ties.h"
 #include "twin/benches/encoder_comparison/diagnosis/wander.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/engine/answer.h"
 #include "twin/diagnose/tuning.h"
 
@@ -18,6 +20,11 @@ namespace {
 bool IsOfAngle(const EffectSettings& effect) {
   constexpr std::array kOfTurn = {"eccentricity", "ellipticity", "signal_offset", "amplitude_mismatch", "quadrature_error"};
   return WaveOrderOf(effect) || std::ranges::count(kOfTurn, effect.name) > 0;
+}
+
+/// As if what was found were not there.
+void TellNothing(Searched& searched) {
+  searched.analysis.found.first_statistic = searched.analysis.found.last_statistic;
 }
 
 }  // namespace
@@ -40,10 +47,10 @@ void LargeSearch::LeaveToLarge() {
   std::vector<Term>& terms = last.analysis.found.terms;
   const SecondOrder bent = Bent();
   if (std::erase_if(terms, [&](const Term& term) { return bent.MayBe(term.columns * term.amplitudes); }) > 0 && terms.empty())
-    last.analysis.found.first_statistic = last.analysis.found.last_statistic;  // as if it were not there
-  if (!large_.last || terms.empty()) return;
+    TellNothing(last);
+  if (terms.empty() || (large_.causes.empty() && written_.empty())) return;
   const double least = LeastExplained();
-  const Eigen::VectorXd left = Left(Beside());
+  const Eigen::VectorXd left = Left(LeftByTerms());
   const auto is_of_large = [&](const Term& term) {
     const Family& family = last.families[static_cast<std::size_t>(term.family)];
     return std::ranges::any_of(large_.causes, [&](const LargeCause& cause) {
@@ -52,23 +59,41 @@ void LargeSearch::LeaveToLarge() {
   };
   double least_odd = 0.0;  // passes of both directions tell it from what is the same in them
   for (const LargeCause& cause : large_.causes) least_odd += IsOfAngle(cause.effect) ? 0.0 : kAsExact * cause.explained;
+  for (const Written& written : written_) least_odd += IsOfAngle(written.effect) ? 0.0 : kAsExact * written.explained;
   std::erase_if(terms, [&](const Term& term) {
     const bool is_odd = last.families[static_cast<std::size_t>(term.family)].effect.starts_with("direction");
     return term.explained < (is_odd ? least_odd : least) || is_of_large(term) || IsChance(term, left);
   });
+  if (large_.causes.empty() && terms.empty()) TellNothing(last);
 }
+
 
 /// Of what was found before, too: a file that was written has no more than the first order.
 SecondOrder LargeSearch::Bent() const {
   std::vector<EffectSettings> effects = EffectsOf(large_.causes);
-  std::ranges::copy_if(scenario_.effects, std::back_inserter(effects),
-                       [](const EffectSettings& e) { return !e.finding.provenance.empty(); });
+  for (const Written& written : written_) effects.push_back(written.effect);
   return {effects, large_.first->encoder};
 }
 
-/// What all large causes explain together is exact to this.
+/// What an earlier diagnosis wrote is no more exact than what this one takes.
+void LargeSearch::WeighWritten() {
+  for (std::size_t k = 0; k < scenario_.effects.size(); ++k) {
+    if (scenario_.effects[k].finding.provenance.empty()) continue;
+    Scenario without = scenario_;
+    without.effects.erase(without.effects.begin() + static_cast<std::ptrdiff_t>(k));
+    const EncoderRun& encoder = large_.first->encoder;
+    const Eigen::VectorXd left =
+        encoder.error_rad - FollowTwin(encoder, without, follow_, encoder.offset_rad).error_rad;
+    written_.push_back({scenario_.effects[k], std::max(0.0, fit_->PowerOf(left) - power_)});
+  }
+}
+
+/// What all large causes explain together is exact to this, with those that the scenario has of an earlier diagnosis: what
+/// that left out, in a noise that it knew less well, is not taken by this one.
 double LargeSearch::LeastExplained() const {
+  constexpr double kAgain = 1.5;
   double explained = 0.0;
+  for (const Written& written : written_) explained += kAgain * written.explained;
   for (const LargeCause& cause : large_.causes) explained += cause.explained;
   return kAsExact * explained;
 }
@@ -78,11 +103,11 @@ Eigen::VectorXd LargeSearch::Left(const Eigen::VectorXd& beside) const {
   return fit_->WhiteOf(large_.causes.empty() ? beside : fit_->Ask(large_.causes, beside).left);
 }
 
-/// @param left  With a random walk in it (Beside), which is no noise beside itself.
+/// @param left  With a random walk in it (LeftByTerms), which is no noise beside itself.
 bool LargeSearch::IsChance(const Term& term, const Eigen::VectorXd& left) const {
   const Eigen::VectorXd shown = term.columns * term.amplitudes, own = fit_->WhiteOf(shown);
   const bool is_walk = FollowsWalk(large_.Last().families[static_cast<std::size_t>(term.family)], term.columns);
-  const Eigen::VectorXd others = is_walk ? Left(Beside() - shown) : left;
+  const Eigen::VectorXd others = is_walk ? Left(LeftByTerms() - shown) : left;
   const double noise = others.squaredNorm() / static_cast<double>(others.size());
   return own.squaredNorm() < std::pow(tuning::kHeadline, 2) * noise * MemoryAlong(own, others);
 }
@@ -108,7 +133,7 @@ void LargeSearch::DropNeedless() {
 /// Of each large cause, how many of its uncertainties it is away from nothing, with the memory of the rest; 0 of what
 /// is less than the others are as exact as their formula.
 std::vector<double> LargeSearch::Strengths() const {
-  const AskedAgain beside = fit_->Ask(large_.causes, Beside());
+  const AskedAgain beside = fit_->Ask(large_.causes, LeftByTerms());
   const Eigen::VectorXd left = fit_->WhiteOf(beside.left);
   const double memory = fit_->Memory(beside.left), least = LeastExplained();
   std::vector<double> strengths;
@@ -125,6 +150,7 @@ std::vector<double> LargeSearch::Strengths() const {
 void LargeSearch::SearchPlain() {
   large_.causes.clear();
   large_.last.reset();
+  slopes_.resize(0, 0);
   most_searched_ = kFewCauses;
   SearchOn();
 }
@@ -159,21 +185,97 @@ std::vector<Cause> LargeSearch::InPlaceOf(std::size_t k) const {
   return AnswerOf(searched->analysis.found, 0, searched->families).causes;
 }
 
+/// What the last search found and has a name.
+std::vector<Term*> LargeSearch::NamedTerms() {
+  Searched& last = large_.last ? *large_.last : *large_.first;
+  std::vector<Term*> named;
+  for (Term& term : last.analysis.found.terms)
+    if (last.families[static_cast<std::size_t>(term.family)].kind == Kind::kNamed) named.push_back(&term);
+  return named;
+}
+
+/// Large causes beside what the last search found: what of it has a name is free.
+LargeSearch::Beside LargeSearch::AskBeside(const std::vector<LargeCause>& causes) {
+  Beside beside{{}, Eigen::MatrixXd(large_.first->encoder.run.Rows(), 0), {}};
+  Eigen::VectorXd named = Eigen::VectorXd::Zero(beside.columns.rows());
+  for (const Term* term : NamedTerms()) {
+    named += term->columns * term->amplitudes;
+    beside.columns.conservativeResize(Eigen::NoChange, beside.columns.cols() + term->columns.cols());
+    beside.columns.rightCols(term->columns.cols()) = term->columns;
+  }
+  Nuisance free = large_.first->encoder.run.nuisance;
+  const Eigen::VectorXd any = Eigen::VectorXd::Constant(beside.columns.cols(), 1.0 / std::sqrt(free.prior_precision[0]));
+  LeaveFree({{}, {}, beside.columns, any}, free);
+  beside.asked = fit_->Ask(causes, LeftByTerms() + named, free);
+  beside.left = beside.asked.left - named;
+  return beside;
+}
+
 /// What is small was found with the parameters of the large causes free: these go to where they are best beside
-/// it.
+/// it, and it goes with them.
 void LargeSearch::MoveBesideTheRest() {
   if (large_.causes.empty()) return;
-  AskedAgain asked = fit_->Ask(large_.causes, Beside());
-  const double more = std::sqrt(fit_->Memory(asked.left));
-  for (EffectSettings& effect : asked.effects) {
+  Beside beside = AskBeside(large_.causes);
+  const double more = std::sqrt(fit_->Memory(beside.left));
+  for (EffectSettings& effect : beside.asked.effects) {
     for (auto& [parameter, u] : effect.finding.u) u *= more;
   }
-  TakeOver(asked, large_.causes);
+  TakeOver(beside.asked, large_.causes);
+  if (beside.columns.cols() == 0) return;
+  const Eigen::VectorXd weight = large_.first->encoder.run.sigma.cwiseInverse();
+  const Eigen::VectorXd moved = SolveShortest(fit_->projector().Apply(weight.asDiagonal() * beside.columns), fit_->WhiteOf(beside.left));
+  Eigen::Index at = 0;
+  for (Term* term : NamedTerms()) {
+    term->amplitudes += moved.segment(at, term->columns.cols());
+    at += term->columns.cols();
+  }
+}
+
+/// Whether stops were reached in their direction or straight shows where the shaft turned, which is a matter of a few readings:
+/// it is asked again when all else is there, of a gap that is crossed at once.
+/// @return true if the other way is better.
+bool LargeSearch::ApproachOtherwise() {
+  if (large_.first->encoder.context.Moves()) return false;
+  for (std::size_t k = 0; k < large_.causes.size(); ++k) {
+    std::vector<LargeCause> causes = large_.causes;
+    std::map<std::string, double>& parameters = causes[k].effect.parameters;
+    const auto approach = parameters.find("approach"), way = parameters.find("crossed_over");
+    if (approach == parameters.end()) continue;
+    approach->second = approach->second > 0.5 ? 0.0 : 1.0;
+    if (way != parameters.end()) way->second = std::min(way->second, FinestSpacing_rad(large_.first->encoder.context));
+    if (AskBeside(causes).asked.power > AskBeside(large_.causes).asked.power - kBetter) continue;
+    const AskedAgain asked = fit_->Ask(causes);
+    Accept(asked, std::move(causes), kMostCauses);
+    LeaveToLarge();
+    return true;
+  }
+  return false;
+}
+
+/// What others make look bent is straight beside them.
+/// @return true if there was such a cause.
+bool LargeSearch::Straighten() {
+  constexpr double kSeen = 2.0;  // of its uncertainty
+  std::vector<LargeCause> causes = large_.causes;
+  bool is_changed = false;
+  for (LargeCause& cause : causes) {
+    std::vector<ParameterEstimate>& parameters = cause.causes.front().parameters;
+    const auto needless = [](const ParameterEstimate& p) { return p.name == "curvature" && std::abs(p.value) < kSeen * p.u; };
+    if (std::erase_if(parameters, needless) == 0) continue;
+    cause.effect.parameters["curvature"] = 0.0;
+    cause.effect.finding.u.erase("curvature");
+    is_changed = true;
+  }
+  if (!is_changed || AskBeside(causes).asked.power > AskBeside(large_.causes).asked.power + kBetter) return false;
+  const AskedAgain asked = fit_->Ask(causes);
+  Accept(asked, std::move(causes), kMostCauses);
+  LeaveToLarge();
+  return true;
 }
 
 /// What is left for the large causes once the last search has explained the rest. A random walk is noise beside them: its many
 /// shapes would follow whatever they miss.
-Eigen::VectorXd LargeSearch::Beside() const {
+Eigen::VectorXd LargeSearch::LeftByTerms() const {
   Eigen::VectorXd rows = large_.first->encoder.run.residual;
   const Searched& last = large_.Last();
   for (const Term& term : last.analysis.found.terms) {

@@ -5,9 +5,11 @@
 #include <complex>
 #include <map>
 
+#include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
 #include "twin/benches/encoder_comparison/diagnosis/wander.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/answer.h"
 
@@ -26,18 +28,8 @@ void TellSignalZero(const std::vector<EffectSettings>& effects, DeviceSettings& 
   }
 }
 
-/// The parameters of what is in the twin stay free: rows x (what was free, slopes).
-void LeaveFree(const AskedAgain& asked, Nuisance& nuisance) {
-  const Eigen::Index had = nuisance.jacobian.cols(), count = asked.slopes.cols();
-  Eigen::MatrixXd all(nuisance.jacobian.rows(), had + count);
-  all << nuisance.jacobian.toDense(), asked.slopes;
-  nuisance.jacobian = all.sparseView();
-  nuisance.prior_precision.conservativeResize(had + count);
-  nuisance.prior_precision.tail(count) = asked.sd.cwiseAbs2().cwiseInverse();
-}
-
 /// Errors of targets may be anything.
-void LeaveFree(const Eigen::MatrixXd& targets, EncoderRun& encoder) {
+void LeaveTargetsFree(const Eigen::MatrixXd& targets, EncoderRun& encoder) {
   encoder.targets = targets;
   Nuisance& nuisance = encoder.run.nuisance;
   const double precision = nuisance.prior_precision[0];
@@ -45,6 +37,35 @@ void LeaveFree(const Eigen::MatrixXd& targets, EncoderRun& encoder) {
   any.slopes = targets;
   any.sd = Eigen::VectorXd::Constant(targets.cols(), 1.0 / std::sqrt(precision));
   if (targets.cols() > 0) LeaveFree(any, nuisance);
+}
+
+/// Rows of each column without the offsets of the set-ups.
+Eigen::MatrixXd BesideSetUps(const EncoderRun& encoder, Eigen::MatrixXd columns) {
+  for (auto column : columns.colwise()) column = encoder.BesideSetUps(column);
+  return columns;
+}
+
+/// Beside parameters that are free a shape without a name that is much like what they show may have any size, and they
+/// the opposite one: where it adds little to what they explain it has what they cannot show.
+/// @param free  What the parameters of the large causes show.
+void LeaveSharedToLarge(const Eigen::MatrixXd& free, const std::vector<LargeCause>& causes, Searched& searched) {
+  constexpr double kMuchAlike = 0.5, kLittle = 0.05;
+  if (free.cols() == 0) return;
+  double explained = 0.0;
+  for (const LargeCause& cause : causes) explained += cause.explained;
+  const Eigen::MatrixXd slopes = BesideSetUps(searched.encoder, free);
+  for (Term& term : searched.analysis.found.terms) {
+    const bool is_unnamed = searched.families[static_cast<std::size_t>(term.family)].kind == Kind::kUnknown;
+    if (!is_unnamed || term.explained > kLittle * explained) continue;
+    const Eigen::MatrixXd shown = BesideSetUps(searched.encoder, term.columns);
+    Eigen::MatrixXd own = shown;
+    for (auto column : own.colwise()) column -= slopes * SolveShortest(slopes, Eigen::VectorXd(column));
+    const double share = (own * term.amplitudes).norm() / (shown * term.amplitudes).norm();
+    if (!(share < kMuchAlike) || !(share > 0.0)) continue;
+    term.columns = own / share;
+    term.amplitudes *= share;
+    term.cov *= share * share;
+  }
 }
 
 /// They are pieces of one wave.
@@ -93,18 +114,22 @@ AnalysisOptions LargeSearch::For(int most_causes) const {
   AnalysisOptions how = how_;
   how.most_causes = most_causes;
   how.largest_only = most_causes < kMostCauses;
+  // Over a part of a turn low orders are the pieces of any course.
+  const bool is_turn = large_.first && LeastOrder(large_.first->encoder.context) == 1;
+  if (!how.largest_only && is_turn) how.most_orders = kMostOrders;
   return how;
 }
 
 void LargeSearch::Begin() {
   EncoderRun begin = BuildRun(readings_, scenario_, follow_);
-  LeaveFree(large_.targets, begin);
+  LeaveTargetsFree(large_.targets, begin);
   large_.first = SearchIn(std::move(begin), options_.excluded, For(kFewCauses));
   most_searched_ = kFewCauses;
   null_ = large_.first->analysis.null;
   how_.null = &null_;
   fit_.emplace(large_, scenario_, follow_);
   power_ = fit_->PowerOf(fit_->Run().run.residual);
+  WeighWritten();
 }
 
 /// What was held until all moved together beside the rest, and is anybody's guess then, has to go.
@@ -117,6 +142,7 @@ void LargeSearch::Review() {
     DropNeedless();
     EndTies();
     MoveBesideTheRest();
+    while (ApproachOtherwise() || Straighten()) MoveBesideTheRest();
   }
 }
 
@@ -145,6 +171,7 @@ bool LargeSearch::SearchOn() {
   if (most_searched_ == kMostCauses || last->analysis.found.terms.empty()) return false;
   last->analysis.scanner.reset();
   last = SearchIn(std::move(last->encoder), Excluded(large_.causes), For(kMostCauses));
+  LeaveSharedToLarge(slopes_, large_.causes, *last);
   most_searched_ = kMostCauses;
   return true;
 }
@@ -163,6 +190,7 @@ void LargeSearch::Accept(const AskedAgain& asked, std::vector<LargeCause> causes
   auto searched = SearchWith(asked, causes, For(most_causes));
   most_searched_ = most_causes;
   TakeOver(asked, causes);
+  slopes_ = asked.slopes;
   power_ = fit_->PowerOf(asked.left);
   large_.causes = std::move(causes);
   large_.last = std::move(searched);
@@ -215,7 +243,7 @@ bool LargeSearch::TakeSum(std::size_t k, const LargeCause& more) {
 /// Errors of targets are free.
 EncoderRun LargeSearch::RunWith(const std::vector<EffectSettings>& effects) const {
   EncoderRun encoder = BuildRun(readings_, fit_->With(effects), follow_);
-  LeaveFree(large_.targets, encoder);
+  LeaveTargetsFree(large_.targets, encoder);
   return encoder;
 }
 
@@ -224,7 +252,9 @@ std::unique_ptr<Searched> LargeSearch::SearchWith(const AskedAgain& asked, const
   EncoderRun encoder = RunWith(asked.effects);
   LeaveFree(asked, encoder.run.nuisance);
   TellSignalZero(asked.effects, encoder.context.device);
-  return SearchIn(std::move(encoder), Excluded(causes), how);
+  std::unique_ptr<Searched> searched = SearchIn(std::move(encoder), Excluded(causes), how);
+  LeaveSharedToLarge(asked.slopes, causes, *searched);
+  return searched;
 }
 
 }  // namespace twinbench::diagnose::encoder

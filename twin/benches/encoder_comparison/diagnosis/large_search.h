@@ -21,9 +21,16 @@ class LargeSearch {
   std::optional<LargeCauses> Go(double most_left = std::numeric_limits<double>::infinity());
 
  private:
+  /// Large causes fitted with what stands beside them free: columns of that, and what both leave.
+  struct Beside {
+    AskedAgain asked;
+    Eigen::MatrixXd columns;
+    Eigen::VectorXd left;
+  };
+
   /// An angle device may well have an error of many orders. As long as something large is found, the first few are
   /// enough: what a large cause leaves to first order is explained by shapes that are gone once the twin has it.
-  static constexpr int kMostCauses = 8, kFewCauses = 3;
+  static constexpr int kMostCauses = 8, kFewCauses = 3, kMostOrders = 32;
 
   AnalysisOptions For(int most_causes) const;
   void Begin();
@@ -40,6 +47,7 @@ class LargeSearch {
                                        const AnalysisOptions& how) const;
 
   void Review();
+  void WeighWritten();
   void LeaveToLarge();
   double LeastExplained() const;
   Eigen::VectorXd Left(const Eigen::VectorXd& beside) const;
@@ -51,10 +59,20 @@ class LargeSearch {
   void EndTies();
   void JudgeUnsure();
   std::vector<Cause> InPlaceOf(std::size_t k) const;
+  std::vector<Term*> NamedTerms();
+  Beside AskBeside(const std::vector<LargeCause>& causes);
   void MoveBesideTheRest();
-  Eigen::VectorXd Beside() const;
+  bool ApproachOtherwise();
+  bool Straighten();
+  Eigen::VectorXd LeftByTerms() const;
   void TellWhatEachShows();
   void TellWhatNamesLeave();
+
+  /// An effect of the scenario that a diagnosis wrote, and the power that it explains.
+  struct Written {
+    EffectSettings effect;
+    double explained;
+  };
 
   const std::vector<Reading>& readings_;
   const Scenario& scenario_;
@@ -65,6 +83,8 @@ class LargeSearch {
   LargeCauses large_;
   int most_searched_ = kFewCauses;  // causes that the last search might take
   std::optional<TwinFit> fit_;
+  std::vector<Written> written_;
+  Eigen::MatrixXd slopes_;  // of the large causes, as the last search left them free
   double power_ = 0.0;
 };
 

@@ -14,12 +14,9 @@ namespace {
 
 using model::Wave;
 
-/// Whole orders, closer than the part of a turn that was gone through can tell them apart: what lies between two
-/// would be told as both.
 std::vector<double> WholeOrders(const SignalContext& c, int first, int last) {
-  const int apart = std::max(1, LeastOrder(c) / 12);
   std::vector<double> orders;
-  for (int k = std::max(first, LeastOrder(c)); k <= last; k += apart) orders.push_back(k);
+  for (int k = std::max(first, LeastOrder(c)); k <= last; ++k) orders.push_back(k);
   return orders;
 }
 

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "twin/benches/encoder_comparison/diagnosis/target_curve.h"
+#include "twin/core/distributions.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/model/signals.h"
@@ -111,6 +112,22 @@ bool LeaveErrorsOfTargets(const LargeCauses& large, const Eigen::MatrixXd& targe
   constexpr double kFewer = 0.4;
   const bool is_met_by_chance = NumbersByAngle(large) > kFewer * (stops - 1.0);
   return in_pieces || is_met_by_chance || shapes >= kSeveral || (!is_small && between > kClearly * (within + rounding));
+}
+
+Eigen::MatrixXd TargetsThatStandOut(const EncoderRun& encoder, const Eigen::MatrixXd& targets) {
+  constexpr Eigen::Index kWaves = 24, kFewest = 4 * kWaves;
+  constexpr double kFew = 0.05, kFar = 8.0, kLikeNoise = 2.0;
+  if (targets.cols() < kFewest) return targets;
+  const Eigen::VectorXd error_rad = AtTargets(targets, encoder.run.residual);
+  const Eigen::VectorXd off = OffSmoothCurve(AtTargets(targets, encoder.context.device_rad), error_rad, kWaves).cwiseAbs();
+  const double usual_rad = Median(std::vector<double>(off.begin(), off.end())) / 0.6745;
+  const double visits = static_cast<double>(targets.rows()) / static_cast<double>(targets.cols());
+  if (usual_rad > kLikeNoise * encoder.run.sigma.mean() / std::sqrt(visits)) return targets;
+  std::vector<Eigen::Index> far;
+  for (Eigen::Index k = 0; k < off.size(); ++k)
+    if (off[k] > kFar * usual_rad) far.push_back(k);
+  const bool are_few = !far.empty() && static_cast<double>(far.size()) < kFew * static_cast<double>(targets.cols());
+  return are_few ? Eigen::MatrixXd(targets(Eigen::all, far)) : targets;
 }
 
 void AddErrorsOfTargets(const LargeCauses& large, DiagnosisRun& result) {

@@ -15,6 +15,10 @@ Eigen::MatrixXd Targets(const SignalContext& context);
 /// The causes that were found leave errors that are the same at every visit of a target, or have no name for them.
 bool LeaveErrorsOfTargets(const LargeCauses& large, const Eigen::MatrixXd& targets);
 
+/// Where all but a few targets lie on a smooth curve, as well as their noise lets see: those few. Otherwise all.
+/// @return readings x targets.
+Eigen::MatrixXd TargetsThatStandOut(const EncoderRun& encoder, const Eigen::MatrixXd& targets);
+
 /// The error of every target, as what is left beside the causes; nothing if the search did not leave them free.
 /// Call behind AddLargeCauses.
 void AddErrorsOfTargets(const LargeCauses& large, DiagnosisRun& result);

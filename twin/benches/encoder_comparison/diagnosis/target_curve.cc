@@ -1,5 +1,8 @@
 #include "twin/benches/encoder_comparison/diagnosis/target_curve.h"
 
+#include <vector>
+
+#include "twin/core/distributions.h"
 #include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/unknown/collector.h"
@@ -43,6 +46,23 @@ Eigen::VectorXd AtTargets(const Eigen::MatrixXd& targets, const Eigen::VectorXd&
   return (targets.transpose() * values).cwiseQuotient(targets.colwise().sum().transpose());
 }
 
+Eigen::VectorXd OffSmoothCurve(const Eigen::VectorXd& target_rad, const Eigen::VectorXd& error_rad, Eigen::Index waves) {
+  constexpr int kRounds = 20;
+  constexpr double kTukey = 4.685;  // deviations of the middle half; 95 % as sharp as least squares
+  const Eigen::MatrixXd modes = Between(target_rad).At(target_rad, waves);
+  Eigen::ArrayXd weight = Eigen::ArrayXd::Ones(error_rad.size());
+  Eigen::VectorXd off = error_rad;
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::VectorXd root = weight.sqrt();
+    off = error_rad - modes * SolveShortest(Eigen::MatrixXd(root.asDiagonal() * modes), Eigen::VectorXd(root.cwiseProduct(error_rad)));
+    const Eigen::ArrayXd size = off.array().abs();
+    const double usual = Median(std::vector<double>(size.begin(), size.end())) / 0.6745;
+    if (!(usual > 0.0)) break;
+    weight = (1.0 - (size / (kTukey * usual)).min(1.0).square()).square();
+  }
+  return off;
+}
+
 Accepted ErrorCurve(const Eigen::VectorXd& error_rad) {
   Accepted curve;
   curve.family.kind = Kind::kUnknown;
@@ -57,7 +77,8 @@ Accepted ErrorCurve(const Eigen::VectorXd& error_rad) {
 Accepted CurveThrough(const SignalContext& context, const Eigen::MatrixXd& targets, const Eigen::VectorXd& error_rad) {
   constexpr Eigen::Index kMostWaves = 100;  // of a file that somebody may still read
   Accepted curve = ErrorCurve(error_rad);
-  if (targets.cols() > kMostWaves) return curve;
+  const bool is_everywhere = targets.sum() == static_cast<double>(targets.rows());
+  if (targets.cols() > kMostWaves || !is_everywhere) return curve;
   const Eigen::VectorXd target_rad = AtTargets(targets, context.device_rad);
   const HalfPeriods modes = Between(target_rad);
   const Eigen::VectorXd sizes_rad =

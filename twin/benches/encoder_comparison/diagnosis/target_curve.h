@@ -9,6 +9,10 @@ namespace twinbench::diagnose::encoder {
 /// @param targets  Readings x targets: 1 where a reading is at one.
 Eigen::VectorXd AtTargets(const Eigen::MatrixXd& targets, const Eigen::VectorXd& values);
 
+/// How far values are off a smooth curve that most of them lie on: cosines of half periods over the travel, fitted with
+/// Tukey's weights (Beaton and Tukey, Technometrics 16, 1974).
+Eigen::VectorXd OffSmoothCurve(const Eigen::VectorXd& target_rad, const Eigen::VectorXd& error_rad, Eigen::Index waves);
+
 /// A structure without a name that is no more than its values, one a reading.
 Accepted ErrorCurve(const Eigen::VectorXd& error_rad);
 

@@ -19,6 +19,15 @@ std::vector<EffectSettings> EffectsWithout(std::size_t k, const std::vector<Effe
   return others;
 }
 
+void LeaveFree(const AskedAgain& asked, Nuisance& nuisance) {
+  const Eigen::Index had = nuisance.jacobian.cols(), count = asked.slopes.cols();
+  Eigen::MatrixXd all(nuisance.jacobian.rows(), had + count);
+  all << nuisance.jacobian.toDense(), asked.slopes;
+  nuisance.jacobian = all.sparseView();
+  nuisance.prior_precision.conservativeResize(had + count);
+  nuisance.prior_precision.tail(count) = asked.sd.cwiseAbs2().cwiseInverse();
+}
+
 TwinFit::TwinFit(const LargeCauses& large, const Scenario& scenario, const model::FollowMaker& follow)
     : large_(large), scenario_(scenario), follow_(follow) {
   const LinearRun& plain = Run().run;
@@ -39,7 +48,8 @@ Eigen::VectorXd TwinFit::Shown(const std::vector<EffectSettings>& effects) const
   constexpr double kSame = 1e-4;  // of the noise of a reading
   const double same_rad = std::max(kSameOffset_rad, kSame * Run().run.sigma.minCoeff());
   ErrorOfTwin followed = FollowTwin(Run(), With(effects), follow_, offset_rad_, same_rad);
-  offset_rad_ = std::move(followed.offset_rad);
+  // Of parameters that are impossible together the twin shows nothing, and where it stood then is no place to begin.
+  if (followed.offset_rad.allFinite()) offset_rad_ = std::move(followed.offset_rad);
   return followed.error_rad - nothing_;
 }
 
@@ -56,9 +66,21 @@ double TwinFit::PowerWithout(std::size_t k, const AskedAgain& asked) const {
   return PowerOf(Run().run.residual - Shown(EffectsWithout(k, asked.effects)));
 }
 
-AskedAgain TwinFit::Ask(const std::vector<LargeCause>& causes, const Eigen::VectorXd& rows) const {
+AskedAgain TwinFit::Ask(const std::vector<LargeCause>& causes, const Eigen::VectorXd& rows,
+                        const Projector& projector) const {
   return AskAgain([this](const auto& effects) { return Shown(effects); }, EffectsOf(causes), MovableOf(causes),
-                  benches::encoder::Format().effects, rows, Run().run.sigma, *projector_);
+                  benches::encoder::Format().effects, rows, Run().run.sigma, projector);
+}
+
+AskedAgain TwinFit::Ask(const std::vector<LargeCause>& causes, const Eigen::VectorXd& rows) const {
+  return Ask(causes, rows, *projector_);
+}
+
+AskedAgain TwinFit::Ask(const std::vector<LargeCause>& causes, const Eigen::VectorXd& rows,
+                        const Nuisance& beside) const {
+  const LinearRun& plain = Run().run;
+  const NoiseModel noise{plain.sigma, {}};
+  return Ask(causes, rows, Projector(noise.Whiten(plain, beside.jacobian), beside));
 }
 
 FittedCauses TwinFit::Fit(std::vector<LargeCause> causes) const {

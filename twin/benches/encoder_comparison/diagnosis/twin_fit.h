@@ -28,6 +28,9 @@ bool IsHeld(const EffectSettings& effect);
 
 std::vector<EffectSettings> EffectsWithout(std::size_t k, const std::vector<EffectSettings>& effects);
 
+/// The parameters of what is in the twin stay free: rows x (what was free, slopes).
+void LeaveFree(const AskedAgain& asked, Nuisance& nuisance);
+
 class TwinFit {
  public:
   /// @param large  Whose first search has been made; it may be searched on.
@@ -51,11 +54,15 @@ class TwinFit {
 
   /// @param rows  That the causes have to explain; if left out, all.
   AskedAgain Ask(const std::vector<LargeCause>& causes, const Eigen::VectorXd& rows) const;
+  /// @param beside  What is free beside them.
+  AskedAgain Ask(const std::vector<LargeCause>& causes, const Eigen::VectorXd& rows, const Nuisance& beside) const;
   AskedAgain Ask(const std::vector<LargeCause>& causes) const { return Ask(causes, Run().run.residual); }
   /// Causes that the fit makes needless are dropped.
   FittedCauses Fit(std::vector<LargeCause> causes) const;
 
  private:
+  AskedAgain Ask(const std::vector<LargeCause>& causes, const Eigen::VectorXd& rows, const Projector& projector) const;
+
   const LargeCauses& large_;
   const Scenario& scenario_;
   const model::FollowMaker& follow_;

@@ -80,7 +80,7 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   design.course = encoder.run.schedule;
   design.channels = encoder.run.channels;
   design.places = {{"angle", "angle", Eigen::MatrixXd::Ones(1, 1)}};
-  design.angles = {{"reference angle", c.device_rad, LargestOrder(c), LeastOrder(c), "harmonic", "device"}};
+  design.angles = {{"reference angle", c.device_rad, LargestOrder(c), LeastOrder(c), "harmonic", "device", true, LeastOrder(c)}};
   design.continued_rad = c.device_rad;
   design.moved = Eigen::VectorXd::Ones(c.Readings());
   design.senses = Senses(c);
@@ -101,9 +101,6 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   const bool is_one_place = FinestSpacing_rad(c) == 0.0 && !c.Moves();
   if (is_one_place) design.named["direction offset"] = "backlash";  // which is then nothing else
   std::vector<Family> families = unknown::Families(design);
-  // Waves of less than half a period are the offset of each pass.
-  if (LeastOrder(c) > tuning::kPassOrders)
-    std::erase_if(families, [](const Family& family) { return family.effect == "pass harmonic"; });
   if (is_one_place)
     // How far it is pushed each time is another force.
     std::erase_if(families, [](const Family& family) { return family.effect == "transition" || family.effect == "reversal" || family.effect == "pass"; });
@@ -112,7 +109,7 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
     std::erase_if(families, [](const Family& family) { return family.effect == "tone" || family.effect == "restart"; });
   if (encoder.targets.size() > 0) {
     std::erase_if(families, [](const Family& family) { return family.effect == "direction harmonic"; });
-    std::ranges::move(ReversalsByTarget(encoder.targets, design), std::back_inserter(families));
+    if (encoder.targets.cols() > 1) std::ranges::move(ReversalsByTarget(encoder.targets, design), std::back_inserter(families));
   }
   if (ShowsReversal(c.pass, design.senses.front(), encoder.run.residual)) LeaveReversalsToNamed(design.senses.front(), families);
   std::ranges::move(GrowingSpeeds(c, design), std::back_inserter(families));
