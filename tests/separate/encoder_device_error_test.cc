@@ -406,6 +406,9 @@ TEST(CommonStep, IsFoundBehindADecimalPrint) {
   }
   EXPECT_NEAR(CommonStep(rounded), kStep, 1e-3 * kStep);
   EXPECT_NEAR(CommonStep(any), kPrint, 1e-9) << "no coarser one";
+  Eigen::VectorXd evenly(120);
+  for (Eigen::Index i = 0; i < evenly.size(); ++i) evenly[i] = std::round(3.0 * static_cast<double>(i) / kStep) * kStep;
+  EXPECT_NEAR(CommonStep(evenly), kStep, 1e-9) << "and no wider one where the positions are";
 }
 
 }  // namespace

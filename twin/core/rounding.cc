@@ -1,6 +1,7 @@
 #include "twin/core/rounding.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -37,6 +38,15 @@ bool IsEven(const Eigen::VectorXd& values, double step) {
   return static_cast<double>(other) < kMostOther * static_cast<double>(values.size());
 }
 
+/// A last digit of an angle in a usual unit, or of any other value: what is even by design is no print.
+bool IsDigit(double step) {
+  constexpr double kSame = 1e-3;
+  return std::ranges::any_of(std::array{1.0, units::deg, units::arcsec, units::mrad}, [step](double unit) {
+    const double digits = std::log10(step / unit);
+    return std::abs(digits - std::round(digits)) < kSame;
+  });
+}
+
 /// Of values that were printed with few digits: all gaps are whole steps but for that, none is as small.
 /// @param gaps  Of values in their order, ascending.  @param print  The last digit.
 double PrintedStep(const std::vector<double>& gaps, double print) {
@@ -44,7 +54,7 @@ double PrintedStep(const std::vector<double>& gaps, double print) {
   constexpr double kMostOff = 0.01;          // of the gaps
   constexpr int kRounds = 4;
   double step = *std::ranges::min_element(gaps);
-  if (!(print > 0.0) || step < kCoarse * print) return 0.0;
+  if (!IsDigit(print) || step < kCoarse * print) return 0.0;
   for (const double difference : GapsOf(gaps, kCoarse * print)) step = std::min(step, difference);
   for (int round = 0; round < kRounds; ++round) {
     double way = 0.0, steps = 0.0;
@@ -73,8 +83,9 @@ double CommonStep(const Eigen::VectorXd& values) {
     const auto off = std::ranges::count_if(
         gaps, [step](double gap) { return std::abs(gap / step - std::round(gap / step)) > kOff; });
     if (static_cast<double>(off) > kMostOff * static_cast<double>(gaps.size())) continue;
-    const double printed = PrintedStep(gaps, step), common = printed > 0.0 ? printed : step;
-    return IsEven(values, common) ? 0.0 : common;
+    const double printed = PrintedStep(gaps, step);
+    if (printed > 0.0 && !IsEven(values, printed)) return printed;
+    return IsEven(values, step) ? 0.0 : step;
   }
   return 0.0;
 }
