@@ -34,19 +34,6 @@ std::vector<double> Spacings_rad(const SignalContext& c) {
   return spacings;
 }
 
-/// Gone through in one set-up, the longest: each has an offset of its own.
-double RangeOfSetUp_rad(const SignalContext& c) {
-  std::map<int, std::pair<double, double>> ends_rad;  // least and largest angle
-  for (Eigen::Index i = 0; i < c.Readings(); ++i) {
-    auto& [least, largest] = ends_rad.try_emplace(c.setup[i], c.reference_rad[i], c.reference_rad[i]).first->second;
-    least = std::min(least, c.reference_rad[i]);
-    largest = std::max(largest, c.reference_rad[i]);
-  }
-  double range_rad = 0.0;
-  for (const auto& [setup, ends] : ends_rad) range_rad = std::max(range_rad, ends.second - ends.first);
-  return range_rad;
-}
-
 /// How much of what is left, in units of noise, columns explain that the free unknowns cannot.
 double ExplainedBy(const EncoderRun& encoder, const Eigen::MatrixXd& columns) {
   const Eigen::MatrixXd free = encoder.run.nuisance.jacobian.toDense();
@@ -80,6 +67,18 @@ bool IsNoClock(const EncoderRun& encoder) {
 double FinestSpacing_rad(const SignalContext& context) {
   const std::vector<double> spacings_rad = Spacings_rad(context);
   return spacings_rad.empty() ? 0.0 : *std::min_element(spacings_rad.begin(), spacings_rad.end());
+}
+
+double RangeOfSetUp_rad(const SignalContext& c) {
+  std::map<int, std::pair<double, double>> ends_rad;  // least and largest angle
+  for (Eigen::Index i = 0; i < c.Readings(); ++i) {
+    auto& [least, largest] = ends_rad.try_emplace(c.setup[i], c.reference_rad[i], c.reference_rad[i]).first->second;
+    least = std::min(least, c.reference_rad[i]);
+    largest = std::max(largest, c.reference_rad[i]);
+  }
+  double range_rad = 0.0;
+  for (const auto& [setup, ends] : ends_rad) range_rad = std::max(range_rad, ends.second - ends.first);
+  return range_rad;
 }
 
 int LeastOrder(const SignalContext& context) {

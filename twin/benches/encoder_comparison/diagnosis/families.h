@@ -27,6 +27,9 @@ std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::s
 /// The closest usual distance of neighbouring readings of any pass; 0 if all are at rest.
 double FinestSpacing_rad(const SignalContext& context);
 
+/// Gone through in one set-up, the longest: each has an offset of its own.
+double RangeOfSetUp_rad(const SignalContext& context);
+
 /// The least whole order of which the run shows enough of a period to know one: 1 of a whole turn.
 int LeastOrder(const SignalContext& context);
 

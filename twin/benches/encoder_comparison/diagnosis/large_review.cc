@@ -10,6 +10,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/ties.h"
 #include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/core/linear_algebra.h"
+#include "twin/core/units.h"
 #include "twin/diagnose/engine/answer.h"
 #include "twin/diagnose/tuning.h"
 
@@ -20,6 +21,14 @@ namespace {
 bool IsOfAngle(const EffectSettings& effect) {
   constexpr std::array kOfTurn = {"eccentricity", "ellipticity", "signal_offset", "amplitude_mismatch", "quadrature_error"};
   return WaveOrderOf(effect) || std::ranges::count(kOfTurn, effect.name) > 0;
+}
+
+constexpr double kLikelier = 4.0;  // of power in units of noise
+
+/// Orders that differ by less are not told apart in what one set-up shows of a turn.
+double OrdersApart(const SignalContext& c) {
+  constexpr double kOfPeriod = 0.5;
+  return std::max(1.0, kOfPeriod * units::turn / RangeOfSetUp_rad(c));
 }
 
 /// As if what was found were not there.
@@ -51,10 +60,12 @@ void LargeSearch::LeaveToLarge() {
   if (terms.empty() || (large_.causes.empty() && written_.empty())) return;
   const double least = LeastExplained();
   const Eigen::VectorXd left = Left(LeftByTerms());
+  const double apart = OrdersApart(last.encoder.context);
   const auto is_of_large = [&](const Term& term) {
     const Family& family = last.families[static_cast<std::size_t>(term.family)];
     return std::ranges::any_of(large_.causes, [&](const LargeCause& cause) {
-      return cause.effect.name == family.effect && term.shape.size() == 1 && WaveOrderOf(cause.effect) == term.shape[0];
+      const std::optional<double> order = WaveOrderOf(cause.effect);
+      return cause.effect.name == family.effect && term.shape.size() == 1 && order && std::abs(*order - term.shape[0]) < apart;
     });
   };
   double least_odd = 0.0;  // passes of both directions tell it from what is the same in them
@@ -231,23 +242,37 @@ void LargeSearch::MoveBesideTheRest() {
   }
 }
 
-/// Whether stops were reached in their direction or straight shows where the shaft turned, which is a matter of a few readings:
-/// it is asked again when all else is there, of a gap that is crossed at once.
-/// @return true if the other way is better.
-bool LargeSearch::ApproachOtherwise() {
-  if (large_.first->encoder.context.Moves()) return false;
+/// What no fit moves is asked again when all else is there. Whether stops were reached in their direction or straight shows
+/// where the shaft turned, a matter of a few readings: of a gap that is crossed at once. An order of a part of a turn may
+/// have been the next one to it.
+std::vector<EffectSettings> LargeSearch::OthersLike(const EffectSettings& effect) const {
+  const SignalContext& c = large_.first->encoder.context;
+  std::vector<EffectSettings> others;
+  if (effect.parameters.contains("approach") && !c.Moves()) {
+    std::map<std::string, double>& parameters = others.emplace_back(effect).parameters;
+    parameters["approach"] = parameters["approach"] > 0.5 ? 0.0 : 1.0;
+    if (const auto way = parameters.find("crossed_over"); way != parameters.end())
+      way->second = std::min(way->second, FinestSpacing_rad(c));
+  }
+  if (effect.name != "periodic" || LeastOrder(c) == 1) return others;
+  for (const double by : {-1.0, 1.0}) others.emplace_back(effect).parameters["order"] += by;
+  return others;
+}
+
+/// @return true if one of the others is better.
+bool LargeSearch::TakeOther() {
+  const double now = AskBeside(large_.causes).asked.power;
   for (std::size_t k = 0; k < large_.causes.size(); ++k) {
-    std::vector<LargeCause> causes = large_.causes;
-    std::map<std::string, double>& parameters = causes[k].effect.parameters;
-    const auto approach = parameters.find("approach"), way = parameters.find("crossed_over");
-    if (approach == parameters.end()) continue;
-    approach->second = approach->second > 0.5 ? 0.0 : 1.0;
-    if (way != parameters.end()) way->second = std::min(way->second, FinestSpacing_rad(large_.first->encoder.context));
-    if (AskBeside(causes).asked.power > AskBeside(large_.causes).asked.power - kBetter) continue;
-    const AskedAgain asked = fit_->Ask(causes);
-    Accept(asked, std::move(causes), kMostCauses);
-    LeaveToLarge();
-    return true;
+    for (const EffectSettings& other : OthersLike(large_.causes[k].effect)) {
+      std::vector<LargeCause> causes = large_.causes;
+      causes[k].effect = other;
+      const double least = other.name == "periodic" ? kLikelier : kBetter;  // one order of many, but no new cause
+      if (AskBeside(causes).asked.power > now - least) continue;
+      const AskedAgain asked = fit_->Ask(causes);
+      Accept(asked, std::move(causes), kMostCauses);
+      LeaveToLarge();
+      return true;
+    }
   }
   return false;
 }

@@ -142,7 +142,7 @@ void LargeSearch::Review() {
     DropNeedless();
     EndTies();
     MoveBesideTheRest();
-    while (ApproachOtherwise() || Straighten()) MoveBesideTheRest();
+    while (TakeOther() || Straighten()) MoveBesideTheRest();
   }
 }
 

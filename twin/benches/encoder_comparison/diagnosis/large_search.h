@@ -62,7 +62,8 @@ class LargeSearch {
   std::vector<Term*> NamedTerms();
   Beside AskBeside(const std::vector<LargeCause>& causes);
   void MoveBesideTheRest();
-  bool ApproachOtherwise();
+  std::vector<EffectSettings> OthersLike(const EffectSettings& effect) const;
+  bool TakeOther();
   bool Straighten();
   Eigen::VectorXd LeftByTerms() const;
   void TellWhatEachShows();
