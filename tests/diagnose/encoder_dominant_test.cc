@@ -292,6 +292,23 @@ TEST(EncoderDominant, ACourseInTimeThatDoesNotRepeatIsNoOrder) {
   EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kUnknown) << answer.Words();
 }
 
+/// The worm of a mount, seen over a thirtieth of a turn beside a drift: orders next to each other are hardly told apart.
+TEST(EncoderDominant, AnOrderOfAPartOfATurnIsOneAndTheRightOne) {
+  for (const unsigned seed : {22u, 23u, 24u}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise_deg(0.0, 0.0002);
+    Record record;
+    for (int k = 0; k < 500; ++k) {
+      const double t_s = 6.0 * k, r_deg = 41.2 + 15.041 / 3600.0 * t_s;
+      record.Add(t_s, r_deg, r_deg + Sum({{144, 0.00167, 20.0}, {288, 0.0007, 200.0}}, r_deg) - 0.0042 / 3600.0 * t_s + noise_deg(random), 1, 0);
+    }
+    const Answer answer = Ask(record);
+    EXPECT_NEAR(SizeOfOrder(answer, 144), 0.00167, 0.00006) << answer.Words();
+    const auto is_order = [](const Cause& cause) { return cause.effect == "periodic" && cause.probability >= 0.5; };
+    EXPECT_EQ(std::ranges::count_if(answer.run.diagnosis.causes, is_order), 2) << answer.Words();
+  }
+}
+
 TEST(EncoderDominant, CoarseStepsThatEveryPassRepeatsAreNoCause) {
   constexpr double kStep_deg = 360.0 / 4096.0, kPrint_deg = 1e-4;
   Record record;

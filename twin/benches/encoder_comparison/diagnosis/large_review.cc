@@ -251,10 +251,12 @@ std::vector<EffectSettings> LargeSearch::OthersLike(const EffectSettings& effect
   if (effect.parameters.contains("approach") && !c.Moves()) {
     std::map<std::string, double>& parameters = others.emplace_back(effect).parameters;
     parameters["approach"] = parameters["approach"] > 0.5 ? 0.0 : 1.0;
-    if (const auto way = parameters.find("crossed_over"); way != parameters.end())
-      way->second = std::min(way->second, FinestSpacing_rad(c));
+    const auto way = parameters.find("crossed_over");
+    if (const double spacing_rad = FinestSpacing_rad(c); way != parameters.end() && spacing_rad > 0.0)
+      way->second = std::min(way->second, spacing_rad);
   }
-  if (effect.name != "periodic" || LeastOrder(c) == 1) return others;
+  constexpr std::size_t kFew = 4;  // many are the pieces of a curve
+  if (effect.name != "periodic" || !c.Moves() || LeastOrder(c) == 1 || large_.causes.size() > kFew) return others;
   for (const double by : {-1.0, 1.0}) others.emplace_back(effect).parameters["order"] += by;
   return others;
 }
@@ -267,8 +269,9 @@ bool LargeSearch::TakeOther() {
       std::vector<LargeCause> causes = large_.causes;
       causes[k].effect = other;
       const double least = other.name == "periodic" ? kLikelier : kBetter;  // one order of many, but no new cause
-      if (AskBeside(causes).asked.power > now - least) continue;
+      if (!(AskBeside(causes).asked.power < now - least)) continue;
       const AskedAgain asked = fit_->Ask(causes);
+      if (!asked.slopes.allFinite()) continue;  // at the end of what is possible
       Accept(asked, std::move(causes), kMostCauses);
       LeaveToLarge();
       return true;
@@ -291,7 +294,7 @@ bool LargeSearch::Straighten() {
     cause.effect.finding.u.erase("curvature");
     is_changed = true;
   }
-  if (!is_changed || AskBeside(causes).asked.power > AskBeside(large_.causes).asked.power + kBetter) return false;
+  if (!is_changed || !(AskBeside(causes).asked.power < AskBeside(large_.causes).asked.power + kBetter)) return false;
   const AskedAgain asked = fit_->Ask(causes);
   Accept(asked, std::move(causes), kMostCauses);
   LeaveToLarge();
