@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/diagnosis/memory.h"
@@ -263,13 +264,14 @@ std::vector<EffectSettings> LargeSearch::OthersLike(const EffectSettings& effect
 
 /// @return true if one of the others is better.
 bool LargeSearch::TakeOther() {
-  const double now = AskBeside(large_.causes).asked.power;
+  std::optional<double> now;  // most have no others, and need no fit
   for (std::size_t k = 0; k < large_.causes.size(); ++k) {
     for (const EffectSettings& other : OthersLike(large_.causes[k].effect)) {
+      if (!now) now = AskBeside(large_.causes).asked.power;
       std::vector<LargeCause> causes = large_.causes;
       causes[k].effect = other;
       const double least = other.name == "periodic" ? kLikelier : kBetter;  // one order of many, but no new cause
-      if (!(AskBeside(causes).asked.power < now - least)) continue;
+      if (!(AskBeside(causes).asked.power < *now - least)) continue;
       const AskedAgain asked = fit_->Ask(causes);
       if (!asked.slopes.allFinite()) continue;  // at the end of what is possible
       Accept(asked, std::move(causes), kMostCauses);
