@@ -315,10 +315,21 @@ TEST(EncoderUnknown, HasNoShapesInTimeNorLinesInOneTurn) {
   EXPECT_FALSE(test::HasFamily(families, "line"));
 }
 
+TEST(EncoderUnknown, LooksForOrdersAboveHalfOfUnevenPositions) {
+  // 493.15 positions a turn: 360 of them and 133 look alike, but are not. Of 480, 240 and more are lower ones.
+  const auto largest_at = [](double step_deg) {
+    std::vector<double> angle_deg(500);
+    for (std::size_t i = 0; i < angle_deg.size(); ++i) angle_deg[i] = step_deg * static_cast<double>(i);
+    return LargestOrder(Steps(angle_deg, std::vector<int>(angle_deg.size(), 1)));
+  };
+  EXPECT_EQ(largest_at(0.73), 720);
+  EXPECT_EQ(largest_at(0.75), 239);
+}
+
 TEST(EncoderUnknown, LooksForOrdersThatTheSpacingCanShow) {
-  // Stops every 5 deg: orders below 36. Readings every 0.96 deg at the lower speed: 187.
+  // Stops every 5 deg: orders below 36. Readings every 0.96 and 2.88 deg of two speeds stand nowhere twice.
   EXPECT_EQ(LargestOrder(RunWith("stops", [](const Reading&) { return 0.0; }).context), 35);
-  EXPECT_EQ(LargestOrder(RunWith("sweep", [](const Reading&) { return 0.0; }).context), 187);
+  EXPECT_EQ(LargestOrder(RunWith("sweep", [](const Reading&) { return 0.0; }).context), 720);
 }
 
 }  // namespace

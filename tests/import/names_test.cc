@@ -94,6 +94,10 @@ TEST_F(Importing, TakesCountsByWhatIsStatedOrByThePowerOfTwoAtWhichTheyFollow) {
   for (int i = 0; i < 72; ++i) both += fmt::format("{};{}\n", 50 * i, 50 * i + 1);
   EXPECT_NEAR(Last_deg(Take(both)), 71.0 * 50.0 * 360.0 / 4000.0, 1e-9);
   EXPECT_LT(Worst_deg(Take(stated).readings), 360.0 / 4000.0);
+  std::string beside = stated;
+  beside.replace(beside.find("reference [deg],encoder"), 23, "angle [deg],counts");
+  beside.replace(beside.find(" [counts]"), 9, "");
+  EXPECT_THAT(Take(beside).story, HasSubstr("measured <- [counts]")) << "an angle may be anybody's, counts are the device's";
   EXPECT_LT(Worst_deg(Take(guessed).readings), 360.0 / 65536.0);
   EXPECT_THAT(Take(guessed).story, HasSubstr("65536 counts per turn"));
   EXPECT_KEPT(MessageOf([&] { Take(neither); }));

@@ -398,13 +398,16 @@ TEST(NoiseBehindRounding, IsWhatMakesRoundedReadingsScatterAsTheyDo) {
 
 TEST(CommonStep, IsFoundBehindADecimalPrint) {
   constexpr double kStep = 360.0 / 4096.0, kPrint = 1e-4;
-  Eigen::VectorXd rounded(720), any(720);
+  Eigen::VectorXd rounded(720), any(720), ten_digits(720);
   for (Eigen::Index i = 0; i < rounded.size(); ++i) {
     const double value = 0.5 * static_cast<double>(i) + 0.137;
     rounded[i] = std::round(std::round(value / kStep) * kStep / kPrint) * kPrint;
+    const double step = std::round(value / kStep) * kStep, digit = std::pow(10.0, std::floor(std::log10(step)) - 9.0);
+    ten_digits[i] = std::round(step / digit) * digit;
     any[i] = std::round((value + 0.2 * std::sin(static_cast<double>(i * i))) / kPrint) * kPrint;
   }
   EXPECT_NEAR(CommonStep(rounded), kStep, 1e-3 * kStep);
+  EXPECT_NEAR(CommonStep(ten_digits), kStep, 1e-5 * kStep) << "whose last one goes with the size of the value";
   EXPECT_NEAR(CommonStep(any), kPrint, 1e-9) << "no coarser one";
   Eigen::VectorXd evenly(120);
   for (Eigen::Index i = 0; i < evenly.size(); ++i) evenly[i] = std::round(3.0 * static_cast<double>(i) / kStep) * kStep;

@@ -68,15 +68,13 @@ double PrintedStep(const std::vector<double>& gaps, double print) {
   return static_cast<double>(off) <= kMostOff * static_cast<double>(gaps.size()) ? step : 0.0;
 }
 
-}  // namespace
-
-double CommonStep(const Eigen::VectorXd& values) {
+/// @param same  Values that differ by less are one.
+double CommonStepOf(const Eigen::VectorXd& values, double same) {
   constexpr std::size_t kFewestGaps = 16;
-  const double rounding = 1e-11 * values.cwiseAbs().maxCoeff();
-  const std::vector<double> gaps = GapsOf({values.begin(), values.end()}, rounding);
+  const std::vector<double> gaps = GapsOf({values.begin(), values.end()}, same);
   if (gaps.size() < kFewestGaps) return 0.0;
   double least = *std::ranges::min_element(gaps);
-  for (const double difference : GapsOf(gaps, 2.0 * rounding)) least = std::min(least, difference);
+  for (const double difference : GapsOf(gaps, 2.0 * same)) least = std::min(least, difference);
   constexpr double kOff = 0.05, kMostOff = 0.01;  // of a step; of the gaps
   for (const double parts : {1.0, 2.0, 3.0, 4.0}) {
     const double step = least / parts;
@@ -86,6 +84,17 @@ double CommonStep(const Eigen::VectorXd& values) {
     const double printed = PrintedStep(gaps, step);
     if (printed > 0.0 && !IsEven(values, printed)) return printed;
     return IsEven(values, step) ? 0.0 : step;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+double CommonStep(const Eigen::VectorXd& values) {
+  // Of a file with ten significant digits, whose last one goes with the size of the value; of computed values.
+  for (const double relative : {1e-8, 1e-11}) {
+    const double step = CommonStepOf(values, relative * values.cwiseAbs().maxCoeff());
+    if (step > 0.0) return step;
   }
   return 0.0;
 }

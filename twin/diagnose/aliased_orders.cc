@@ -27,13 +27,6 @@ int OrderOf(const Cause& cause, const std::string& bench) {
   return is_whole && known->meaning.starts_with("periods per turn") ? static_cast<int>(fitted->value) : 0;
 }
 
-/// By how much a wave of this order is not the same at all readings, as a share of its size.
-double Unevenness(int order, const Eigen::VectorXd& angle_rad) {
-  std::complex<double> sum;
-  for (const double a : angle_rad) sum += std::polar(1.0, order * a);
-  return std::sqrt(std::max(0.0, 1.0 - std::norm(sum / static_cast<double>(angle_rad.size()))));
-}
-
 std::string Listed(const std::vector<int>& orders) {
   std::string text;
   for (std::size_t k = 0; k < std::min(kMostAliases, orders.size()); ++k) text += fmt::format("{}{}", k == 0 ? "" : ", ", orders[k]);
@@ -42,18 +35,24 @@ std::string Listed(const std::vector<int>& orders) {
 
 }  // namespace
 
+Eigen::VectorXd UnevennessOfOrders(int most, const Eigen::VectorXd& angle_rad) {
+  Eigen::ArrayXcd step(angle_rad.size()), wave = Eigen::ArrayXcd::Ones(angle_rad.size());
+  std::ranges::transform(angle_rad, step.begin(), [](double a) { return std::polar(1.0, a); });
+  Eigen::VectorXd uneven(most + 1);
+  for (int order = 0; order <= most; ++order, wave *= step) uneven[order] = std::sqrt(std::max(0.0, 1.0 - std::norm(wave.mean())));
+  return uneven;
+}
+
 std::vector<int> AliasesOf(const Cause& cause, const LinearRun& run) {
   const int order = OrderOf(cause, run.bench);
   const Eigen::VectorXd& angle_rad = run.schedule.reference_rad.allFinite() ? run.schedule.reference_rad : run.schedule.target_rad;
   if (order == 0 || angle_rad.size() == 0 || !angle_rad.allFinite()) return {};
-  constexpr double kClearly = 0.2;  // whatever the size is thought to be
-  const double seen = std::isfinite(cause.rho) && cause.rho > 0.0 ? tuning::kBaarda / cause.rho : kClearly;
-  std::vector<bool> is_same(static_cast<std::size_t>(order + kHighestAlias + 1));
-  for (std::size_t k = 0; k < is_same.size(); ++k) is_same[k] = Unevenness(static_cast<int>(k), angle_rad) < std::min(seen, kClearly);
+  const double seen = std::isfinite(cause.rho) && cause.rho > 0.0 ? tuning::kBaarda / cause.rho : kUneven;
+  const Eigen::VectorXd uneven = UnevennessOfOrders(order + kHighestAlias, angle_rad);
+  const auto is_same = [&](int apart) { return uneven[apart] < std::min(seen, kUneven); };
   std::vector<int> aliases;
   for (int other = 1; other <= kHighestAlias; ++other) {
-    if (other != order && (is_same[static_cast<std::size_t>(order + other)] || is_same[static_cast<std::size_t>(std::abs(order - other))]))
-      aliases.push_back(other);
+    if (other != order && (is_same(order + other) || is_same(std::abs(order - other)))) aliases.push_back(other);
   }
   return aliases;
 }

@@ -1,10 +1,17 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "twin/diagnose/diagnose.h"
 
 namespace twinbench::diagnose {
+
+/// Two waves whose orders have a sum or a difference less uneven than this are one wave, whatever their size is thought to be.
+inline constexpr double kUneven = 0.2;
+
+/// By how much waves of the orders 0 to `most` are not the same at all readings, each as a share of its size.
+Eigen::VectorXd UnevennessOfOrders(int most, const Eigen::VectorXd& angle_rad);
 
 /// Orders that these readings do not tell from a cause's own, ascending: at N even stops a turn k, N - k and N + k are one wave.
 /// Empty of a cause without an order, and where the stops are uneven enough for its size.

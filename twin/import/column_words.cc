@@ -25,9 +25,9 @@ const std::vector<std::string>& WordsFor(Speaks of) {
   static const std::vector<std::string> device = {
       "measured", "meas",     "device",   "dut",      "encoder",     "sensor",    "actual",    "actpos",  "posact",
       "present",  "resolver", "feedback", "fb",       "fbk",         "act",       "dial",      "gauge",   "indicator",
-      "messuhr",  "settled",  "reached", "arrived", "position", "ist",      "istwert",  "istposition", "istwinkel", "messwert",  "gemessen", "mesure",
+      "messuhr",  "settled",  "reached", "arrived", "counts",  "ticks",  "raw", "position", "ist",      "istwert",  "istposition", "istwinkel", "messwert",  "gemessen", "mesure",
       "mesuré",   "medido",   "medida",   "misurato", "misura",      "zmierzona", "измерено",  "实际",    "测量",
-      "反馈",     "编码器",   "reading",  "angle",    "enc",         "probe",     "pos",       "load",     "counts"};
+      "反馈",     "编码器",   "reading",  "angle",    "enc",         "probe",     "pos",       "load"};
   return of == Speaks::kReference ? reference : device;
 }
 

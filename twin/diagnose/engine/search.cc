@@ -31,7 +31,8 @@ bool IsRounding(const SearchProblem& problem, const Deflation& others, const Ter
   const double step = problem.run.rounding;
   if (!(step > 0.0)) return false;
   constexpr double kMargin = 1.1;
-  const double sigma = problem.run.sigma.mean();
+  // Of the readings that count: where noise moves few of them to the next step, the others show all of the sawtooth.
+  const double sigma = 1.0 / std::sqrt(problem.noise.sigma.cwiseAbs2().cwiseInverse().mean());
   const double noise2 = std::max(0.0, sigma * sigma - step * step / 12.0) / (step * step);
   const double largest = kMargin * step / std::sqrt(12.0) * std::exp(-2.0 * units::kPi * units::kPi * noise2);
   const Projected data = Project(problem.projector, others, problem.white);

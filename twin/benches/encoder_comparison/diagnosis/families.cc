@@ -9,6 +9,7 @@
 #include "twin/core/distributions.h"
 #include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/aliased_orders.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/model/signals.h"
 
@@ -32,6 +33,15 @@ std::vector<double> Spacings_rad(const SignalContext& c) {
   std::vector<double> spacings;
   for (const auto& [pass, step_rad] : steps) spacings.push_back(Median(step_rad));
   return spacings;
+}
+
+/// Uneven positions show orders above half of their number, too: as many that no two of them are one wave.
+int LargestToldApart(const Eigen::VectorXd& angle_rad, int by_spacing, int most) {
+  const Eigen::VectorXd uneven = UnevennessOfOrders(2 * most, angle_rad);
+  for (int sum = by_spacing + 1; sum <= 2 * most; ++sum) {
+    if (uneven[sum] < kUneven) return std::max(by_spacing, (sum - 1) / 2);
+  }
+  return most;
 }
 
 /// How much of what is left, in units of noise, columns explain that the free unknowns cannot.
@@ -99,7 +109,9 @@ int LargestOrder(const SignalContext& context) {
   constexpr double kDimmed =
       6.4;  // times as wide a step has the Nyquist order that means over it lower by a hundredth
   const double step_rad = (context.has_means ? kDimmed : 1.0) * FinestSpacing_rad(context);
-  return model::HighestOrder(step_rad, static_cast<int>(kMost / part));
+  const int most = static_cast<int>(kMost / part), by_spacing = model::HighestOrder(step_rad, most);
+  const bool has_more = part == 1.0 && !context.has_means && by_spacing > 0 && by_spacing < most;
+  return has_more ? LargestToldApart(context.reference_rad, by_spacing, most) : by_spacing;
 }
 
 std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::string>& excluded) {

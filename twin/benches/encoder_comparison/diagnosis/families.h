@@ -33,7 +33,8 @@ double RangeOfSetUp_rad(const SignalContext& context);
 /// The least whole order of which the run shows enough of a period to know one: 1 of a whole turn.
 int LeastOrder(const SignalContext& context);
 
-/// The largest whole order that readings of this spacing can tell from lower ones; at most 720 of a turn, of a part
+/// The largest whole order that these readings can tell from lower ones: two readings a period, or more orders where positions are
+/// uneven;
 /// of one as much more; of means over the way from one to the next, that they lower by no more than a hundredth.
 int LargestOrder(const SignalContext& context);
 
