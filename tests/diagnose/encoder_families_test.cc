@@ -327,9 +327,9 @@ TEST(EncoderUnknown, LooksForOrdersAboveHalfOfUnevenPositions) {
 }
 
 TEST(EncoderUnknown, LooksForOrdersThatTheSpacingCanShow) {
-  // Stops every 5 deg: orders below 36. Readings every 0.96 and 2.88 deg of two speeds stand nowhere twice.
+  // Stops every 5 deg: orders below 36. Readings every 0.96 deg at the lower speed: 187.
   EXPECT_EQ(LargestOrder(RunWith("stops", [](const Reading&) { return 0.0; }).context), 35);
-  EXPECT_EQ(LargestOrder(RunWith("sweep", [](const Reading&) { return 0.0; }).context), 720);
+  EXPECT_EQ(LargestOrder(RunWith("sweep", [](const Reading&) { return 0.0; }).context), 187);
 }
 
 }  // namespace

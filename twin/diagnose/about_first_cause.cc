@@ -29,6 +29,15 @@ EffectSettings EffectOf(const Family& family, const Term& term, const std::vecto
   return effect;
 }
 
+/// The twin can carry it out.
+bool CanBeTried(const EffectSettings& effect, const std::vector<EffectEntry>& catalogue) {
+  const EffectEntry& entry = *std::ranges::find(catalogue, effect.name, &EffectEntry::name);
+  return std::ranges::all_of(entry.parameters, [&](const EffectParameter& p) {
+    const double value = effect.parameters.at(p.name);
+    return value >= p.lower_SI && value <= p.upper_SI;
+  });
+}
+
 /// Whether what the twin shows of the first cause is off its tangent by more than the noise of the readings.
 bool IsOffItsTangent(const Searched& searched, const std::vector<Reading>& readings,
                      const TwinComparison& comparison) {
@@ -97,6 +106,7 @@ Tried FirstCause(const Searched& searched, const std::vector<Reading>& readings,
     for (const double factor : {0.35, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.45}) {
       const Tried tried = TriedOf(searched, alias.shape, factor * alias.amplitudes, comparison);
       if (units::turn * tried.amplitudes.norm() >= tried.shape[0]) continue;  // it would run backwards
+      if (!CanBeTried(tried.effect, comparison.format->effects)) continue;
       Scenario with = searched.scenario;
       with.effects.push_back(tried.effect);
       const double power = FreeMisfit(Compare(readings, with, comparison).run).power;
@@ -114,6 +124,7 @@ bool MayBeCurved(const Searched& searched, const std::vector<Reading>& readings,
   if (searched.found().terms.empty()) return false;
   const Family& first = searched.FamilyOf(searched.found().terms.front());
   if (first.kind != Kind::kNamed || (comparison.may_bend && !comparison.may_bend(first.effect))) return false;
+  if (!CanBeTried(EffectOf(first, searched.found().terms.front(), comparison.format->effects), comparison.format->effects)) return false;
   return searched.LeavesStructure() || (comparison.bends && IsOffItsTangent(searched, readings, comparison));
 }
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/core/distributions.h"
 #include "twin/core/errors.h"
+#include "twin/core/robust_scale.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -50,10 +50,12 @@ struct Left {
     const Eigen::VectorXd left = rows - shows(scaled.At(x));
     return projector.Apply(Eigen::MatrixXd(weight.asDiagonal() * left)).col(0);
   }
+  /// Where the twin shows no numbers nobody should go. Ceres is not told that it failed: it would say so on the user's screen.
   bool operator()(double const* const* x, double* residuals) const {
+    constexpr double kImpossible = 1e30;
     const Eigen::VectorXd left = Of(Eigen::Map<const Eigen::VectorXd>(x[0], std::ssize(scaled.movable)));
-    Eigen::Map<Eigen::VectorXd>(residuals, left.size()) = left;
-    return left.allFinite();
+    Eigen::Map<Eigen::VectorXd>(residuals, left.size()) = left.allFinite() ? left : Eigen::VectorXd::Constant(left.size(), kImpossible);
+    return true;
   }
 };
 
@@ -100,9 +102,7 @@ Eigen::VectorXd Solve(const Left& left, const std::vector<EffectEntry>& catalogu
 Eigen::VectorXd WithoutFar(const Eigen::VectorXd& left, Eigen::VectorXd weight, int& far) {
   constexpr double kFar = 8.0;      // deviations of the middle half
   constexpr double kHardly = 1e-4;  // no row has no weight: the projector was made for all of them
-  std::vector<double> sizes;
-  for (const double v : left) sizes.push_back(std::abs(v));
-  const double scale = std::max(Median(std::move(sizes)) / 0.6745, 1e-12);
+  const double scale = std::max(RobustDeviation(left), 1e-12);
   const auto is_far = [&](Eigen::Index i) { return i >= 0 && i < left.size() && std::abs(left[i]) > kFar * scale; };
   far = 0;
   for (Eigen::Index i = 0; i < left.size(); ++i) {

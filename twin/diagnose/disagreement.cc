@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "twin/core/distributions.h"
+#include "twin/core/robust_scale.h"
 #include "twin/diagnose/accepted_columns.h"
 
 namespace twinbench::diagnose {
@@ -17,9 +17,7 @@ constexpr double kUnexplained = 0.5;  // of the deviation, where the causes foun
 
 /// In units of the noise of each row; by the middle of the sizes, which single values do not move.
 double Typical(const Eigen::VectorXd& left, const Eigen::VectorXd& sigma) {
-  std::vector<double> sizes;
-  for (Eigen::Index k = 0; k < left.size(); ++k) sizes.push_back(std::abs(left[k] / sigma[k]));
-  return sizes.empty() ? 0.0 : Median(std::move(sizes)) / 0.6745;
+  return RobustDeviation(left.cwiseQuotient(sigma));
 }
 
 }  // namespace

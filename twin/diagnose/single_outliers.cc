@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/core/distributions.h"
+#include "twin/core/robust_scale.h"
 #include "twin/diagnose/engine/noise_causes.h"
 
 namespace twinbench::diagnose {
@@ -50,12 +50,6 @@ bool StandsAlone(double before, double behind, double far) {
   constexpr double kMuchTheSame = 0.3;
   const auto [less, more] = std::minmax({std::abs(before), std::abs(behind)});
   return before * behind > 0.0 && less > far && less > kMuchTheSame * more;
-}
-
-double RobustDeviation(const Eigen::VectorXd& values) {
-  std::vector<double> sizes(values.begin(), values.end());
-  for (double& v : sizes) v = std::abs(v);
-  return Median(std::move(sizes)) / 0.6745;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "twin/import/column_words.h"
@@ -36,6 +37,8 @@ AngleAndError Find(const std::vector<Choice>& columns, const std::string& refere
     if (c.name == given || !taken.contains(c.name)) (IsCalledError(c.name) ? errors : angles).push_back(&c);
   }
   if (angles.size() > 1) std::erase_if(angles, [](const Choice* c) { return IsCounter(*c->column); });
+  const auto says_unit = [](const Choice* c) { return UnitNamed(c->column->unit).has_value(); };
+  if (std::ranges::count_if(angles, says_unit) == 1) std::erase_if(angles, std::not_fn(says_unit));
   const bool are = angles.size() == 1 && errors.size() == 1 && (given.empty() || given == angles[0]->name);
   return are && !RunsLike(*errors[0]->column, *angles[0]->column) ? AngleAndError{angles[0], errors[0]} : AngleAndError{};
 }

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <iterator>
+#include <numeric>
 #include <optional>
 
 #include "twin/core/errors.h"
+#include "twin/import/column_words.h"
 #include "twin/import/common.h"
 #include "twin/import/layout.h"
 #include "twin/import/table.h"
@@ -114,9 +117,35 @@ void TakeBareList(std::string_view code, std::vector<Column>& arrays) {
   if (others == 0 && !list.value.empty()) arrays.push_back(std::move(list));
 }
 
-}  // namespace
+/// Those as long as the longest that say together which is whose: the angles of a reference beside a device's.
+std::vector<Column> SideBySide(const std::vector<Column>& arrays) {
+  std::vector<Column> beside;
+  std::size_t rows = 0;
+  for (const Column& array : arrays) rows = std::max(rows, array.value.size());
+  std::ranges::copy_if(arrays, std::back_inserter(beside), [rows](const Column& a) { return a.value.size() == rows; });
+  const bool says_which = beside.size() > 1 && std::ranges::any_of(beside, [](const Column& a) { return Clearness(a.name, Speaks::kReference) > 0; });
+  return says_which ? beside : std::vector<Column>();
+}
 
-namespace {
+/// `float zero = 1.2;`
+void TakeNamedNumbers(std::string_view code, Track& track) {
+  Lines lines(code);
+  for (std::string_view line; lines.Next(line);) {
+    const std::size_t equals = line.find('='), end = std::min(line.find(';'), line.size());
+    if (equals == std::string_view::npos || line.find('{') != std::string_view::npos || end <= equals) continue;
+    if (const auto number = FieldNumber(Trimmed(line.substr(equals + 1, end - equals - 1)), false)) track.numbers[WordBefore(line, equals)] = *number;
+  }
+}
+
+void AddTrack(std::string_view code, const std::string& name, std::vector<Column> columns, Recording& recording) {
+  Track track;
+  track.name = name;
+  track.columns = std::move(columns);
+  TakeNamedNumbers(code, track);
+  track.time_s.resize(track.columns.front().value.size());
+  std::iota(track.time_s.begin(), track.time_s.end(), 0.0);
+  recording.tracks.push_back(std::move(track));
+}
 
 /// What stands behind "lut = " or "lut = np.array(", as Python has it.
 std::string_view BehindName(std::string_view line) {
@@ -145,34 +174,24 @@ void ReadArray(std::string_view text, const std::string& name, Recording& record
   const std::string code = WithoutComments(text);
   std::vector<Column> arrays = ArraysIn(code);
   if (arrays.empty() && name.empty()) TakeBareList(code, arrays);
+  if (std::vector<Column> beside = SideBySide(arrays); name.empty() && !beside.empty()) {
+    recording.layout = fmt::format("{} arrays in a program text, {} entries each", beside.size(), beside.front().value.size());
+    return AddTrack(code, "arrays", std::move(beside), recording);
+  }
   const auto found = name.empty()
                          ? std::ranges::max_element(arrays, {}, [](const Column& a) { return a.value.size(); })
                          : std::ranges::find(arrays, name, &Column::name);
   if (found == arrays.end())
     throw InputError(recording.file, name.empty() ? "no array of numbers" : "no array called " + name,
                      "name[...] = { numbers }, name = [numbers], or numbers and nothing else");
-  Track track;
-  track.name = found->name;
-  Lines lines(code);
-  for (std::string_view line; lines.Next(line);) {
-    if (const std::size_t equals = line.find('=');
-        equals != std::string_view::npos && line.find('{') == std::string_view::npos) {
-      const std::string word = WordBefore(line, equals);
-      const std::size_t end = std::min(line.find(';'), line.size());
-      if (const auto number =
-              end > equals ? FieldNumber(Trimmed(line.substr(equals + 1, end - equals - 1)), false) : std::nullopt)
-        track.numbers[word] = *number;
-    }
-  }
   recording.layout = fmt::format("the array {} in a program text, {} entries", found->name, found->value.size());
   if (found->name == "list") recording.layout = fmt::format("a list of {} numbers", found->value.size());
+  if (arrays.size() > 1 && name.empty()) recording.remarks.push_back(fmt::format("{} further arrays are left out: array = a name under [file] of a map takes another", arrays.size() - 1));
   if (AreErrorsOf16Bit(found->value))
     recording.remarks.push_back("the entries are whole numbers about 32768: as errors, 32768 is none and 65536 is a turn");
-  track.columns.push_back(std::move(*found));
-  track.columns[0].name = "entry";
-  track.time_s.resize(track.columns[0].value.size());
-  for (std::size_t i = 0; i < track.time_s.size(); ++i) track.time_s[i] = static_cast<double>(i);
-  recording.tracks.push_back(std::move(track));
+  const std::string title = found->name;
+  found->name = "entry";
+  AddTrack(code, title, {std::move(*found)}, recording);
 }
 
 }  // namespace twinbench::imports

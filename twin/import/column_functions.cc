@@ -10,6 +10,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/import/common.h"
+#include "twin/import/speed_levels.h"
 #include "twin/import/two_shafts.h"
 
 namespace twinbench::imports {
@@ -88,37 +89,6 @@ std::vector<double> Sense(std::vector<double> x, const std::string&) {
     sense[i] = std::copysign(1.0, std::abs(std::abs(behind) - usual) < std::abs(std::abs(before) - usual) ? behind : before);
   }
   return sense;
-}
-
-std::vector<double> Whole(std::vector<double> x, const std::string&) {
-  const double middle = MedianOf(std::move(x));
-  const double step = std::pow(10.0, std::floor(std::log10(std::abs(middle))) - 2.0);
-  return {middle == 0.0 ? 0.0 : step * std::round(middle / step)};
-}
-
-/// Each row's level: of those at which a twentieth of the rows stays, to a few percent, the nearest one.
-std::vector<double> Levels(std::vector<double> x, const std::string& where) {
-  constexpr double kStep = 0.05, kShare = 0.05;   // of the logarithm; of the rows
-  constexpr std::ptrdiff_t kBeside = 5;           // rows: one alone is no level
-  constexpr long kApart = 3;                      // steps
-  std::vector<double> smooth;
-  for (std::ptrdiff_t i = 0; i < std::ssize(x); ++i)
-    smooth.push_back(MedianOf({x.begin() + std::max<std::ptrdiff_t>(0, i - kBeside), x.begin() + std::min(std::ssize(x), i + kBeside + 1)}));
-  std::map<long, std::vector<double>> bins;
-  for (const double value : smooth)
-    if (value > 0.0) bins[std::lround(std::log(value) / kStep)].push_back(value);
-  const auto rows_at = [&bins](long bin) { return bins.contains(bin) ? bins.at(bin).size() : 0; };
-  std::vector<double> levels;
-  for (const auto& [bin, values] : bins) {
-    bool is_highest = true;
-    for (long k = 1; k <= kApart; ++k) is_highest &= values.size() > rows_at(bin - k) && values.size() >= rows_at(bin + k);
-    const double rows = static_cast<double>(values.size() + rows_at(bin - 1) + rows_at(bin + 1));
-    if (is_highest && rows > kShare * static_cast<double>(x.size())) levels.push_back(Whole(values, where).front());
-  }
-  if (levels.empty()) return Whole(x, where);
-  for (std::size_t i = 0; i < x.size(); ++i)
-    x[i] = *std::ranges::min_element(levels, {}, [&](double level) { return smooth[i] > 0.0 ? std::abs(std::log(smooth[i] / level)) : level; });
-  return x;
 }
 
 std::vector<double> Distinct(std::vector<double> x, const std::string&) {
@@ -206,7 +176,7 @@ OfColumn ColumnFunction(std::string_view name) {
 
 OfColumns ColumnsFunction(std::string_view name) {
   static constexpr auto kFunctions =
-      std::to_array<NamedFunction<OfColumns>>({{"ratio", Ratio}, {"whole_turns", WholeTurns}, {"beside", Beside}, {"stated_ratio", StatedRatio}});
+      std::to_array<NamedFunction<OfColumns>>({{"ratio", Ratio}, {"whole_turns", WholeTurns}, {"beside", Beside}, {"stated_ratio", StatedRatio}, {"unsteady", Unsteady}});
   return FindIn(kFunctions, name);
 }
 

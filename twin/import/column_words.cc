@@ -18,7 +18,7 @@ const std::vector<std::string>& WordsFor(Speaks of) {
   static const std::vector<std::string> reference = {
       "reference", "ref",      "true",     "laser",    "interferometer", "truth",        "target",     "commanded",
       "command",   "cmd",      "setpoint", "posset",   "setpos",         "set",          "goal",       "nominal",
-      "nom",       "desired",  "des",      "demand",   "demanded",       "soll",         "sollwert",   "sollposition",
+      "nom",       "calibrated", "certified", "desired",  "des",      "demand",   "demanded",       "soll",         "sollwert",   "sollposition",
       "sollwinkel", "referenz", "consigne", "consigna", "cible",          "référence",    "referencia", "riferimento",
       "comando",   "zadana",   "эталон",   "задание",  "目标",           "指令",         "参考",       "motor",
       "poscmd"};

@@ -5,7 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/core/reading.h"
+#include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
 #include "twin/import/common.h"
 
@@ -57,16 +59,47 @@ std::vector<int> Senses(const std::vector<double>& x, double threshold) {
   return sense;
 }
 
-/// Speeds over windows that are just long enough for the noise of the reference.
+/// Where rows follow one another without a pause: the first row of each such part, and the number of rows behind the last.
+std::vector<int> PartsOf(const std::vector<double>& time_s) {
+  constexpr double kPause = 3.5;  // usual steps: some rows may be missing
+  const double longest_s = kPause * MedianOf(StepsOf(time_s));
+  std::vector<int> begins = {0};
+  for (std::size_t i = 1; i < time_s.size(); ++i) {
+    if (time_s[i] - time_s[i - 1] > longest_s) begins.push_back(static_cast<int>(i));
+  }
+  begins.push_back(static_cast<int>(time_s.size()));
+  return begins;
+}
+
+/// Beside a pause: the slope at row `at` of the parabola through rows `a` to `b`.
+double SlopeAt(int at, int a, int b, const std::vector<double>& x, const std::vector<double>& time_s) {
+  const auto row = [](int i) { return static_cast<std::size_t>(i); };
+  Eigen::MatrixXd powers(b - a + 1, std::min(b - a + 1, 3));
+  Eigen::VectorXd way(powers.rows());
+  for (int i = a; i <= b; ++i) {
+    way[i - a] = x[row(i)] - x[row(at)];
+    for (int k = 0; k < powers.cols(); ++k) powers(i - a, k) = std::pow((time_s[row(i)] - time_s[row(at)]) / (time_s[row(b)] - time_s[row(a)]), k);
+  }
+  return powers.cols() < 2 ? 0.0 : SolveShortest(powers, way)[1] / (time_s[row(b)] - time_s[row(a)]);
+}
+
+/// Speeds over windows that are just long enough for the noise of the reference, and do not reach over a pause.
 std::vector<double> Velocities(const std::vector<double>& x, const std::vector<double>& time_s, double noise) {
   const double usual = QuantileOf(Sizes(StepsOf(x)), 0.9);
   const int window =
       usual > 0.0 ? std::clamp(static_cast<int>(std::ceil(15.0 * noise / usual)), 1, kWidestWindow) : 1;
-  const auto last = static_cast<int>(x.size()) - 1;
+  const int rows = static_cast<int>(x.size());
+  const std::vector<int> begins = PartsOf(time_s);
   std::vector<double> velocity;
-  for (int i = 0; i <= last; ++i) {
-    const auto a = static_cast<std::size_t>(std::max(0, i - window)),
-               b = static_cast<std::size_t>(std::min(last, i + window));
+  for (int i = 0, part = 0; i < rows; ++i) {
+    if (i == begins[static_cast<std::size_t>(part) + 1]) ++part;
+    const int first = begins[static_cast<std::size_t>(part)], last = begins[static_cast<std::size_t>(part) + 1] - 1;
+    const bool is_beside_pause = (first > 0 && i - window < first) || (last < rows - 1 && i + window > last);
+    if (is_beside_pause) {
+      velocity.push_back(SlopeAt(i, std::max(first, i - 2 * window), std::min(last, i + 2 * window), x, time_s));
+      continue;
+    }
+    const auto a = static_cast<std::size_t>(std::max(0, i - window)), b = static_cast<std::size_t>(std::min(rows - 1, i + window));
     const double way_s = time_s[b] - time_s[a];
     velocity.push_back(way_s > 0.0 ? (x[b] - x[a]) / way_s : 0.0);
   }
@@ -234,12 +267,6 @@ bool GoesFromRestToRest(const Course& swept) {
 
 }  // namespace
 
-double NoiseOf(const std::vector<double>& x) {
-  std::vector<double> size;  // of second differences, which have variance 6 sigma^2
-  for (std::size_t i = 2; i < x.size(); ++i) size.push_back(std::abs(x[i] - 2.0 * x[i - 1] + x[i - 2]));
-  return 1.4826 * MedianOf(std::move(size)) / std::sqrt(6.0);
-}
-
 const char* MotionName(Motion motion) {
   switch (motion) {
     case Motion::kStop:
@@ -289,7 +316,7 @@ Course CourseOf(std::vector<double> reference, const std::vector<double>& time_s
   const auto [low, high] = std::ranges::minmax(course.reference);
   course.turns = (high - low) / units::turn;
   if (!time_s.empty()) {
-    course.noise = NoiseOf(course.reference);
+    course.noise = RobustNoiseOnCourse(course.reference);
     Sweep(time_s, course);
   }
   course.stop_and_go = !time_s.empty() && settings.kind != "sweep" && GoesFromRestToRest(course);

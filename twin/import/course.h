@@ -27,9 +27,6 @@ struct Course {
   double noise = 0.0;       // of the reference, from row to row [rad]
 };
 
-/// White noise of a smooth course, from its second differences.
-double NoiseOf(const std::vector<double>& x);
-
 /// Takes out the jumps of a reference that starts again at `wrap_rad`.
 /// @return how many there were.
 int Unwrap(double wrap_rad, std::vector<double>& angle);

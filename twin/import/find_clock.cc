@@ -17,7 +17,7 @@ bool IsCalledTime(const Column& column) {
   const std::string name = SmallLetters(column.name);
   if (column.unit == "instant" || column.unit == "time of day") return true;
   for (const char* word : {"time", "timestamp", "t", "zeit", "zeitstempel", "date", "datetime", "utc", "uhrzeit", "datum", "temps",
-                           "tiempo", "tempo", "время", "时间", "ts", "stamp", "elapsed", "millis", "micros"}) {
+                           "tiempo", "tempo", "время", "时间", "ts", "stamp", "elapsed", "millis", "micros", "jd", "mjd", "bjd", "hjd"}) {
     if (name == word || name.starts_with(std::string(word) + "_") || name.starts_with(std::string(word) + " ") ||
         name.ends_with(std::string("_") + word))
       return column.IsNumber();
@@ -46,6 +46,7 @@ auto ColumnCalled(const std::string& name, std::vector<Column>& columns) {
 /// "time [ms]" has its unit; "millis" is one.
 std::string UnitOfClock(const ClockSettings& settings, const Column& column) {
   if (!settings.unit.empty()) return settings.unit;
+  if (column.unit.empty() && SmallLetters(column.name).ends_with("jd")) return "day";  // a Julian date
   const auto name = UnitNamed(column.name);
   return column.unit.empty() && name && name->dimension == Dimension::kTime ? std::string(name->name) : column.unit;
 }
@@ -60,6 +61,32 @@ void CountRows(double rate_Hz, Track& track) {
 
 bool HasPart(const std::string& name, const std::vector<const char*>& parts) {
   return std::ranges::any_of(parts, [&name](const char* part) { return name.find(part) != std::string::npos; });
+}
+
+/// Where a clock begins anew, as one of each part of a file does; none where it goes back in another way.
+std::vector<std::size_t> BeginsAnew(const std::vector<double>& time_s) {
+  constexpr std::size_t kFewestRows = 12;  // of a part
+  constexpr double kAtBegin = 0.1;         // of the part before
+  std::vector<std::size_t> begins;
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < time_s.size(); ++i) {
+    if (!(time_s[i] < time_s[i - 1])) continue;
+    const bool is_begin = time_s[i] - time_s[begin] < kAtBegin * (time_s[i - 1] - time_s[begin]);
+    if (!is_begin || i - begin < kFewestRows) return {};
+    begins.push_back(begin = i);
+  }
+  return time_s.size() - begin < kFewestRows ? std::vector<std::size_t>() : begins;
+}
+
+/// Parts with a clock each follow one another. @return how many there are.
+std::size_t PutOneBehindTheOther(std::vector<double>& time_s) {
+  constexpr double kPause_s = 1.0;
+  const std::vector<std::size_t> begins = BeginsAnew(time_s);
+  for (const std::size_t begin : begins) {
+    const double later_s = time_s[begin - 1] + kPause_s - time_s[begin];
+    for (std::size_t i = begin; i < time_s.size(); ++i) time_s[i] += later_s;
+  }
+  return begins.size() + 1;
 }
 
 }  // namespace
@@ -106,11 +133,13 @@ void FindClock(const ClockSettings& settings, const std::string& where, Track& t
   if (!clock)
     throw InputError(where,
                      fmt::format("{} is given in \"{}\", which is no unit of time", column.name, unit),
-                     "[time] unit = s, ms, us, ns, min, h, epoch or filetime" + NearestUnit(unit, {Dimension::kTime}));
+                     "[time] unit = s, ms, us, ns, min, h, day, epoch or filetime" + NearestUnit(unit, {Dimension::kTime}));
   for (double& t : track.time_s) t = (t - clock->origin) * clock->to_s;
   track.absolute = clock->absolute;
   const bool is_said = !unit.empty() || clock->absolute;
   track.clock = fmt::format("{} [{}{}]", column.name, clock->words, is_said ? "" : ", which is not said");
+  if (const std::size_t parts = clock->absolute ? 1 : PutOneBehindTheOther(track.time_s); parts > 1)
+    track.clock += fmt::format(", which begins anew: {} parts are put one behind the other", parts);
 }
 
 }  // namespace twinbench::imports

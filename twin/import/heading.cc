@@ -31,6 +31,19 @@ bool IsAsWide(std::string_view line, std::size_t width, char separator) {
   return fields.size() == width;
 }
 
+/// Between blanks a name may have some of its own: "Target (mm)  Error (um)" are two, where more than one stands between them.
+void SplitNames(std::string_view line, char separator, std::size_t width, std::vector<std::string_view>& names) {
+  Split(line, separator, names);
+  if (separator != ' ' || names.size() <= width) return;
+  std::vector<std::string_view> wide;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t end = std::min(line.find("  ", at), line.size());
+    if (end > at) wide.push_back(Trimmed(line.substr(at, end - at)));
+    at = std::min(line.find_first_not_of(' ', end), line.size());
+  }
+  if (wide.size() == width) names = std::move(wide);
+}
+
 }  // namespace
 
 std::string_view WithoutMark(std::string_view line) {
@@ -50,7 +63,7 @@ Heading FindHeading(const std::vector<std::string_view>& above, std::size_t widt
   std::vector<std::string_view> names;
   std::vector<std::string> units;
   for (std::size_t i = above.size(); i-- > 0 && above.size() - i <= 3;) {
-    Split(WithoutMark(above[i]), separator, names);
+    SplitNames(WithoutMark(above[i]), separator, width, names);
     if (width == 1) names = {WithoutMark(above[i])};
     if (names.size() > 1 && names.back().empty()) names.pop_back();
     if (names.size() != width && !(names.size() + 1 == width || names.size() == width + 1)) continue;

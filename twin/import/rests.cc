@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "twin/core/robust_scale.h"
 #include "twin/import/common.h"
 
 namespace twinbench::imports {
@@ -41,7 +42,7 @@ void Judge(std::span<const double> shown, double turn_rad, double step, Rest& re
   // Of a steady motion the tenths are sqrt(12) deviations apart; a device that shakes about its place is not on its way.
   rest.arrives = goes_on <= 0.02 * step || goes_on <= 2.0 * spread;
   if (!rest.arrives) return;
-  const double end = MedianOf(last), stands = 6.0 * std::max(NoiseOf(way), spread);
+  const double end = MedianOf(last), stands = 6.0 * std::max(RobustNoiseOnCourse(way), spread);
   std::size_t from = rows - tenth;
   while (from > 0 && std::abs(way[from - 1] - end) <= stands) --from;
   rest.stands = std::max(rest.stands, rest.begin + from);

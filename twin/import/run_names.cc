@@ -62,7 +62,7 @@ int DirectionIn(std::string_view text) {
 bool CountsRows(std::string_view name) {
   const std::string small = SmallLetters(Trimmed(name));
   return small.empty() || small == "i" || small == "no" || small == "no." || small == "nr" || small == "#" ||
-         small == "point";
+         small == "point" || small == "step" || small == "index" || small == "row";
 }
 
 bool IsOnePlace(const std::vector<std::string_view>& names) {

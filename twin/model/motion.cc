@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "twin/core/distributions.h"
+#include "twin/core/robust_scale.h"
 
 namespace twinbench::model {
 namespace {
@@ -42,12 +43,6 @@ class Motions {
   std::vector<int> motion_;
 };
 
-/// Of normal noise, by the middle half.
-double DeviationOf(std::vector<double> sizes) {
-  constexpr double kOfNormal = 0.6745;
-  return Median(std::move(sizes)) / kOfNormal;
-}
-
 /// By how much each value is off the polynomial through two neighbours before and three behind, in units of the noise of
 /// one: their median leaves out where a motion is not smooth.
 double NoiseOf(const Course& course, const Motions& motions, const Eigen::VectorXd& values) {
@@ -66,7 +61,7 @@ double NoiseOf(const Course& course, const Motions& motions, const Eigen::Vector
     }
     sizes.push_back(std::abs(off) / std::sqrt(squares));
   }
-  return sizes.empty() ? 0.0 : DeviationOf(std::move(sizes));
+  return sizes.empty() ? 0.0 : RobustDeviation(std::move(sizes));
 }
 
 /// Value and slope at each reading, and what a deviation of one in every value makes of the slope.
@@ -118,7 +113,7 @@ bool MoreThanNoise(const Eigen::VectorXd& off, double noise) {
   std::vector<double> sizes;
   for (const double v : off)
     if (std::isfinite(v)) sizes.push_back(std::abs(v));
-  return !sizes.empty() && DeviationOf(std::move(sizes)) > kMore * noise;
+  return !sizes.empty() && RobustDeviation(std::move(sizes)) > kMore * noise;
 }
 
 double RmsOfFinite(const Eigen::ArrayXd& values) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
 #include "twin/plausible/goes_with.h"
 #include "twin/plausible/repeated_places.h"
@@ -32,12 +33,12 @@ std::vector<double> LeftOf(const Channel& channel, const Expected& expected) {
 
 /// Upper bound of the white noise: the course of a channel and what repeats differ by are in it.
 double NoiseBound(const Channel& channel, const std::vector<double>& left) {
-  std::vector<double> bounds = {ScatterOf(left)};
+  std::vector<double> bounds = {RobustNoiseOnCourse(left)};
   std::vector<double> repeats = Between(Repeats(channel), left);
   if (repeats.size() >= kFewestToJudge) {
     const double middle = MiddleOf(repeats);
     for (double& one : repeats) one -= middle;
-    bounds.push_back(1.4826 * MiddleOf(Sizes(std::move(repeats))) / std::sqrt(2.0));
+    bounds.push_back(RobustDeviation(std::move(repeats)) / std::sqrt(2.0));
   }
   return *std::ranges::min_element(bounds);
 }
@@ -124,7 +125,7 @@ void CheckSingleValues(const Channel& channel, const Expected& expected, std::ve
     unlike[first] = std::min(unlike[first], apart);
     unlike[second] = std::min(unlike[second], apart);
   }
-  const double usual = std::max({ScatterOf(left), expected.noise, expected.step, StepOf(channel)});
+  const double usual = std::max({RobustNoiseOnCourse(left), expected.noise, expected.step, StepOf(channel)});
   std::size_t worst = 0;
   double times = 0.0;
   for (std::size_t i = 1; i + 1 < channel.size() && usual > 0.0; ++i) {

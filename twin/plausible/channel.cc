@@ -68,12 +68,6 @@ double MiddleOf(std::vector<double> x) {
   return x.empty() ? 0.0 : Median(std::move(x));
 }
 
-double ScatterOf(const std::vector<double>& x) {
-  std::vector<double> size;
-  for (std::size_t i = 2; i < x.size(); ++i) size.push_back(std::abs(x[i] - 2.0 * x[i - 1] + x[i - 2]));
-  return 1.4826 * MiddleOf(std::move(size)) / std::sqrt(6.0);
-}
-
 std::vector<Pair> Neighbours(const Channel& channel) {
   std::vector<Pair> pairs;
   for (std::size_t i = 1; i < channel.size(); ++i) {

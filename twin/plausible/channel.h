@@ -32,9 +32,6 @@ bool Moves(const Channel& channel);
 /// The step of which all values are multiples; 0 if there is none.
 double StepOf(const Channel& channel);
 
-/// Standard deviation of white noise on a smooth course, from second differences.
-double ScatterOf(const std::vector<double>& x);
-
 /// Without their signs.
 std::vector<double> Sizes(std::vector<double> x);
 

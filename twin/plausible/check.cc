@@ -7,6 +7,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
+#include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
 #include "twin/plausible/against_expected.h"
 #include "twin/plausible/channel.h"
@@ -99,10 +100,11 @@ std::vector<double> Beside(const Channel& channel, const std::vector<Reading>& r
 
 /// A device that was driven by its own readings, from one to the next, has them evenly spaced.
 bool AreChosenStops(const Channel& channel) {
+  constexpr double kEven = 1e-3;  // but for its errors and the last digit
   std::vector<double> way;
   for (std::size_t i = 1; i < channel.size(); ++i) way.push_back(std::abs(channel.value[i] - channel.value[i - 1]));
   const double usual = MiddleOf(way);
-  const auto even = std::ranges::count_if(way, [usual](double w) { return std::abs(w - usual) < 1e-6 * usual; });
+  const auto even = std::ranges::count_if(way, [usual](double w) { return std::abs(w - usual) < kEven * usual; });
   return 10 * even > 9 * std::ssize(way);
 }
 
@@ -110,7 +112,7 @@ bool AreChosenStops(const Channel& channel) {
 void CheckSteps(const Channel& channel, const std::vector<double>& beside, std::vector<Finding>& findings) {
   if (channel.value.size() < kFewestToJudge || channel.column->role != ColumnRole::kShown) return;
   const double step = StepOf(channel);
-  if (!(step > 2.0 * ScatterOf(beside)) || AreChosenStops(channel)) return;
+  if (!(step > 2.0 * RobustNoiseOnCourse(beside)) || AreChosenStops(channel)) return;
   Reading reading;
   channel.column->number(reading) = step;
   const double shown = ParseNumber(channel.column->print(reading)).value_or(kNaN);

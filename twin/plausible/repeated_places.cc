@@ -7,6 +7,7 @@
 #include <map>
 #include <tuple>
 
+#include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
 
 namespace twinbench::plausible {
@@ -102,7 +103,7 @@ void CheckRepeatedPlaces(const Expected& expected, const Channel& channel, const
     if (std::isfinite(one)) sizes.push_back(std::abs(one));
   if (sizes.size() < kFewestToJudge) return;
   const double usual =
-      std::max({1.4826 * MiddleOf(std::move(sizes)), expected.noise, expected.step, StepOf(channel)});
+      std::max({RobustDeviation(std::move(sizes)), expected.noise, expected.step, StepOf(channel)});
   double times = kTimesOthers;
   std::size_t worst = channel.size();
   for (const RowsOfPass& pass : passes) {

@@ -157,7 +157,7 @@ std::vector<TwinComparison::TabulatedOrder> OrdersOf(const TransmissionSettings&
   const auto add = [&](int order) { meanings[order] = MeaningOf(order, train); };
   for (int k = 1; k <= kLowOrders; ++k) add(k);
   for (const double k : {train.HobOrder(), static_cast<double>(train.gear_teeth), train.WormOrder()})
-    if (k == std::round(k)) add(static_cast<int>(k));
+    if (k >= 1.0 && k == std::round(k)) add(static_cast<int>(k));
   std::vector<TwinComparison::TabulatedOrder> orders;
   for (const auto& [order, meaning] : meanings) orders.push_back({order, meaning});
   return orders;
@@ -231,7 +231,7 @@ TwinComparison Comparison(const std::vector<Reading>& readings, const Scenario& 
   comparison.sampled = SampledOf(HobOf(scenario), angles);
   comparison.orders = OrdersOf(train);
   comparison.named = {{"ring harmonic", ""}, {"hob harmonic", ""}, {"direction offset", ""}, {"transition", ""},
-                      {"speed", ""},         {"trend", ""},        {"step", "slip"},         {"tone", "tone"}};
+                      {"speed", ""},         {"trend", ""}, {"slope", ""},        {"step", "slip"},         {"tone", "tone"}};
   comparison.most_causes = 6;
   if (!HasClock(readings)) comparison.unrecorded = {"latency"};
   comparison.bends = true;

@@ -71,7 +71,9 @@ std::vector<Cause> ErringSo(double periods_per_turn, const TransmissionSettings&
 /// The nearest of the counts that anything errs by: whole numbers per turn of the hob, and per turn of the table.
 std::vector<double> WholeNear(double periods_per_turn, const TransmissionSettings& train) {
   const double of_table = std::round(periods_per_turn * train.HobOrder());
-  return {std::round(periods_per_turn), of_table / train.HobOrder(), train.WormOrder() / train.HobOrder()};
+  std::vector<double> whole = {std::round(periods_per_turn), of_table / train.HobOrder()};
+  if (train.WormOrder() > 0.0) whole.push_back(train.WormOrder() / train.HobOrder());
+  return whole;
 }
 
 bool IsListed(const std::vector<Cause>& causes, const Cause& one) {

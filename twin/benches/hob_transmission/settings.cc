@@ -18,7 +18,7 @@ void AddTransmission(Keys& keys, TransmissionSettings& s) {
   Table t(keys, "transmission");
   t.Add("hob_starts", kPure, {1, 1000}, &s.hob_starts, "of the hob");
   t.Add("gear_teeth", kPure, {1, 100000}, &s.gear_teeth, "that the hob would cut: the gearbox's ratio");
-  t.Add("worm_wheel_teeth", kPure, {1, 100000}, &s.worm_wheel_teeth, "of the table's worm wheel");
+  t.Add("worm_wheel_teeth", kPure, {0, 100000}, &s.worm_wheel_teeth, "of the table's worm wheel; 0: no worm, or one that nobody knows");
   t.Add("worm_starts", kPure, {1, 1000}, &s.worm_starts, "of the worm");
   t.Add("harmonics", kPure, {}, &s.harmonics, "of the transmission error: amplitude * cos(order * table + phase)");
   t.Add("free_orders", kPure, UpTo(1000), &s.free_orders, "an evaluation takes the orders up to this as unknown");

@@ -215,7 +215,7 @@ void SetStructure(const diagnose::Compared& c, const Scenario& scenario, diagnos
   design.detectors = {{0, 1}, {2, 3}};
   design.plausible = 0.5 * units::um;
   design.plausible_share = 0.005;
-  design.named = {{"tone", "tone"}, {"step", "slip"}, {"direction offset", ""}, {"trend", ""}, {"restart", ""}, {"temperature", ""}};
+  design.named = {{"tone", "tone"}, {"step", "slip"}, {"direction offset", ""}, {"trend", ""}, {"slope", ""}, {"restart", ""}, {"temperature", ""}};
 }
 
 }  // namespace twinbench::benches::rotary

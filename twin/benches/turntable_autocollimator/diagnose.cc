@@ -272,7 +272,7 @@ TwinComparison Comparison(const std::vector<Reading>& readings, const Scenario& 
   if (shows_tilt) AddRipples(readings, "y", Y_rad, own, comparison);
   comparison.tones = comparison.steps = {{"x", Eigen::Vector2d::UnitX()}, {"y", Eigen::Vector2d::UnitY()}};
   comparison.named = {{"direction offset", ""},
-                      {"trend", ""},
+                      {"trend", ""}, {"slope", ""},
                       {"tone", "tone"},
                       {"step", "slip"},
                       {"linear map", ""},

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "twin/core/distributions.h"
+#include "twin/core/robust_scale.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
@@ -28,15 +29,15 @@ Standardised Standardise(const Rest& rest) {
   Standardised s;
   s.z = Eigen::VectorXd::Zero(rest.rows.size());
   s.kept = rest.redundancy;
-  std::vector<double> sizes;
+  std::vector<double> sure;
   for (Eigen::Index k = 0; k < rest.rows.size(); ++k) {
     if (rest.redundancy[k] < kLeastRedundancy) continue;
     s.z[k] = rest.rows[k] / std::sqrt(rest.redundancy[k]);
     s.rows.push_back(static_cast<int>(k));
-    sizes.push_back(std::abs(s.z[k]));
+    sure.push_back(s.z[k]);
   }
-  if (sizes.empty()) return s;
-  s.scale = std::max(Median(sizes) / 0.6745, 1e-12);
+  if (sure.empty()) return s;
+  s.scale = std::max(RobustDeviation(std::move(sure)), 1e-12);
   s.z /= s.scale;
   return s;
 }

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "twin/core/distributions.h"
+#include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
 
 namespace twinbench::diagnose {
@@ -36,20 +36,14 @@ double RootMeanSquare(const std::vector<double>& values, double most, std::size_
   return std::sqrt(square / static_cast<double>(kept));
 }
 
-double MedianOfAbsolutes(std::vector<double> values) {
-  for (double& v : values) v = std::abs(v);
-  return Median(std::move(values));
-}
-
 /// Begins with the median of absolute values, which outliers hardly move, and goes on to the rms of what lies
 /// within three deviations, which uses nearly all that the values can say. The plain rms where the median is zero
 /// because the readings have coarse steps.
 Scatter SpreadOf(const std::vector<double>& values) {
   if (values.size() < kFewestDifferences) return {};
-  constexpr double kNormal = 1.4826;    // deviation of a normal distribution / its median of absolute values
   constexpr double kWithin3 = 0.98658;  // deviation of a normal distribution within three deviations
   std::size_t kept = 0;
-  double sd = kNormal * MedianOfAbsolutes(values);
+  double sd = RobustDeviation(values);
   if (sd == 0.0)
     return {RootMeanSquare(values, std::numeric_limits<double>::infinity(), kept),
             static_cast<double>(values.size())};

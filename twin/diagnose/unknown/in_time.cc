@@ -284,7 +284,7 @@ void AddTrends(Collector& collect) {
   });
   collect.GoByTime();
   if (!d.angles.empty() && d.angles.front().first_unfree > 0)
-    collect.Add("trend", model::Unit(d.angles.front().rad),
+    collect.Add("slope", model::Unit(d.angles.front().rad),
                 "linear trend synchronous with " + d.angles.front().name + ", same in both directions");
 }
 

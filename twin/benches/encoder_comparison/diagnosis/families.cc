@@ -100,6 +100,11 @@ int LeastOrder(const SignalContext& context) {
   return of(kLeast) <= kLastWithReason ? std::max(1, of(kLeast)) : std::max(kLastWithReason + 1, of(kWithoutReason));
 }
 
+double OrdersApart(const SignalContext& context) {
+  constexpr double kOfPeriod = 0.5;
+  return std::max(1.0, kOfPeriod * units::turn / RangeOfSetUp_rad(context));
+}
+
 int LargestOrder(const SignalContext& context) {
   // Teeth of a worm wheel, poles of a motor; of a part of a turn as many that it tells apart, which reach as much
   // farther.
@@ -110,7 +115,8 @@ int LargestOrder(const SignalContext& context) {
       6.4;  // times as wide a step has the Nyquist order that means over it lower by a hundredth
   const double step_rad = (context.has_means ? kDimmed : 1.0) * FinestSpacing_rad(context);
   const int most = static_cast<int>(kMost / part), by_spacing = model::HighestOrder(step_rad, most);
-  const bool has_more = part == 1.0 && !context.has_means && by_spacing > 0 && by_spacing < most;
+  // On the move the reference's own steps would look like such an order.
+  const bool has_more = part == 1.0 && !context.Moves() && by_spacing > 0 && by_spacing < most;
   return has_more ? LargestToldApart(context.reference_rad, by_spacing, most) : by_spacing;
 }
 

@@ -33,9 +33,12 @@ double RangeOfSetUp_rad(const SignalContext& context);
 /// The least whole order of which the run shows enough of a period to know one: 1 of a whole turn.
 int LeastOrder(const SignalContext& context);
 
-/// The largest whole order that these readings can tell from lower ones: two readings a period, or more orders where positions are
-/// uneven;
-/// of one as much more; of means over the way from one to the next, that they lower by no more than a hundredth.
+/// Orders that differ by less are not told apart in what one set-up shows of a turn.
+double OrdersApart(const SignalContext& context);
+
+/// The largest whole order that these readings can tell from lower ones: two readings a period, or more where stops are
+/// uneven; at most 720 of a turn, of a part of one as much more; of means over the way from one to the next, that they
+/// lower by no more than a hundredth.
 int LargestOrder(const SignalContext& context);
 
 }  // namespace twinbench::diagnose::encoder

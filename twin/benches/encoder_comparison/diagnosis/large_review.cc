@@ -24,14 +24,6 @@ bool IsOfAngle(const EffectSettings& effect) {
   return WaveOrderOf(effect) || std::ranges::count(kOfTurn, effect.name) > 0;
 }
 
-constexpr double kLikelier = 4.0;  // of power in units of noise
-
-/// Orders that differ by less are not told apart in what one set-up shows of a turn.
-double OrdersApart(const SignalContext& c) {
-  constexpr double kOfPeriod = 0.5;
-  return std::max(1.0, kOfPeriod * units::turn / RangeOfSetUp_rad(c));
-}
-
 /// As if what was found were not there.
 void TellNothing(Searched& searched) {
   searched.analysis.found.first_statistic = searched.analysis.found.last_statistic;
@@ -44,6 +36,7 @@ void LargeSearch::EndTies() {
   FittedCauses now = fit_->Fit(large_.causes);
   if (SettleTies(*fit_, now)) {
     Accept(now.asked, std::move(now.causes), kMostCauses);
+    LeaveToLarge();
   } else {
     large_.causes = std::move(now.causes);
   }
@@ -136,9 +129,7 @@ void LargeSearch::DropNeedless() {
       if (strength[k] > *weakest) kept.push_back(large_.causes[k]);  // those that are none at all go together
     }
     if (kept.empty()) return SearchPlain();
-    const AskedAgain asked = fit_->Ask(kept);
-    Accept(asked, std::move(kept), kMostCauses);
-    LeaveToLarge();
+    if (!TakeInstead(std::move(kept))) return;
   }
 }
 
@@ -195,112 +186,6 @@ std::vector<Cause> LargeSearch::InPlaceOf(std::size_t k) const {
   const auto searched = SearchIn(std::move(encoder), options_.excluded, how);
   if (searched->analysis.found.terms.empty()) return {};
   return AnswerOf(searched->analysis.found, 0, searched->families).causes;
-}
-
-/// What the last search found and has a name.
-std::vector<Term*> LargeSearch::NamedTerms() {
-  Searched& last = large_.last ? *large_.last : *large_.first;
-  std::vector<Term*> named;
-  for (Term& term : last.analysis.found.terms)
-    if (last.families[static_cast<std::size_t>(term.family)].kind == Kind::kNamed) named.push_back(&term);
-  return named;
-}
-
-/// Large causes beside what the last search found: what of it has a name is free.
-LargeSearch::Beside LargeSearch::AskBeside(const std::vector<LargeCause>& causes) {
-  Beside beside{{}, Eigen::MatrixXd(large_.first->encoder.run.Rows(), 0), {}};
-  Eigen::VectorXd named = Eigen::VectorXd::Zero(beside.columns.rows());
-  for (const Term* term : NamedTerms()) {
-    named += term->columns * term->amplitudes;
-    beside.columns.conservativeResize(Eigen::NoChange, beside.columns.cols() + term->columns.cols());
-    beside.columns.rightCols(term->columns.cols()) = term->columns;
-  }
-  Nuisance free = large_.first->encoder.run.nuisance;
-  const Eigen::VectorXd any = Eigen::VectorXd::Constant(beside.columns.cols(), 1.0 / std::sqrt(free.prior_precision[0]));
-  LeaveFree({{}, {}, beside.columns, any}, free);
-  beside.asked = fit_->Ask(causes, LeftByTerms() + named, free);
-  beside.left = beside.asked.left - named;
-  return beside;
-}
-
-/// What is small was found with the parameters of the large causes free: these go to where they are best beside
-/// it, and it goes with them.
-void LargeSearch::MoveBesideTheRest() {
-  if (large_.causes.empty()) return;
-  Beside beside = AskBeside(large_.causes);
-  const double more = std::sqrt(fit_->Memory(beside.left));
-  for (EffectSettings& effect : beside.asked.effects) {
-    for (auto& [parameter, u] : effect.finding.u) u *= more;
-  }
-  TakeOver(beside.asked, large_.causes);
-  if (beside.columns.cols() == 0) return;
-  const Eigen::VectorXd weight = large_.first->encoder.run.sigma.cwiseInverse();
-  const Eigen::VectorXd moved = SolveShortest(fit_->projector().Apply(weight.asDiagonal() * beside.columns), fit_->WhiteOf(beside.left));
-  Eigen::Index at = 0;
-  for (Term* term : NamedTerms()) {
-    term->amplitudes += moved.segment(at, term->columns.cols());
-    at += term->columns.cols();
-  }
-}
-
-/// What no fit moves is asked again when all else is there. Whether stops were reached in their direction or straight shows
-/// where the shaft turned, a matter of a few readings: of a gap that is crossed at once. An order of a part of a turn may
-/// have been the next one to it.
-std::vector<EffectSettings> LargeSearch::OthersLike(const EffectSettings& effect) const {
-  const SignalContext& c = large_.first->encoder.context;
-  std::vector<EffectSettings> others;
-  if (effect.parameters.contains("approach") && !c.Moves()) {
-    std::map<std::string, double>& parameters = others.emplace_back(effect).parameters;
-    parameters["approach"] = parameters["approach"] > 0.5 ? 0.0 : 1.0;
-    const auto way = parameters.find("crossed_over");
-    if (const double spacing_rad = FinestSpacing_rad(c); way != parameters.end() && spacing_rad > 0.0)
-      way->second = std::min(way->second, spacing_rad);
-  }
-  constexpr std::size_t kFew = 4;  // many are the pieces of a curve
-  if (effect.name != "periodic" || !c.Moves() || LeastOrder(c) == 1 || large_.causes.size() > kFew) return others;
-  for (const double by : {-1.0, 1.0}) others.emplace_back(effect).parameters["order"] += by;
-  return others;
-}
-
-/// @return true if one of the others is better.
-bool LargeSearch::TakeOther() {
-  std::optional<double> now;  // most have no others, and need no fit
-  for (std::size_t k = 0; k < large_.causes.size(); ++k) {
-    for (const EffectSettings& other : OthersLike(large_.causes[k].effect)) {
-      if (!now) now = AskBeside(large_.causes).asked.power;
-      std::vector<LargeCause> causes = large_.causes;
-      causes[k].effect = other;
-      const double least = other.name == "periodic" ? kLikelier : kBetter;  // one order of many, but no new cause
-      if (!(AskBeside(causes).asked.power < *now - least)) continue;
-      const AskedAgain asked = fit_->Ask(causes);
-      if (!asked.slopes.allFinite()) continue;  // at the end of what is possible
-      Accept(asked, std::move(causes), kMostCauses);
-      LeaveToLarge();
-      return true;
-    }
-  }
-  return false;
-}
-
-/// What others make look bent is straight beside them.
-/// @return true if there was such a cause.
-bool LargeSearch::Straighten() {
-  constexpr double kSeen = 2.0;  // of its uncertainty
-  std::vector<LargeCause> causes = large_.causes;
-  bool is_changed = false;
-  for (LargeCause& cause : causes) {
-    std::vector<ParameterEstimate>& parameters = cause.causes.front().parameters;
-    const auto needless = [](const ParameterEstimate& p) { return p.name == "curvature" && std::abs(p.value) < kSeen * p.u; };
-    if (std::erase_if(parameters, needless) == 0) continue;
-    cause.effect.parameters["curvature"] = 0.0;
-    cause.effect.finding.u.erase("curvature");
-    is_changed = true;
-  }
-  if (!is_changed || !(AskBeside(causes).asked.power < AskBeside(large_.causes).asked.power + kBetter)) return false;
-  const AskedAgain asked = fit_->Ask(causes);
-  Accept(asked, std::move(causes), kMostCauses);
-  LeaveToLarge();
-  return true;
 }
 
 /// What is left for the large causes once the last search has explained the rest. A random walk is noise beside them: its many

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <map>
+#include <utility>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
@@ -68,19 +69,24 @@ void LeaveSharedToLarge(const Eigen::MatrixXd& free, const std::vector<LargeCaus
   }
 }
 
-/// They are pieces of one wave.
-bool IsOneWave(const LargeCause& a, const LargeCause& b) {
-  return a.effect.name == b.effect.name && a.effect.where == b.effect.where && WaveOrderOf(a.effect) &&
-         WaveOrderOf(a.effect) == WaveOrderOf(b.effect) && a.effect.parameters.contains("phase");
+/// Waves of one effect whose orders these readings do not tell apart.
+bool AreOneWave(const LargeCause& a, const LargeCause& b, double apart) {
+  const std::optional<double> order = WaveOrderOf(a.effect), other = WaveOrderOf(b.effect);
+  return a.effect.name == b.effect.name && a.effect.where == b.effect.where && a.effect.parameters.contains("phase") &&
+         order && other && std::abs(*order - *other) < apart;
 }
 
-LargeCause SumOfWaves(LargeCause wave, const LargeCause& more) {
+/// The wave of this order that is what both are together in the middle of the readings.
+LargeCause SumOfWaves(LargeCause wave, const LargeCause& more, double order, double middle_rad) {
+  std::complex<double> sum;
+  for (const LargeCause* part : {&std::as_const(wave), &more}) {
+    const double phase_rad = part->effect.parameters.at("phase") + *WaveOrderOf(part->effect) * middle_rad;
+    sum += std::polar(part->effect.parameters.at("amplitude"), phase_rad);
+  }
   std::map<std::string, double>& of = wave.effect.parameters;
-  const std::complex<double> sum =
-      std::polar(of.at("amplitude"), of.at("phase")) +
-      std::polar(more.effect.parameters.at("amplitude"), more.effect.parameters.at("phase"));
+  of["order"] = order;
   of["amplitude"] = std::abs(sum);
-  of["phase"] = std::arg(sum);
+  of["phase"] = std::arg(sum) - order * middle_rad;
   return wave;
 }
 
@@ -212,7 +218,8 @@ bool LargeSearch::TakeNext() {
 
 bool LargeSearch::Take(const LargeCause& next) {
   std::vector<LargeCause> causes = large_.causes;
-  const auto same = std::ranges::find_if(causes, [&](const LargeCause& cause) { return IsOneWave(cause, next); });
+  const double apart = OrdersApart(large_.first->encoder.context);
+  const auto same = std::ranges::find_if(causes, [&](const LargeCause& cause) { return AreOneWave(cause, next, apart); });
   if (same != causes.end()) return TakeSum(static_cast<std::size_t>(same - causes.begin()), next);
   causes.push_back(next);
   // Of a cause whose size is not known there is nothing to be asked.
@@ -227,16 +234,28 @@ bool LargeSearch::Take(const LargeCause& next) {
   return true;
 }
 
-/// A second wave of the k-th one's order is what that lacks: it was fitted before all was there.
-/// @return false if that does not explain it.
+/// A second wave of the k-th one's order, or of one that is not told from it, is what that lacks: it was fitted before all
+/// was there.
+/// @return false if no order about both explains it.
 bool LargeSearch::TakeSum(std::size_t k, const LargeCause& more) {
-  std::vector<LargeCause> causes = large_.causes;
-  causes[k] = SumOfWaves(causes[k], more);
-  const AskedAgain asked = fit_->Ask(causes);
-  const double power = fit_->PowerOf(asked.left);
+  constexpr double kMostOrdersTried = 16.0;
+  const double middle_rad = large_.first->encoder.context.device_rad.mean();
+  const auto [first, last] = std::minmax(*WaveOrderOf(large_.causes[k].effect), *WaveOrderOf(more.effect));
+  const double about = first < last ? 1.0 : 0.0, step = std::max(1.0, std::ceil((last - first) / kMostOrdersTried));
+  std::vector<LargeCause> best;
+  AskedAgain of_best;
+  for (double order = first - about; order <= last + about; order += step) {
+    std::vector<LargeCause> causes = large_.causes;
+    causes[k] = SumOfWaves(causes[k], more, order, middle_rad);
+    const AskedAgain asked = fit_->Ask(causes);
+    if (!best.empty() && !(asked.power < of_best.power)) continue;
+    best = std::move(causes);
+    of_best = asked;
+  }
+  const double power = fit_->PowerOf(of_best.left);
   if (!(power < power_ - kBetter)) return false;
-  causes[k].explained += power_ - power;
-  Accept(asked, std::move(causes), kFewCauses);
+  best[k].explained += power_ - power;
+  Accept(of_best, std::move(best), kFewCauses);
   return true;
 }
 

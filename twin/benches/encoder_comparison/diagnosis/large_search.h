@@ -65,6 +65,7 @@ class LargeSearch {
   std::vector<EffectSettings> OthersLike(const EffectSettings& effect) const;
   bool TakeOther();
   bool Straighten();
+  bool TakeInstead(std::vector<LargeCause> causes);
   Eigen::VectorXd LeftByTerms() const;
   void TellWhatEachShows();
   void TellWhatNamesLeave();

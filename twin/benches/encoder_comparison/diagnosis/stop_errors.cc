@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "twin/benches/encoder_comparison/diagnosis/target_curve.h"
-#include "twin/core/distributions.h"
+#include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/model/signals.h"
@@ -120,7 +120,7 @@ Eigen::MatrixXd TargetsThatStandOut(const EncoderRun& encoder, const Eigen::Matr
   if (targets.cols() < kFewest) return targets;
   const Eigen::VectorXd error_rad = AtTargets(targets, encoder.run.residual);
   const Eigen::VectorXd off = OffSmoothCurve(AtTargets(targets, encoder.context.device_rad), error_rad, kWaves).cwiseAbs();
-  const double usual_rad = Median(std::vector<double>(off.begin(), off.end())) / 0.6745;
+  const double usual_rad = RobustDeviation(off);
   const double visits = static_cast<double>(targets.rows()) / static_cast<double>(targets.cols());
   if (usual_rad > kLikeNoise * encoder.run.sigma.mean() / std::sqrt(visits)) return targets;
   std::vector<Eigen::Index> far;

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "twin/core/distributions.h"
 #include "twin/core/linear_algebra.h"
+#include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/unknown/collector.h"
 
@@ -55,10 +55,9 @@ Eigen::VectorXd OffSmoothCurve(const Eigen::VectorXd& target_rad, const Eigen::V
   for (int round = 0; round < kRounds; ++round) {
     const Eigen::VectorXd root = weight.sqrt();
     off = error_rad - modes * SolveShortest(Eigen::MatrixXd(root.asDiagonal() * modes), Eigen::VectorXd(root.cwiseProduct(error_rad)));
-    const Eigen::ArrayXd size = off.array().abs();
-    const double usual = Median(std::vector<double>(size.begin(), size.end())) / 0.6745;
+    const double usual = RobustDeviation(off);
     if (!(usual > 0.0)) break;
-    weight = (1.0 - (size / (kTukey * usual)).min(1.0).square()).square();
+    weight = (1.0 - (off.array().abs() / (kTukey * usual)).min(1.0).square()).square();
   }
   return off;
 }

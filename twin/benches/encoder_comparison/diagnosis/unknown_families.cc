@@ -93,8 +93,9 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   design.to_SI = encoder.run.to_SI;
   design.plausible = plausible_rad;
   design.may_be_touched = true;
-  design.named = {{"harmonic", ""}, {"direction offset", ""}, {"transition", ""}, {"step", "slip"}, {"trend", ""}, {"temperature", "zero_temperature"}};
-  if (!c.has_clock) design.named.erase("trend");  // no drift is tried
+  design.named = {{"harmonic", ""}, {"direction offset", ""}, {"transition", ""}, {"step", "slip"}, {"trend", ""}, {"slope", "scale"}, {"temperature", "zero_temperature"}};
+  // No drift is tried; in one pass it is the slope.
+  if (!c.has_clock && !unknown::TimeFollowsAngle(design)) design.named.erase("trend");
   // Of one pass in each direction, what differs from pass to pass is what a reversal leaves.
   const bool is_turned_once = std::ranges::max(c.pass) - std::ranges::min(c.pass) == 1;
   if (is_turned_once && design.senses.front().maxCoeff() > design.senses.front().minCoeff()) design.named.emplace("pass", "");

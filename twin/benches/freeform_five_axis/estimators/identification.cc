@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "twin/core/linear_algebra.h"
+#include "twin/core/robust_scale.h"
 
 namespace twinbench::benches::freeform::estimators {
 namespace {
@@ -147,7 +148,7 @@ std::optional<LoneValue> LoneIn(const std::vector<PoseRead>& poses, const Eigen:
     std::vector<double> rising(sizes.begin(), sizes.end());
     std::ranges::sort(rising);
     if (rising.size() < 2) return {};
-    const double scatter = 1.4826 * rising[rising.size() / 2], largest = rising.back(), next = rising.rbegin()[1];
+    const double scatter = RobustDeviation(rising), largest = rising.back(), next = rising.rbegin()[1];
     if (!(largest > kTimesOthers * scatter && largest > kTimesNext * next)) continue;
     Eigen::Index pose = 0;
     sizes.maxCoeff(&pose);

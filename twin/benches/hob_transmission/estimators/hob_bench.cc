@@ -57,7 +57,7 @@ std::vector<int> OrdersToCompare(const TransmissionSettings& t, int highest) {
   for (const double order : {1.0, 2.0, t.HobOrder(), static_cast<double>(t.gear_teeth), t.WormOrder()}) {
     const bool whole = order == std::floor(order);
     const int k = static_cast<int>(order);
-    if (whole && k <= highest && std::ranges::find(orders, k) == orders.end()) orders.push_back(k);
+    if (whole && k >= 1 && k <= highest && std::ranges::find(orders, k) == orders.end()) orders.push_back(k);
   }
   return orders;
 }
