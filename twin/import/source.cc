@@ -120,8 +120,9 @@ Recording BeginOfTable(const std::string& path) {
   std::string text = LoadText(path);
   if (std::vector<std::string> said; IsBarExport(FirstLines(text))) text = TableOfBarExport(text, path, said);
   const std::vector<std::string_view> lines = FirstLines(text);
+  constexpr std::size_t kBegin = 5000;  // lines: an axis may rest for a while before it moves
   std::string begin;
-  for (const std::string_view line : lines) begin += std::string(line) + "\n";
+  for (const std::string_view line : FirstLines(text, kBegin)) begin += std::string(line) + "\n";
   try {
     if (FindKind(lines, false) == "records")
       ReadRecords(text, {}, {}, recording);

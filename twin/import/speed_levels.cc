@@ -38,10 +38,12 @@ std::vector<double> Levels(std::vector<double> x, const std::string& where) {
   return x;
 }
 
-std::vector<double> Unsteady(const std::vector<double>& speed, const std::vector<double>& time_s, const std::string& where) {
+std::vector<double> Unsteady(const std::vector<double>& of_row, const std::vector<double>& time_s, const std::string& where) {
   constexpr double kOff = 0.003, kOffByPrint = 6.0;  // of the speed; of what the digits of the file make of it
   constexpr double kSettling_s = 0.06;
   constexpr std::size_t kFewestRows = 3;
+  std::vector<double> speed = of_row;
+  std::ranges::replace_if(speed, [](double v) { return !std::isfinite(v); }, 0.0);  // at no level, nor are those behind it
   std::vector<double> off = Levels(speed, where);
   std::map<double, std::vector<double>> kept;  // by level, which is a rounded one
   for (std::size_t i = 0; i < speed.size(); ++i) kept[off[i]].push_back(speed[i]);
