@@ -292,6 +292,42 @@ TEST(EncoderDominant, ACourseInTimeThatDoesNotRepeatIsNoOrder) {
   EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kUnknown) << answer.Words();
 }
 
+/// A scale in one pass and no clock is a scale, whatever part of a turn that is.
+TEST(EncoderDominant, ASlopeOfASinglePassIsAScale) {
+  for (const double range_deg : {60.0, 270.0, 400.0, 900.0}) {
+    std::mt19937_64 random(31);
+    std::normal_distribution<double> noise_deg(0.0, 0.0003);
+    Record record;
+    record.kind = "stops";
+    for (int k = 0; k < 40; ++k) {
+      const double r_deg = range_deg * k / 39.0;
+      record.Add(k, r_deg, r_deg + 0.01 * r_deg / range_deg + noise_deg(random), 1, 0);
+      record.readings.back().extra[kClockColumn] = kNoClock;
+    }
+    const Answer answer = Ask(record);
+    EXPECT_TRUE(answer.Names("scale", 0.5)) << range_deg << answer.Words();
+    EXPECT_NEAR(answer.Value("scale", "ratio"), 0.01 / range_deg, 0.1 * 0.01 / range_deg) << range_deg << answer.Words();
+  }
+}
+
+/// The worm beside a slope, as stops that have no clock.
+TEST(EncoderDominant, AnOrderBesideASlopeIsAskedAgain) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise_deg(0.0, 0.0002);
+    Record record;
+    record.kind = "stops";
+    for (int k = 0; k < 900; ++k) {
+      const double r_deg = 15.0 * k / 900.0;
+      record.Add(k, r_deg, r_deg + Sum({{144, 0.0039, 293.0}, {288, 0.0011, 270.0}}, r_deg) - 0.00053 * r_deg + noise_deg(random), 1, 0);
+      record.readings.back().extra[kClockColumn] = kNoClock;
+    }
+    const Answer answer = Ask(record);
+    EXPECT_NEAR(SizeOfOrder(answer, 144), 0.0039, 0.0001) << answer.Words();
+    EXPECT_NEAR(SizeOfOrder(answer, 288), 0.0011, 0.0001) << answer.Words();
+  }
+}
+
 /// The worm of a mount, seen over a thirtieth of a turn beside a drift: orders next to each other are hardly told apart.
 TEST(EncoderDominant, AnOrderOfAPartOfATurnIsOneAndTheRightOne) {
   for (const unsigned seed : {22u, 23u, 24u}) {

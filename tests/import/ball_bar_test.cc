@@ -85,6 +85,8 @@ TEST_F(BallBar, MayHaveAColumnForEachWayRound) {
 TEST_F(BallBar, MayShowItsLengthInPlaceOfTheDeviation) {
   const auto row = [](double a, int d) { return fmt::format("{} {:.7f} {}\n", a, 100.0 + Deviation_um(a, d) / 1000.0, d > 0 ? "+" : "-"); };
   Expect(Take("angle_deg radius_mm dir\n" + Circles(row)), 100.0, 1000.0);
+  const auto named = [](double a, int d) { return fmt::format("{},{},{:.7f}\n", d > 0 ? "ccw" : "cw", a, 100.0 + Deviation_um(a, d) / 1000.0); };
+  Expect(Take("dir,theta [deg],bar length [mm]\n" + Circles(named)), 100.0, 1000.0);
 }
 
 TEST_F(BallBar, TellsTheWayRoundByTheAngleWhereNothingElseDoes) {

@@ -83,6 +83,39 @@ TEST_F(Importing, TakesAReferenceInEqualStepsForNoClock) {
   EXPECT_THAT(MessageOf([&] { Take(text); }), HasSubstr("is not clear"));
 }
 
+TEST_F(Importing, PutsPartsWithAClockEachOneBehindTheOther) {
+  std::string text = "test,time [s],reference [deg],measured [deg]\n";
+  for (int part = 0; part < 3; ++part) {
+    for (int i = 0; i < 100; ++i) text += fmt::format("{},{:.2f},{:.2f},{:.2f}\n", part, 0.02 * i, 3.6 * i, 3.6 * i - 0.01);
+  }
+  const Imported taken = Take(text);
+  EXPECT_EQ(taken.readings.size(), 300u) << taken.story;
+  EXPECT_NEAR(ToSeconds(taken.readings.back().time - taken.readings.front().time), 3.0 * 99.0 * 0.02 + 2.0, 1e-6) << "with a second between them";
+  EXPECT_THAT(taken.story, HasSubstr("begins anew: 3 parts"));
+}
+
+TEST_F(Importing, KnowsJulianDates) {
+  std::string text = "JD,RA_encoder_deg,RA_error_arcsec,SNR\n";
+  for (int i = 0; i < 200; ++i) text += fmt::format("{:.8f},{:.5f},{:.3f},{:.1f}\n", 2460311.3 + 2.0 * i / 86400.0, 0.008 * i, 5.0 * std::sin(0.1 * i), 8.0 + i % 7);
+  const Imported taken = Take(text);
+  EXPECT_NEAR(ToSeconds(taken.readings.back().time - taken.readings.front().time), 398.0, 0.01);
+  EXPECT_THAT(taken.story, HasSubstr("\"RA_error_arcsec\" is taken as the device less the reference"));
+}
+
+/// Of a sine whose rows are missing for a third of a period.
+TEST_F(Importing, TakesNoSpeedOverAPause) {
+  std::string text = "time_s,reference_deg,measured_deg\n";
+  for (int i = 0; i < 1200; ++i) {
+    const double t_s = 0.05 * i, phase = t_s / 17.0 * units::turn;
+    if (std::fmod(t_s, 20.0) < 6.0) continue;
+    text += fmt::format("{:.3f},{:.5f},{:.5f}\n", t_s, 90.0 + 75.0 * std::sin(phase), 90.0 + 75.0 * std::sin(phase));
+  }
+  for (const Reading& r : Take(text).readings) {
+    const double t_s = ToSeconds(r.time) + 6.0, peak_deg_s = 75.0 * units::turn / 17.0;
+    EXPECT_NEAR(r.velocity_rad_s / units::deg, peak_deg_s * std::cos(t_s / 17.0 * units::turn), 0.05) << t_s;
+  }
+}
+
 /// "dwell time" and "cycle time" are of a row, not between rows.
 TEST_F(Importing, TakesATimeThatDoesNotGoOnForNoClock) {
   std::string text = "settling_time [ms];stamp;reference [deg];measured [deg]\n";

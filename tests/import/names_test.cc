@@ -103,6 +103,33 @@ TEST_F(Importing, TakesCountsByWhatIsStatedOrByThePowerOfTwoAtWhichTheyFollow) {
   EXPECT_KEPT(MessageOf([&] { Take(neither); }));
 }
 
+TEST_F(Importing, TakesArraysOfAProgramSideBySide) {
+  std::string reference = "static const float ref_angle[72] = {", device = "static const float enc_angle[72] = {";
+  for (int i = 0; i < 72; ++i) {
+    reference += fmt::format("{:.3f}f, ", 5.0 * i);
+    device += fmt::format("{:.3f}f, ", 5.0 * i + 0.5 * std::sin(5.0 * i * units::deg));
+  }
+  const Imported taken = Take("#pragma once\n" + reference + "};\n" + device + "};\n");
+  EXPECT_THAT(taken.story, HasSubstr("2 arrays in a program text, 72 entries each"));
+  EXPECT_NEAR(Worst_deg(taken.readings), 0.5, 0.002);
+}
+
+/// As a machine's or a laser's display prints them.
+TEST_F(Importing, TakesNamesWithBlanksBetweenWideGapsAndRunsBesideACounter) {
+  std::string blocks, runs = "Step,Calibrated length (mm),Rep 1 (mm),Rep 2 (mm),Rep 3 (mm)\n";
+  for (const char* way : {"forward", "reverse"}) {
+    blocks += fmt::format("Run 1 {}\nTarget (mm)  Error (um)\n", way);
+    for (int i = 0; i < 30; ++i) blocks += fmt::format("{:10.3f}{:10.2f}\n", way[0] == 'f' ? 12.5 * i : 12.5 * (29 - i), i == 7 ? 1.5 : 0.5);
+  }
+  for (int i = 0; i < 22; ++i) {
+    const double shown_mm = 20.0 * i + (i == 7 ? 0.001 : 0.0);
+    runs += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f}\n", i + 1, 20.0 * i, shown_mm, shown_mm, shown_mm);
+  }
+  EXPECT_NEAR(Worst_deg(Take(blocks).readings), 0.001 * 29.0 / 30.0, 1e-7) << "of the mean";
+  EXPECT_NEAR(Worst_deg(Take(runs).readings), 0.001 * 21.0 / 22.0, 1e-7);
+  EXPECT_THAT(Take(runs).story, HasSubstr("22 targets and 3 runs"));
+}
+
 TEST_F(Importing, TakesCountsOfAScaleThatErrsAndOfAMotorBehindAGear) {
   std::string scale = "angle [deg],encoder counts\n", gear = "angle [deg],motor counts\n";
   for (int i = 0; i < 72; ++i) {

@@ -96,6 +96,15 @@ TEST_F(TwoCommands, TakeAGearTrainToItsOrdersAndItsBacklash) {
   EXPECT_NEAR(amplitude_arcsec[2], 9.0, 0.2);
 }
 
+/// In even steps the lines of an encoder that nobody stated would be read at one phase.
+TEST_F(TwoCommands, FindNothingInAGearTrainReadInEvenSteps) {
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> noise_arcsec(0.0, 1.0);
+  std::string text = "hob_deg,table_deg\n";
+  for (int k = 0; k < 432; ++k) text += fmt::format("{:.4f},{:.6f}\n", 30.0 * k, 2.5 * k + noise_arcsec(random) / 3600.0);
+  EXPECT_THAT(Named("even.csv", text, {}), testing::IsEmpty());
+}
+
 /// Any number of rows a turn is enough for the orders that they show.
 TEST_F(TwoCommands, TakeAGearTrainWithFewRowsATurn) {
   std::string text = "input_deg,output_deg\n";

@@ -62,6 +62,19 @@ TEST_F(TwoEncoders, AreGuessedByTheNamesOfTheirShafts) {
   EXPECT_THAT(taken.story, Not(HasSubstr("against each other")));
 }
 
+/// An order of one turn of the output has a slope over it.
+TEST_F(TwoEncoders, HaveTheRatioOfSmallNumbersInASingleTurn) {
+  for (const int phase_deg : {0, 90, 265}) {
+    const Train train{60, 1, 40.0};
+    const Imported taken = Take("motor [deg],table [deg]\n" + Log(train, [&](int, double in, double) {
+                                  const double even_deg = in / 60.0;
+                                  return fmt::format("{:.7f},{:.7f}\n", in, even_deg + 40.0 / 3600.0 * std::cos((even_deg + phase_deg) * units::deg));
+                                }, 361, 360));
+    EXPECT_THAT(taken.set, Contains("transmission.gear_teeth=60")) << phase_deg;
+    EXPECT_THAT(taken.set, Contains("transmission.hob_starts=1")) << phase_deg;
+  }
+}
+
 TEST_F(TwoEncoders, MayStartAgainAtATurnInRadWithoutTimes) {
   const Train train{20, 1, 120.0};
   const auto wrapped = [](double deg) { return deg - 360.0 * std::floor(deg / 360.0); };

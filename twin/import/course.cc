@@ -71,7 +71,7 @@ std::vector<int> PartsOf(const std::vector<double>& time_s) {
   return begins;
 }
 
-/// Beside a pause: the slope at row `at` of the parabola through rows `a` to `b`.
+/// At an end of a part: the slope at row `at` of the parabola through rows `a` to `b`.
 double SlopeAt(int at, int a, int b, const std::vector<double>& x, const std::vector<double>& time_s) {
   const auto row = [](int i) { return static_cast<std::size_t>(i); };
   Eigen::MatrixXd powers(b - a + 1, std::min(b - a + 1, 3));
@@ -94,12 +94,11 @@ std::vector<double> Velocities(const std::vector<double>& x, const std::vector<d
   for (int i = 0, part = 0; i < rows; ++i) {
     if (i == begins[static_cast<std::size_t>(part) + 1]) ++part;
     const int first = begins[static_cast<std::size_t>(part)], last = begins[static_cast<std::size_t>(part) + 1] - 1;
-    const bool is_beside_pause = (first > 0 && i - window < first) || (last < rows - 1 && i + window > last);
-    if (is_beside_pause) {
+    if (i - window < first || i + window > last) {
       velocity.push_back(SlopeAt(i, std::max(first, i - 2 * window), std::min(last, i + 2 * window), x, time_s));
       continue;
     }
-    const auto a = static_cast<std::size_t>(std::max(0, i - window)), b = static_cast<std::size_t>(std::min(rows - 1, i + window));
+    const auto a = static_cast<std::size_t>(i - window), b = static_cast<std::size_t>(i + window);
     const double way_s = time_s[b] - time_s[a];
     velocity.push_back(way_s > 0.0 ? (x[b] - x[a]) / way_s : 0.0);
   }

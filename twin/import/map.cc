@@ -113,6 +113,7 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
         t.Add("otherwise", kPure, {}, &s.otherwise,
               "formulas where it is not found; the first whose names are known");
         t.Text("note", &s.note, {}, "what is said then, if that is a number");
+        t.Add("most", kPure, UpTo(1e9), &s.most, "a column whose values are usually larger is something else; 0: any");
       },
       "quantities that are looked for by their names");
   Table guess(keys, "guess");

@@ -42,6 +42,7 @@ struct Sought {
   std::vector<std::string> words;      // what it is called, in small letters, the clearest first
   std::vector<std::string> otherwise;  // where it is not found: the first formula of which every name is known
   std::string note;                    // what is said then, if that is a number; {}: the value
+  double most = 0.0;                   // a column whose values are usually larger is something else; 0: any
 };
 
 struct Map {

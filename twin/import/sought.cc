@@ -47,11 +47,20 @@ bool IsTurn(const Column& column) {
   return column.IsNumber() && std::ranges::all_of(column.value, [](double x) { return x == 1.0 || x == -1.0; });
 }
 
+/// The radius of a circle is no deviation from it.
+bool IsTooLarge(const Column& column, const Sought& sought) {
+  if (!(sought.most > 0.0)) return false;
+  const auto has = UnitNamed(column.unit);
+  std::vector<double> sizes;
+  for (const double x : column.value) sizes.push_back(std::abs(x));
+  return MedianOf(std::move(sizes)) * (has ? has->to_SI / UnitOf(sought).to_SI : 1.0) > sought.most;
+}
+
 bool CanBe(const Column& column, const Sought& sought, const Track& track) {
   constexpr double kSeldom = 0.25;
   if (sought.kind == "turn") return IsTurn(column);
   if (sought.kind == "column" && !column.IsNumber()) return UnitOf(sought).dimension == Dimension::kPure;
-  if (!column.IsNumber() || !UnitFits(column, sought, track)) return false;
+  if (!column.IsNumber() || !UnitFits(column, sought, track) || IsTooLarge(column, sought)) return false;
   if (sought.kind == "value") return ShareOfChanges(column) > kSeldom;
   return sought.kind == "any" || sought.kind == "column" || ShareOfChanges(column) <= kSeldom;
 }

@@ -30,6 +30,7 @@ Eigen::RowVectorXd TermsOf(double a_rad, double b_rad) {
 /// How far a goes with b, by least squares beside the errors of the first orders, and how much of its way it goes otherwise.
 struct Proportion {
   double ratio = kNaN, loose = kNaN;
+  bool has_turns = false;  // enough to tell an order from a line
 };
 
 /// Angles of two shafts from their first row on [rad], where both are known.
@@ -52,8 +53,12 @@ TwoShafts ShaftsOf(const std::vector<double>& wrapped_a, const std::vector<doubl
   return {from_first(a_rad), from_first(b_rad)};
 }
 
+bool HasTurns(const TwoShafts& shafts) {
+  constexpr double kTurnsToTell = 1.5;  // of the slower one; fewer do not tell an order from a line
+  return shafts.a_rad.cwiseAbs().cwiseMin(shafts.b_rad.cwiseAbs()).maxCoeff() > kTurnsToTell * units::turn;
+}
+
 double SlopeOf(const TwoShafts& shafts) {
-  constexpr double kTurnsToTell = 1.5;  // fewer do not tell an order from a line
   const auto& [a_rad, b_rad] = shafts;
   const Eigen::Index terms = TermsOf(0.0, 0.0).size();
   Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(terms, terms);
@@ -63,8 +68,7 @@ double SlopeOf(const TwoShafts& shafts) {
     squares += row.transpose() * row;
     products += row.transpose() * a_rad[i];
   }
-  const double slower_rad = a_rad.cwiseAbs().cwiseMin(b_rad.cwiseAbs()).maxCoeff();
-  const Eigen::Index used = slower_rad > kTurnsToTell * units::turn ? terms : 2;
+  const Eigen::Index used = HasTurns(shafts) ? terms : 2;
   return squares.topLeftCorner(used, used).ldlt().solve(products.head(used))[1];
 }
 
@@ -97,7 +101,7 @@ Proportion ProportionOf(const std::vector<double>& a, const std::vector<double>&
     slope = SlopeOf(shafts);
   }
   const Eigen::VectorXd otherwise = way_rad - slope * shafts.b_rad;
-  return {slope, (otherwise.maxCoeff() - otherwise.minCoeff()) / way_rad.cwiseAbs().maxCoeff()};
+  return {slope, (otherwise.maxCoeff() - otherwise.minCoeff()) / way_rad.cwiseAbs().maxCoeff(), HasTurns(shafts)};
 }
 
 }  // namespace
@@ -136,10 +140,10 @@ std::vector<double> StatedRatio(const std::vector<double>& stated, const std::ve
 std::vector<double> WholeTurns(const std::vector<double>& a, const std::vector<double>& b, const std::string& where) {
   constexpr int kMostTurns = 1000;       // of the slower one
   constexpr double kLeastLoose = 1e-8;   // a file has no more digits
-  constexpr double kOfLoose = 0.25;      // of the ratio, that is a standard deviation
+  constexpr double kOfLoose = 0.25, kOfOrder = 1.0;  // of the ratio, that is a standard deviation; where an order of one turn is in the line
   const bool a_is_slower = std::abs(ProportionOf(a, b).ratio) < 1.0;
   const Proportion found = a_is_slower ? ProportionOf(b, a) : ProportionOf(a, b);
-  const double ratio = std::abs(found.ratio), sd = std::max(kLeastLoose, kOfLoose * found.loose);
+  const double ratio = std::abs(found.ratio), sd = std::max(kLeastLoose, (found.has_turns ? kOfLoose : kOfOrder) * found.loose);
   double best = kNaN, least = std::numeric_limits<double>::infinity();
   for (int slower = 1; slower <= kMostTurns; ++slower) {
     const double faster = std::round(ratio * slower), off = (faster / (ratio * slower) - 1.0) / sd;
