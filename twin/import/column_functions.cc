@@ -9,6 +9,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
+#include "twin/import/commanded_circle.h"
 #include "twin/import/common.h"
 #include "twin/import/speed_levels.h"
 #include "twin/import/two_shafts.h"
@@ -176,7 +177,7 @@ OfColumn ColumnFunction(std::string_view name) {
 
 OfColumns ColumnsFunction(std::string_view name) {
   static constexpr auto kFunctions =
-      std::to_array<NamedFunction<OfColumns>>({{"ratio", Ratio}, {"whole_turns", WholeTurns}, {"beside", Beside}, {"stated_ratio", StatedRatio}, {"unsteady", Unsteady}});
+      std::to_array<NamedFunction<OfColumns>>({{"ratio", Ratio}, {"whole_turns", WholeTurns}, {"beside", Beside}, {"stated_ratio", StatedRatio}, {"unsteady", Unsteady}, {"circle_middle", CircleMiddle}, {"circle_radius", CircleRadius}});
   return FindIn(kFunctions, name);
 }
 

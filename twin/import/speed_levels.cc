@@ -45,6 +45,7 @@ std::vector<double> Unsteady(const std::vector<double>& of_row, const std::vecto
   std::vector<double> speed = of_row;
   std::ranges::replace_if(speed, [](double v) { return !std::isfinite(v); }, 0.0);  // at no level, nor are those behind it
   std::vector<double> off = Levels(speed, where);
+  off.resize(speed.size(), off.front());  // one for all where none is kept
   std::map<double, std::vector<double>> kept;  // by level, which is a rounded one
   for (std::size_t i = 0; i < speed.size(); ++i) kept[off[i]].push_back(speed[i]);
   std::map<double, double> usual;

@@ -1,0 +1,88 @@
+#include "twin/import/commanded_circle.h"
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+
+#include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
+
+namespace twinbench::imports {
+namespace {
+
+using SentTo = std::vector<Eigen::Vector2d>;
+
+struct Circle {
+  Eigen::Vector2d middle;
+  double radius = 0.0;
+
+  bool Has(const Eigen::Vector2d& place) const {
+    constexpr double kOff = 1e-3;  // of the radius
+    return std::abs((place - middle).norm() - radius) < kOff * radius;
+  }
+};
+
+/// Where the axes were sent, without the rows at which they stayed; no more than are needed to find a circle.
+SentTo PlacesSentTo(const std::vector<double>& x, const std::vector<double>& y) {
+  constexpr std::size_t kMost = 2000;
+  SentTo moved;
+  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
+    const Eigen::Vector2d place(x[i], y[i]);
+    if (place.allFinite() && (moved.empty() || place != moved.back())) moved.push_back(place);
+  }
+  SentTo some;
+  const std::size_t step = 1 + moved.size() / kMost;
+  for (std::size_t i = 0; i < moved.size(); i += step) some.push_back(moved[i]);
+  return some;
+}
+
+/// Least squares of x^2 + y^2 = 2 a x + 2 b y + c (Kasa 1976) about the first place.
+Circle Through(const SentTo& places) {
+  Eigen::MatrixX3d terms(std::ssize(places), 3);
+  Eigen::VectorXd squares(terms.rows());
+  for (Eigen::Index i = 0; i < terms.rows(); ++i) {
+    const Eigen::Vector2d from_first = places[static_cast<std::size_t>(i)] - places.front();
+    terms.row(i) << 2.0 * from_first.x(), 2.0 * from_first.y(), 1.0;
+    squares[i] = from_first.squaredNorm();
+  }
+  const Eigen::Vector3d fit = SolveShortest(terms, squares);
+  return {places.front() + fit.head<2>(), std::sqrt(std::max(0.0, fit[2] + fit.head<2>().squaredNorm()))};
+}
+
+SentTo On(const Circle& circle, const SentTo& places) {
+  SentTo on;
+  for (const Eigen::Vector2d& place : places)
+    if (circle.Has(place)) on.push_back(place);
+  return on;
+}
+
+/// Of circles through three rows, near each other and far apart, the one on which most lie.
+Circle CommandedCircle(const std::vector<double>& x, const std::vector<double>& y, const std::string& where) {
+  constexpr std::size_t kBegins = 48;
+  constexpr double kLeastShare = 0.3;
+  const SentTo places = PlacesSentTo(x, y);
+  SentTo best;
+  for (const std::size_t part : {24, 12, 6, 3}) {
+    const std::size_t apart = places.size() / part, step = 1 + places.size() / kBegins;
+    for (std::size_t i = 0; apart > 0 && i + 2 * apart < places.size(); i += step) {
+      SentTo on = On(Through({places[i], places[i + apart], places[i + 2 * apart]}), places);
+      if (on.size() > best.size()) best = std::move(on);
+    }
+  }
+  if (best.size() < 3 || static_cast<double>(best.size()) < kLeastShare * static_cast<double>(places.size()))
+    throw InputError(where, "the commanded places are on no circle", "a log of a circle, or --column 'radius_mm=...' of each row");
+  return Through(best);
+}
+
+}  // namespace
+
+std::vector<double> CircleMiddle(const std::vector<double>& x, const std::vector<double>& y, const std::string& where) {
+  return {CommandedCircle(x, y, where).middle.x()};
+}
+
+std::vector<double> CircleRadius(const std::vector<double>& x, const std::vector<double>& y, const std::string& where) {
+  const double radius = CommandedCircle(x, y, where).radius, digit = std::pow(10.0, std::floor(std::log10(radius)) - 5.0);
+  return {digit * std::round(radius / digit)};
+}
+
+}  // namespace twinbench::imports
