@@ -78,6 +78,8 @@ Eigen::VectorXd RelativeNoise(const std::vector<Reading>& used) {
   return (usual / Eigen::Map<const Eigen::ArrayXd>(samples.data(), std::ssize(samples))).sqrt();
 }
 
+constexpr double kArithmetic_rad = 1e-12;  // less is rounding, where nothing else says what the noise is
+
 /// By how much readings scatter from one to the next, all counted.
 double Roughness_rad(const LinearRun& run) {
   double sum = 0.0, count = 0.0;
@@ -107,7 +109,6 @@ void SetNoise(LinearRun& run, const EncoderSettings& bench, const std::vector<Re
   Eigen::VectorXd shown_rad(std::ssize(used));
   for (std::size_t i = 0; i < used.size(); ++i) shown_rad[static_cast<Eigen::Index>(i)] = used[i].measured_rad;
   const double step_rad = std::max(bench.device.resolution_rad, RunsIn(used) * CommonStep(shown_rad));
-  constexpr double kArithmetic_rad = 1e-12;  // where nothing else says what the noise is
   run.sigma_stated = bench.device.noise_known && bench.device.noise_rad > 0.0;
   const Eigen::VectorXd relative = RelativeNoise(used);
   const double count = bench.encoder_procedure.ReadingsAtOnce();
@@ -185,6 +186,7 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   encoder.offset_rad = followed.offset_rad;
   run.residual = encoder.error_rad - followed.error_rad;
   run.residual -= SetUpMeans(encoder.setups, run.residual);
+  if (run.residual.cwiseAbs().maxCoeff() < kArithmetic_rad) run.residual.setZero();
   encoder.context =
       ContextOf(run.schedule, run.schedule.reference_rad + encoder.offset_rad, EncoderOf(scenario).device);
   encoder.context.has_clock = HasClock(used);

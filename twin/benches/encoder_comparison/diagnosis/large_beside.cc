@@ -73,9 +73,12 @@ std::vector<EffectSettings> LargeSearch::OthersLike(const EffectSettings& effect
   }
   constexpr std::size_t kFew = 4;  // many are the pieces of a curve
   if (effect.name != "periodic" || LeastOrder(c) == 1 || large_.causes.size() > kFew) return others;
-  for (const double by : {-1.0, 1.0}) {
+  const double far = std::max(2.0, std::round(0.25 * OrdersApart(c)));
+  for (const double by : {-1.0, 1.0, -far, far}) {
+    const double order = effect.parameters.at("order") + by;
+    if (order < LeastOrder(c) || order > LargestOrder(c)) continue;
     std::map<std::string, double>& parameters = others.emplace_back(effect).parameters;
-    parameters["order"] += by;
+    parameters["order"] = order;
     parameters["phase"] -= by * c.device_rad.mean();  // the same in the middle
   }
   return others;
@@ -120,7 +123,7 @@ bool LargeSearch::Straighten() {
 /// @return false if the twin cannot be asked for them: they are at the end of what is possible.
 bool LargeSearch::TakeInstead(std::vector<LargeCause> causes) {
   const AskedAgain asked = fit_->Ask(causes);
-  if (!asked.slopes.allFinite()) return false;
+  if (!asked.slopes.allFinite() || !asked.left.allFinite() || !asked.sd.allFinite()) return false;
   Accept(asked, std::move(causes), kMostCauses);
   LeaveToLarge();
   return true;

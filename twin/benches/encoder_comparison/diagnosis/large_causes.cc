@@ -67,14 +67,34 @@ bool HasCrossedTooSoon(const LargeCauses& large) {
   });
 }
 
-/// On the move a loop may stand for several causes at once that are plain: for a lag and a scale, say.
+/// A hysteresis that does not end within the way that the shaft goes is a scale.
+bool SettlesBeyondTravel(const LargeCauses& large) {
+  constexpr double kOfTravel = 0.7;
+  const double longest_rad = kOfTravel * RangeOfSetUp_rad(large.first->encoder.context);
+  const Searched& last = large.Last();
+  return std::ranges::any_of(large.causes, [&](const LargeCause& cause) {
+    return cause.effect.name == "hysteresis" && cause.effect.parameters.at("settles_over") > longest_rad;
+  }) || std::ranges::any_of(last.analysis.found.terms, [&](const Term& term) {
+    return last.families[static_cast<std::size_t>(term.family)].effect == "hysteresis" && term.shape[0] > longest_rad;
+  });
+}
+
+/// A loop may stand for several causes at once that are plain: for a lag and a scale, say.
 LargeCauses OrWithoutLoops(LargeCauses found, const std::vector<Reading>& readings, const Scenario& scenario,
                            DiagnoseOptions options, const model::FollowMaker& follow) {
   constexpr double kNearly = 1.02, kRoughly = 1.5;
-  if (LoopsIn(found) == 0 || !found.first->encoder.context.Moves()) return found;
-  options.excluded.insert(options.excluded.end(), kLoops.begin(), kLoops.end());
-  options.excluded.emplace_back("slip");  // an onset is no plainer than a reversal
-  const bool is_implausible = HasCrossedTooSoon(found) || LoopsIn(found) > 1;  // one against the other they show anything
+  const bool is_endless = SettlesBeyondTravel(found);
+  if (!found.first->encoder.context.Moves()) {
+    if (!is_endless) return found;
+    options.excluded.emplace_back("hysteresis");
+  } else if (LoopsIn(found) == 0) {
+    return found;
+  } else {
+    options.excluded.insert(options.excluded.end(), kLoops.begin(), kLoops.end());
+    options.excluded.emplace_back("slip");  // an onset is no plainer than a reversal
+  }
+  // Two loops show anything, one against the other.
+  const bool is_implausible = is_endless || HasCrossedTooSoon(found) || LoopsIn(found) > 1;
   std::optional<LargeCauses> plain =
       LargeSearch(readings, scenario, options, follow, {}).Go((is_implausible ? kRoughly : kNearly) * found.left);
   return plain && (is_implausible || IsBetterNamed(*plain, found)) ? *std::move(plain) : std::move(found);

@@ -227,11 +227,40 @@ bool LargeSearch::Take(const LargeCause& next) {
   const AskedAgain asked = fit_->Ask(causes);
   const double power = fit_->PowerOf(asked.left);
   constexpr double kNeedless = 0.5;  // of what would be dropped in the end
-  if (power_ - power < kNeedless * LeastExplained()) return false;
+  if (power_ - power < kNeedless * LeastExplained() || IsShapeWithoutName(next, asked)) return false;
   if (!(power < power_) || !IsHeld(asked.effects.back())) return false;
   causes.back().explained = power_ - power;
   Accept(asked, std::move(causes), kFewCauses);
   return true;
+}
+
+/// A shape without a name, as simple as the cause, explains more alone, however the cause bends, and beside it the cause
+/// explains hardly anything.
+bool LargeSearch::IsShapeWithoutName(const LargeCause& next, const AskedAgain& asked) const {
+  constexpr double kNearly = 0.9, kSame = 0.995, kHardly = 0.01;  // of what it explains; of what the cause does
+  const Searched& last = large_.Last();
+  const Evidence& alone = last.analysis.found.alone;
+  const auto own = std::ranges::find_if(last.families, [&](const Family& family) { return IsOf(next.causes.front(), family); });
+  if (own == last.families.end()) return false;
+  const double named = alone.explained(own - last.families.begin(), 0);
+  int unnamed = -1;
+  for (int k = 0; k < std::ssize(last.families); ++k) {
+    const Family& family = last.families[static_cast<std::size_t>(k)];
+    const bool is_as_simple = family.kind == Kind::kUnknown && family.shapes.empty() && family.amplitudes.size() <= own->amplitudes.size();
+    if (is_as_simple && (unnamed < 0 || alone.explained(k, 0) > alone.explained(unnamed, 0))) unnamed = k;
+  }
+  if (unnamed < 0 || named < kNearly * alone.explained(unnamed, 0)) return false;
+  if (std::max(named, power_ - fit_->PowerOf(asked.left)) > kSame * alone.explained(unnamed, 0)) return false;
+  const Eigen::VectorXd left = fit_->WhiteOf(last.encoder.run.residual);
+  const auto explained = [&](const Eigen::MatrixXd& columns) {
+    Eigen::MatrixXd white(left.size(), columns.cols());
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) white.col(k) = fit_->WhiteOf(columns.col(k));
+    return (white * SolveShortest(white, left)).squaredNorm();
+  };
+  const Eigen::MatrixXd shape = last.families[static_cast<std::size_t>(unnamed)].ColumnsAt(alone.grid_point(unnamed, 0));
+  Eigen::MatrixXd both(shape.rows(), shape.cols() + asked.slopes.cols());
+  both << shape, asked.slopes;
+  return explained(both) - explained(shape) < kHardly * named;
 }
 
 /// A second wave of the k-th one's order, or of one that is not told from it, is what that lacks: it was fitted before all

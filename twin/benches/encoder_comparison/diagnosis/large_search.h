@@ -38,6 +38,7 @@ class LargeSearch {
   void TakeLarge();
   bool TakeNext();
   bool Take(const LargeCause& next);
+  bool IsShapeWithoutName(const LargeCause& next, const AskedAgain& asked) const;
   bool TakeSum(std::size_t k, const LargeCause& more);
   bool SearchOn();
   std::vector<std::string> Excluded(const std::vector<LargeCause>& causes) const;
