@@ -84,21 +84,34 @@ std::vector<EffectSettings> LargeSearch::OthersLike(const EffectSettings& effect
   return others;
 }
 
-/// @return true if one of the others is better.
+/// Goes from one to a better one as long as there is one. @return true if there was.
 bool LargeSearch::TakeOther() {
   constexpr double kLikelier = 4.0;  // of power in units of noise
+  constexpr int kMostSteps = 64;
+  std::vector<LargeCause> causes = large_.causes;
   std::optional<double> now;  // most have no others, and need no fit
-  for (std::size_t k = 0; k < large_.causes.size(); ++k) {
-    for (const EffectSettings& other : OthersLike(large_.causes[k].effect)) {
-      if (!now) now = AskBeside(large_.causes).asked.power;
-      std::vector<LargeCause> causes = large_.causes;
-      causes[k].effect = other;
-      const double least = other.name == "periodic" ? kLikelier : kBetter;  // one order of many, but no new cause
-      if (!(AskBeside(causes).asked.power < *now - least)) continue;
-      if (TakeInstead(std::move(causes))) return true;
+  bool is_better = false;
+  for (std::size_t k = 0; k < causes.size(); ++k) {
+    for (int step = 0; step < kMostSteps; ++step) {
+      const std::vector<EffectSettings> others = OthersLike(causes[k].effect);
+      if (!others.empty() && !now) now = AskBeside(causes).asked.power;
+      std::vector<LargeCause> best;
+      for (const EffectSettings& other : others) {
+        std::vector<LargeCause> with_other = causes;
+        with_other[k].effect = other;
+        const AskedAgain asked = AskBeside(with_other).asked;
+        const double least = other.name == "periodic" ? kLikelier : kBetter;  // one order of many, but no new cause
+        if (!(asked.power < *now - least)) continue;
+        now = asked.power;
+        TakeOver(asked, with_other);
+        best = std::move(with_other);
+      }
+      if (best.empty()) break;
+      causes = std::move(best);
+      is_better = true;
     }
   }
-  return false;
+  return is_better && TakeInstead(std::move(causes));
 }
 
 /// What others make look bent is straight beside them.

@@ -97,20 +97,46 @@ LargeCause LedBy(std::vector<Cause> causes, std::size_t leader, const std::strin
   return {std::move(causes), effect, 0.0, {}};
 }
 
-std::optional<LargeCause> LargestNamed(const Searched& searched) {
+namespace {
+
+/// The k-th term that was found, as the cause that was fitted; nothing if it is none.
+std::optional<LargeCause> AsCause(const Searched& searched, std::size_t k) {
   const SearchResult& found = searched.analysis.found;
+  const Family& family = searched.families[static_cast<std::size_t>(found.terms[k].family)];
+  if (family.kind != Kind::kNamed) return {};
+  const std::vector<Cause> causes = AnswerOf(found, k, searched.families).causes;
+  const auto fitted = std::ranges::find_if(causes, [&](const Cause& cause) { return IsOf(cause, family); });
+  if (fitted == causes.end()) return {};
+  return LedBy(causes, static_cast<std::size_t>(fitted - causes.begin()), searched.encoder.run.bench);
+}
+
+}  // namespace
+
+std::optional<LargeCause> LargestNamed(const Searched& searched) {
+  const std::vector<Term>& terms = searched.analysis.found.terms;
   std::optional<LargeCause> largest;
   double most = kLarge * kLarge;
-  for (std::size_t k = 0; k < found.terms.size(); ++k) {
-    const Family& family = searched.families[static_cast<std::size_t>(found.terms[k].family)];
-    if (family.kind != Kind::kNamed || found.terms[k].explained < most) continue;
-    const std::vector<Cause> causes = AnswerOf(found, k, searched.families).causes;
-    const auto fitted = std::ranges::find_if(causes, [&](const Cause& cause) { return IsOf(cause, family); });
-    if (fitted == causes.end()) continue;
-    most = found.terms[k].explained;
-    largest = LedBy(causes, static_cast<std::size_t>(fitted - causes.begin()), searched.encoder.run.bench);
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    if (terms[k].explained < most) continue;
+    std::optional<LargeCause> cause = AsCause(searched, k);
+    if (!cause) continue;
+    most = terms[k].explained;
+    largest = std::move(cause);
   }
   return largest;
+}
+
+std::optional<LargeCause> OneOfTwoWaves(const Searched& searched, double apart) {
+  const std::vector<Term>& terms = searched.analysis.found.terms;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const std::optional<LargeCause> a = AsCause(searched, i), b = AsCause(searched, k);
+      const bool are_one = a && b && a->effect.name == b->effect.name && WaveOrderOf(a->effect) && WaveOrderOf(b->effect) &&
+                           std::abs(*WaveOrderOf(a->effect) - *WaveOrderOf(b->effect)) < apart;
+      if (are_one) return terms[i].explained > terms[k].explained ? a : b;
+    }
+  }
+  return {};
 }
 
 std::vector<int> NamedLikeUnnamed(const Searched& searched) {

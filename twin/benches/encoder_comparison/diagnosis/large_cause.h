@@ -51,6 +51,10 @@ LargeCause LedBy(std::vector<Cause> causes, std::size_t leader, const std::strin
 /// The largest of what has a name, the one that was fitted first.
 std::optional<LargeCause> LargestNamed(const Searched& searched);
 
+/// The larger of two waves that were found at once and whose orders are not told apart: there is one, of an order about theirs.
+/// @param apart  OrdersApart.
+std::optional<LargeCause> OneOfTwoWaves(const Searched& searched, double apart);
+
 /// A large shape without a name may be a cause whose signature bends: those that explain nearly as much alone.
 /// @return their numbers among the families, one that explains the same as the first behind it; empty if there is none.
 std::vector<int> NamedLikeUnnamed(const Searched& searched);

@@ -156,6 +156,9 @@ void LargeSearch::SearchPlain() {
   slopes_.resize(0, 0);
   most_searched_ = kFewCauses;
   SearchOn();
+  if (!TakeOneOfTwoWaves()) return;
+  while (SearchOn()) TakeLarge();
+  LeaveToLarge();
 }
 
 /// What was taken while others were missing may have looked like a shape without a name: it is judged anew beside all

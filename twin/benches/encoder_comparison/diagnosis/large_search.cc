@@ -206,6 +206,7 @@ void LargeSearch::Accept(const AskedAgain& asked, std::vector<LargeCause> causes
 bool LargeSearch::TakeNext() {
   const std::optional<LargeCause> next = LargestNamed(large_.Last());
   if (next && Take(*next)) return true;
+  if (TakeOneOfTwoWaves()) return true;
   const Searched& last = large_.Last();
   std::vector<Cause> like;
   for (const int k : NamedLikeUnnamed(last)) {
@@ -214,6 +215,11 @@ bool LargeSearch::TakeNext() {
   }
   for (Cause& cause : like) cause.probability /= static_cast<double>(like.size());
   return !like.empty() && Take(LedBy(std::move(like), 0, last.encoder.run.bench));
+}
+
+bool LargeSearch::TakeOneOfTwoWaves() {
+  const std::optional<LargeCause> one = OneOfTwoWaves(large_.Last(), OrdersApart(large_.first->encoder.context));
+  return one && Take(*one);
 }
 
 bool LargeSearch::Take(const LargeCause& next) {
@@ -227,40 +233,39 @@ bool LargeSearch::Take(const LargeCause& next) {
   const AskedAgain asked = fit_->Ask(causes);
   const double power = fit_->PowerOf(asked.left);
   constexpr double kNeedless = 0.5;  // of what would be dropped in the end
-  if (power_ - power < kNeedless * LeastExplained() || IsShapeWithoutName(next, asked)) return false;
+  if (power_ - power < kNeedless * LeastExplained() || IsOtherFunctionOfSpeed(next, asked)) return false;
   if (!(power < power_) || !IsHeld(asked.effects.back())) return false;
   causes.back().explained = power_ - power;
   Accept(asked, std::move(causes), kFewCauses);
   return true;
 }
 
-/// A shape without a name, as simple as the cause, explains more alone, however the cause bends, and beside it the cause
-/// explains hardly anything.
-bool LargeSearch::IsShapeWithoutName(const LargeCause& next, const AskedAgain& asked) const {
-  constexpr double kNearly = 0.9, kSame = 0.995, kHardly = 0.01;  // of what it explains; of what the cause does
+/// What is taken for a latency and goes with another function of the speed: that explains more alone, however the latency bends,
+/// and beside it the latency explains hardly anything.
+bool LargeSearch::IsOtherFunctionOfSpeed(const LargeCause& next, const AskedAgain& asked) const {
+  constexpr double kSame = 0.995, kHardly = 0.01;  // of what that explains; of what the latency does
+  if (next.effect.name != "latency") return false;
   const Searched& last = large_.Last();
   const Evidence& alone = last.analysis.found.alone;
-  const auto own = std::ranges::find_if(last.families, [&](const Family& family) { return IsOf(next.causes.front(), family); });
-  if (own == last.families.end()) return false;
-  const double named = alone.explained(own - last.families.begin(), 0);
-  int unnamed = -1;
+  double named = 0.0, most = 0.0;
+  Eigen::MatrixXd other;
   for (int k = 0; k < std::ssize(last.families); ++k) {
     const Family& family = last.families[static_cast<std::size_t>(k)];
-    const bool is_as_simple = family.kind == Kind::kUnknown && family.shapes.empty() && family.amplitudes.size() <= own->amplitudes.size();
-    if (is_as_simple && (unnamed < 0 || alone.explained(k, 0) > alone.explained(unnamed, 0))) unnamed = k;
+    if (IsOf(next.causes.front(), family)) named = alone.explained(k, 0);
+    if (family.effect != "speed" || alone.explained(k, 0) <= most) continue;
+    most = alone.explained(k, 0);
+    other = family.ColumnsAt(alone.grid_point(k, 0));
   }
-  if (unnamed < 0 || named < kNearly * alone.explained(unnamed, 0)) return false;
-  if (std::max(named, power_ - fit_->PowerOf(asked.left)) > kSame * alone.explained(unnamed, 0)) return false;
+  if (std::max(named, power_ - fit_->PowerOf(asked.left)) > kSame * most) return false;
   const Eigen::VectorXd left = fit_->WhiteOf(last.encoder.run.residual);
   const auto explained = [&](const Eigen::MatrixXd& columns) {
     Eigen::MatrixXd white(left.size(), columns.cols());
     for (Eigen::Index k = 0; k < columns.cols(); ++k) white.col(k) = fit_->WhiteOf(columns.col(k));
     return (white * SolveShortest(white, left)).squaredNorm();
   };
-  const Eigen::MatrixXd shape = last.families[static_cast<std::size_t>(unnamed)].ColumnsAt(alone.grid_point(unnamed, 0));
-  Eigen::MatrixXd both(shape.rows(), shape.cols() + asked.slopes.cols());
-  both << shape, asked.slopes;
-  return explained(both) - explained(shape) < kHardly * named;
+  Eigen::MatrixXd both(other.rows(), other.cols() + asked.slopes.cols());
+  both << other, asked.slopes;
+  return explained(both) - explained(other) < kHardly * named;
 }
 
 /// A second wave of the k-th one's order, or of one that is not told from it, is what that lacks: it was fitted before all

@@ -37,8 +37,9 @@ class LargeSearch {
   void TakeSignals();
   void TakeLarge();
   bool TakeNext();
+  bool TakeOneOfTwoWaves();
   bool Take(const LargeCause& next);
-  bool IsShapeWithoutName(const LargeCause& next, const AskedAgain& asked) const;
+  bool IsOtherFunctionOfSpeed(const LargeCause& next, const AskedAgain& asked) const;
   bool TakeSum(std::size_t k, const LargeCause& more);
   bool SearchOn();
   std::vector<std::string> Excluded(const std::vector<LargeCause>& causes) const;
