@@ -292,6 +292,26 @@ TEST(EncoderDominant, ACourseInTimeThatDoesNotRepeatIsNoOrder) {
   EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kUnknown) << answer.Words();
 }
 
+/// A place that is dirty, a fifth of a turn wide: the other targets lie on the orders that are there.
+TEST(EncoderDominant, AWornPlaceLeavesTheOrdersBesideIt) {
+  for (const unsigned seed : {51u, 52u, 53u}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise_deg(0.0, 0.002);
+    Record record;
+    record.kind = "stops";
+    for (int k = 0; k < 4 * 121; ++k) {
+      const int pass = k / 121, at = k % 121, direction = pass % 2 == 0 ? 1 : -1;
+      const double r_deg = 3.0 * (direction > 0 ? at : 120 - at), off = (r_deg - 180.0) / 20.0;
+      const double error_deg = Sum({{1, 0.05, 327.0}, {4, 0.02, 270.0}}, r_deg) + 0.03 * std::exp(-0.5 * off * off) + 0.01 * direction;
+      record.Add(k, r_deg, r_deg + error_deg + noise_deg(random), direction, pass);
+    }
+    const Answer answer = Ask(record);
+    EXPECT_NEAR(SizeOfOrder(answer, 1), 0.05, 0.004) << answer.Words();
+    EXPECT_NEAR(SizeOfOrder(answer, 4), 0.02, 0.001) << answer.Words();
+    EXPECT_NEAR(std::abs(answer.Value("backlash", "width")), 0.02, 0.001) << answer.Words();
+  }
+}
+
 /// A scale in one pass and no clock is a scale, whatever part of a turn that is.
 TEST(EncoderDominant, ASlopeOfASinglePassIsAScale) {
   for (const double range_deg : {60.0, 270.0, 400.0, 900.0}) {

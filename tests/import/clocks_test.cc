@@ -102,6 +102,13 @@ TEST_F(Importing, KnowsJulianDates) {
   EXPECT_THAT(taken.story, HasSubstr("\"RA_error_arcsec\" is taken as the device less the reference"));
 }
 
+TEST_F(Importing, KnowsMillisecondsOfADay) {
+  std::string text = "ms_today;reference_deg;measured_deg\n";
+  for (int i = 0; i < 200; ++i) text += fmt::format("{};{:.5f};{:.5f}\n", 43200000 + 20 * i, 3.6 * i, 3.6 * i + 0.01 * (i % 5));
+  const Imported taken = Take(text);
+  EXPECT_NEAR(ToSeconds(taken.readings.back().time - taken.readings.front().time), 3.98, 1e-6);
+}
+
 /// Of a sine whose rows are missing for a third of a period.
 TEST_F(Importing, TakesNoSpeedOverAPause) {
   std::string text = "time_s,reference_deg,measured_deg\n";

@@ -116,7 +116,7 @@ TEST_F(Importing, TakesArraysOfAProgramSideBySide) {
 
 /// As a machine's or a laser's display prints them.
 TEST_F(Importing, TakesNamesWithBlanksBetweenWideGapsAndRunsBesideACounter) {
-  std::string blocks, runs = "Step,Calibrated length (mm),Rep 1 (mm),Rep 2 (mm),Rep 3 (mm)\n";
+  std::string blocks, runs = "Step,Calibrated length (mm),1st (mm),2nd (mm),3rd (mm)\n";
   for (const char* way : {"forward", "reverse"}) {
     blocks += fmt::format("Run 1 {}\nTarget (mm)  Error (um)\n", way);
     for (int i = 0; i < 30; ++i) blocks += fmt::format("{:10.3f}{:10.2f}\n", way[0] == 'f' ? 12.5 * i : 12.5 * (29 - i), i == 7 ? 1.5 : 0.5);

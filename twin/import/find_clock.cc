@@ -17,7 +17,7 @@ bool IsCalledTime(const Column& column) {
   const std::string name = SmallLetters(column.name);
   if (column.unit == "instant" || column.unit == "time of day") return true;
   for (const char* word : {"time", "timestamp", "t", "zeit", "zeitstempel", "date", "datetime", "utc", "uhrzeit", "datum", "temps",
-                           "tiempo", "tempo", "время", "时间", "ts", "stamp", "elapsed", "millis", "micros", "jd", "mjd", "bjd", "hjd"}) {
+                           "tiempo", "tempo", "время", "时间", "ts", "stamp", "elapsed", "millis", "micros", "jd", "mjd", "bjd", "hjd", "ms_today"}) {
     if (name == word || name.starts_with(std::string(word) + "_") || name.starts_with(std::string(word) + " ") ||
         name.ends_with(std::string("_") + word))
       return column.IsNumber();
@@ -47,6 +47,7 @@ auto ColumnCalled(const std::string& name, std::vector<Column>& columns) {
 std::string UnitOfClock(const ClockSettings& settings, const Column& column) {
   if (!settings.unit.empty()) return settings.unit;
   if (column.unit.empty() && SmallLetters(column.name).ends_with("jd")) return "day";  // a Julian date
+  if (column.unit.empty() && SmallLetters(column.name).starts_with("ms_")) return "ms";
   const auto name = UnitNamed(column.name);
   return column.unit.empty() && name && name->dimension == Dimension::kTime ? std::string(name->name) : column.unit;
 }

@@ -29,9 +29,12 @@ bool RunsFrom(std::size_t first, const std::vector<std::string_view>& names) {
   return up > 0 && down > 0;
 }
 
-/// "run 3", "Lauf 3", "3": without its number; nothing is left of what is no run.
+/// "run 3", "Lauf 3", "3", "3rd": without its number; nothing is left of what is no run.
 bool IsNumberedRun(std::string_view field, std::set<std::string>& different) {
-  const std::string name = SmallLetters(SplitHeader(field).name);
+  std::string name = SmallLetters(SplitHeader(field).name);
+  const bool is_ordinal = name.size() > 2 && std::isdigit(static_cast<unsigned char>(name.front())) &&
+                          std::ranges::any_of(std::array{"st", "nd", "rd", "th"}, [&name](const char* end) { return name.ends_with(end); });
+  if (is_ordinal) name.resize(name.size() - 2);
   const std::size_t digits = name.find_first_of("0123456789");
   if (digits == std::string::npos || name.find_first_not_of("0123456789", digits) != std::string::npos) return false;
   std::string word = name.substr(0, digits);
@@ -62,7 +65,7 @@ int DirectionIn(std::string_view text) {
 bool CountsRows(std::string_view name) {
   const std::string small = SmallLetters(Trimmed(name));
   return small.empty() || small == "i" || small == "no" || small == "no." || small == "nr" || small == "#" ||
-         small == "point" || small == "step" || small == "index" || small == "row";
+         small == "point" || small == "step" || small == "index" || small == "row" || small == "id";
 }
 
 bool IsOnePlace(const std::vector<std::string_view>& names) {

@@ -213,12 +213,14 @@ std::string OrderText(const char* what, const Coefficient& c) {
                      PhaseUncertainty(c));
 }
 
-std::string LinesText(const DirectionResult& result) {
+/// @param folded  Orders as which the samples show a higher one.
+std::string LinesText(const DirectionResult& result, const std::map<int, int>& folded) {
   std::string text = fmt::format("transmission, direction {:+d}: lines at order", result.direction);
   if (result.lines.empty()) return text + " none\n";
   for (const int order : result.lines) {
     const double amplitude_arcsec = Amplitude(result.transmission.At(order)) / units::arcsec;
-    text += fmt::format(" {} ({:.2f})", order, amplitude_arcsec);
+    const auto higher = folded.find(order);
+    text += fmt::format(" {}{} ({:.2f})", order, higher == folded.end() ? "" : fmt::format(" or {}", higher->second), amplitude_arcsec);
   }
   return text + " [arcsec]\n";
 }
@@ -261,7 +263,7 @@ std::string SummaryOf(const HobAnalysis& a) {
   if (!published && separated) text += OrderText("table encoder, order 1", a.encoder.At(1));
   if (a.is_interferometer_at_rest)
     text += OrderText("table encoder, order 1, by the interferometer at rest", a.encoder_by_interferometer.At(1));
-  for (const DirectionResult& direction : a.directions) text += LinesText(direction);
+  for (const DirectionResult& direction : a.directions) text += LinesText(direction, a.folded);
   return text + ComparisonText(a.is_interferometer_at_rest ? " at rest" : "", a.encoder_against_interferometer) +
          ComparisonText(" with the first head alone", a.encoder_against_one_place) + LostText(a);
 }

@@ -138,6 +138,7 @@ LargeCauses FindLargeCauses(const std::vector<Reading>& readings, const Scenario
   const Eigen::MatrixXd targets = Targets(plain.first->encoder.context);
   if (targets.size() == 0 || !LeaveErrorsOfTargets(plain, targets)) return plain;
   const Eigen::MatrixXd few = TargetsThatStandOut(plain.first->encoder, targets);
+  if (few.cols() == 0) return plain;
   if (few.cols() < targets.cols()) return *LargeSearch(readings, scenario, options, follow, few).Go();
   const TwinFit fit(plain, scenario, follow);
   std::optional<LargeCause> line = LineThroughTargets(fit, targets.cols());

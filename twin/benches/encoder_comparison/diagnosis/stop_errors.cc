@@ -6,7 +6,10 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <vector>
 
+#include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/diagnosis/target_curve.h"
 #include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
@@ -73,6 +76,32 @@ double NumbersByAngle(const LargeCauses& large) {
   return numbers;
 }
 
+using TargetNumbers = std::vector<Eigen::Index>;
+
+/// Those that are far off what the others lie on to their noise; nothing if these are too few, or scatter by more.
+/// @param deviations  From where on one is far.  @param most  Share of the targets that may be.
+std::optional<TargetNumbers> FarOff(const EncoderRun& encoder, const Eigen::MatrixXd& targets, const Eigen::VectorXd& off_rad, double deviations,
+                                    double most) {
+  constexpr double kLikeNoise = 2.0;
+  const double usual_rad = RobustDeviation(off_rad);
+  const double visits = static_cast<double>(targets.rows()) / static_cast<double>(targets.cols());
+  if (usual_rad > kLikeNoise * encoder.run.sigma.mean() / std::sqrt(visits)) return {};
+  std::vector<bool> is_far(static_cast<std::size_t>(off_rad.size()));
+  const Eigen::Index last = off_rad.size() - 1;
+  for (Eigen::Index k = 0; k <= last; ++k) {
+    if (!(std::abs(off_rad[k]) > deviations * usual_rad)) continue;
+    // A place has flanks.
+    const auto goes_on = [&](Eigen::Index at) { return at >= 0 && at <= last && off_rad[at] * off_rad[k] > 0.0 && std::abs(off_rad[at]) > usual_rad; };
+    is_far[static_cast<std::size_t>(k)] = true;
+    for (Eigen::Index at = k - 1; goes_on(at); --at) is_far[static_cast<std::size_t>(at)] = true;
+    for (Eigen::Index at = k + 1; goes_on(at); ++at) is_far[static_cast<std::size_t>(at)] = true;
+  }
+  TargetNumbers far;
+  for (Eigen::Index k = 0; k <= last; ++k)
+    if (is_far[static_cast<std::size_t>(k)]) far.push_back(k);
+  return static_cast<double>(far.size()) < most * static_cast<double>(targets.cols()) ? std::optional(far) : std::nullopt;
+}
+
 }  // namespace
 
 Eigen::MatrixXd Targets(const SignalContext& c) {
@@ -115,19 +144,16 @@ bool LeaveErrorsOfTargets(const LargeCauses& large, const Eigen::MatrixXd& targe
 }
 
 Eigen::MatrixXd TargetsThatStandOut(const EncoderRun& encoder, const Eigen::MatrixXd& targets) {
-  constexpr Eigen::Index kWaves = 24, kFewest = 4 * kWaves;
-  constexpr double kFew = 0.05, kFar = 8.0, kLikeNoise = 2.0;
-  if (targets.cols() < kFewest) return targets;
+  constexpr Eigen::Index kWaves = 24, kFewestOfCurve = 4 * kWaves, kFewestOfOrders = 24;
+  constexpr double kFarOfCurve = 8.0, kFewOfCurve = 0.05, kFarOfOrders = 4.0, kFewOfOrders = 0.4;
+  const Eigen::VectorXd target_rad = AtTargets(targets, encoder.context.device_rad);
   const Eigen::VectorXd error_rad = AtTargets(targets, encoder.run.residual);
-  const Eigen::VectorXd off = OffSmoothCurve(AtTargets(targets, encoder.context.device_rad), error_rad, kWaves).cwiseAbs();
-  const double usual_rad = RobustDeviation(off);
-  const double visits = static_cast<double>(targets.rows()) / static_cast<double>(targets.cols());
-  if (usual_rad > kLikeNoise * encoder.run.sigma.mean() / std::sqrt(visits)) return targets;
-  std::vector<Eigen::Index> far;
-  for (Eigen::Index k = 0; k < off.size(); ++k)
-    if (off[k] > kFar * usual_rad) far.push_back(k);
-  const bool are_few = !far.empty() && static_cast<double>(far.size()) < kFew * static_cast<double>(targets.cols());
-  return are_few ? Eigen::MatrixXd(targets(Eigen::all, far)) : targets;
+  if (targets.cols() >= kFewestOfOrders && LeastOrder(encoder.context) == 1) {
+    if (const auto far = FarOff(encoder, targets, OffFewOrders(target_rad, error_rad), kFarOfOrders, kFewOfOrders)) return targets(Eigen::all, *far);
+  }
+  if (targets.cols() < kFewestOfCurve) return targets;
+  const auto far = FarOff(encoder, targets, OffSmoothCurve(target_rad, error_rad, kWaves), kFarOfCurve, kFewOfCurve);
+  return far && !far->empty() ? Eigen::MatrixXd(targets(Eigen::all, *far)) : targets;
 }
 
 void AddErrorsOfTargets(const LargeCauses& large, DiagnosisRun& result) {

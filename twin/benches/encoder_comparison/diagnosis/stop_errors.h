@@ -15,7 +15,8 @@ Eigen::MatrixXd Targets(const SignalContext& context);
 /// The causes that were found leave errors that are the same at every visit of a target, or have no name for them.
 bool LeaveErrorsOfTargets(const LargeCauses& large, const Eigen::MatrixXd& targets);
 
-/// Where all but a few targets lie on a smooth curve, as well as their noise lets see: those few. Otherwise all.
+/// Where all but a few targets lie on a smooth curve, or most of them on a few orders, as well as their noise lets see: the others,
+/// a place that is worn or dirty. Otherwise all.
 /// @return readings x targets.
 Eigen::MatrixXd TargetsThatStandOut(const EncoderRun& encoder, const Eigen::MatrixXd& targets);
 

@@ -1,11 +1,13 @@
 #include "twin/benches/encoder_comparison/diagnosis/target_curve.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "twin/core/linear_algebra.h"
 #include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/unknown/collector.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -40,6 +42,22 @@ std::vector<Product> ProductsOf(const HalfPeriods& modes, const Eigen::VectorXd&
   return products;
 }
 
+/// How far values are off the sum of columns that most of them lie on: Tukey's weights.
+Eigen::VectorXd OffMostOf(const Eigen::MatrixXd& columns, const Eigen::VectorXd& values) {
+  constexpr int kRounds = 20;
+  constexpr double kTukey = 4.685;  // deviations of the middle half; 95 % as sharp as least squares
+  Eigen::ArrayXd weight = Eigen::ArrayXd::Ones(values.size());
+  Eigen::VectorXd off = values;
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::VectorXd root = weight.sqrt();
+    off = values - columns * SolveShortest(Eigen::MatrixXd(root.asDiagonal() * columns), Eigen::VectorXd(root.cwiseProduct(values)));
+    const double usual = RobustDeviation(off);
+    if (!(usual > 0.0)) break;
+    weight = (1.0 - (off.array().abs() / (kTukey * usual)).min(1.0).square()).square();
+  }
+  return off;
+}
+
 }  // namespace
 
 Eigen::VectorXd AtTargets(const Eigen::MatrixXd& targets, const Eigen::VectorXd& values) {
@@ -47,17 +65,30 @@ Eigen::VectorXd AtTargets(const Eigen::MatrixXd& targets, const Eigen::VectorXd&
 }
 
 Eigen::VectorXd OffSmoothCurve(const Eigen::VectorXd& target_rad, const Eigen::VectorXd& error_rad, Eigen::Index waves) {
-  constexpr int kRounds = 20;
-  constexpr double kTukey = 4.685;  // deviations of the middle half; 95 % as sharp as least squares
-  const Eigen::MatrixXd modes = Between(target_rad).At(target_rad, waves);
-  Eigen::ArrayXd weight = Eigen::ArrayXd::Ones(error_rad.size());
-  Eigen::VectorXd off = error_rad;
-  for (int round = 0; round < kRounds; ++round) {
-    const Eigen::VectorXd root = weight.sqrt();
-    off = error_rad - modes * SolveShortest(Eigen::MatrixXd(root.asDiagonal() * modes), Eigen::VectorXd(root.cwiseProduct(error_rad)));
-    const double usual = RobustDeviation(off);
-    if (!(usual > 0.0)) break;
-    weight = (1.0 - (off.array().abs() / (kTukey * usual)).min(1.0).square()).square();
+  return OffMostOf(Between(target_rad).At(target_rad, waves), error_rad);
+}
+
+Eigen::VectorXd OffFewOrders(const Eigen::VectorXd& target_rad, const Eigen::VectorXd& error_rad) {
+  constexpr int kMostOrders = 4, kHighest = 24;
+  constexpr double kClearlyLess = 0.7;
+  const int highest = std::min(kHighest, static_cast<int>(target_rad.size()) / 5);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(target_rad.size(), 1);
+  Eigen::VectorXd off = OffMostOf(columns, error_rad);
+  for (int count = 0; count < kMostOrders; ++count) {
+    Eigen::VectorXd least = off;
+    int best = 0;
+    for (int order = 1; order <= highest; ++order) {
+      Eigen::MatrixXd with(columns.rows(), columns.cols() + 2);
+      with << columns, model::Wave(order * target_rad);
+      const Eigen::VectorXd now = OffMostOf(with, error_rad);
+      if (!(RobustDeviation(now) < RobustDeviation(least))) continue;
+      least = now;
+      best = order;
+    }
+    if (!(RobustDeviation(least) < kClearlyLess * RobustDeviation(off))) break;
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 2);
+    columns.rightCols(2) = model::Wave(best * target_rad);
+    off = least;
   }
   return off;
 }

@@ -13,6 +13,9 @@ Eigen::VectorXd AtTargets(const Eigen::MatrixXd& targets, const Eigen::VectorXd&
 /// Tukey's weights (Beaton and Tukey, Technometrics 16, 1974).
 Eigen::VectorXd OffSmoothCurve(const Eigen::VectorXd& target_rad, const Eigen::VectorXd& error_rad, Eigen::Index waves);
 
+/// The same of a few orders of the angle, as many as make what most values are off clearly smaller.
+Eigen::VectorXd OffFewOrders(const Eigen::VectorXd& target_rad, const Eigen::VectorXd& error_rad);
+
 /// A structure without a name that is no more than its values, one a reading.
 Accepted ErrorCurve(const Eigen::VectorXd& error_rad);
 
