@@ -43,6 +43,20 @@ Record ThereAndBack(int stops, double noise_deg, unsigned seed, Error error_deg)
   return record;
 }
 
+/// Stops from zero on, there and back twice.
+/// @param shown_deg  Of an angle and a direction.
+template <class Shown>
+Record ThereAndBackTwice(int stops, double step_deg, Shown shown_deg) {
+  Record record;
+  record.kind = "stops";
+  for (int k = 0; k < 4 * stops; ++k) {
+    const int pass = k / stops, at = k % stops, direction = pass % 2 == 0 ? 1 : -1;
+    const double angle_deg = step_deg * (direction > 0 ? at : stops - 1 - at);
+    record.Add(k, angle_deg, shown_deg(angle_deg, direction), direction, pass);
+  }
+  return record;
+}
+
 /// Of the wave of this order, whatever its name is.
 double SizeOfOrder(const Answer& answer, int order) {
   if (order == 1) return answer.Value("eccentricity", "amplitude");
@@ -156,14 +170,9 @@ TEST(EncoderDominant, AScaleBesideAnOrderOfAPartOfATurnDoesNotBend) {
   for (const unsigned seed : {15u, 16u, 17u}) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> noise_deg(0.0, 0.1);
-    Record record;
-    record.kind = "stops";
-    for (int k = 0; k < 4 * 181; ++k) {
-      const int pass = k / 181, at = k % 181, direction = pass % 2 == 0 ? 1 : -1;
-      const double r_deg = 1.5 * (direction > 0 ? at : 180 - at);
-      record.Add(k, r_deg, 1.008 * r_deg + 0.5 * std::cos((r_deg + 200.0) * units::deg) + noise_deg(random), direction, pass);
-    }
-    const Answer answer = Ask(record);
+    const Answer answer = Ask(ThereAndBackTwice(181, 1.5, [&](double r_deg, int) {
+      return 1.008 * r_deg + 0.5 * std::cos((r_deg + 200.0) * units::deg) + noise_deg(random);
+    }));
     EXPECT_NEAR(answer.Value("scale", "ratio"), 0.008, 4.0 * answer.Uncertainty("scale", "ratio")) << answer.Words();
     EXPECT_NEAR(SizeOfOrder(answer, 1), 0.5, 0.05) << answer.Words();
   }
@@ -203,15 +212,10 @@ TEST(EncoderDominant, TheNoiseOfAReferenceThatMovesIsNoAcceleration) {
 TEST(EncoderDominant, AFaultOfAFewPlacesLeavesTheOrdersBesideIt) {
   std::mt19937_64 random(20);
   std::normal_distribution<double> noise_deg(0.0, 0.008);
-  Record record;
-  record.kind = "stops";
-  for (int k = 0; k < 4 * 360; ++k) {
-    const int pass = k / 360, at = k % 360, direction = pass % 2 == 0 ? 1 : -1;
-    const double r_deg = direction > 0 ? at : 359 - at;
+  const Answer answer = Ask(ThereAndBackTwice(360, 1.0, [&](double r_deg, int) {
     const double dirt_deg = 0.4 * std::exp(-0.5 * std::pow((r_deg - 137.0) / 1.2, 2));
-    record.Add(k, r_deg, r_deg + dirt_deg + Sum({{1, 0.06, 30.0}}, r_deg) + noise_deg(random), direction, pass);
-  }
-  const Answer answer = Ask(record);
+    return r_deg + dirt_deg + Sum({{1, 0.06, 30.0}}, r_deg) + noise_deg(random);
+  }));
   EXPECT_NEAR(SizeOfOrder(answer, 1), 0.06, 0.002) << answer.Words();
   EXPECT_NE(answer.run.diagnosis.unknown.signature.find("targets"), std::string::npos) << answer.Words();
 }
@@ -297,15 +301,10 @@ TEST(EncoderDominant, AWornPlaceLeavesTheOrdersBesideIt) {
   for (const unsigned seed : {51u, 52u, 53u}) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> noise_deg(0.0, 0.002);
-    Record record;
-    record.kind = "stops";
-    for (int k = 0; k < 4 * 121; ++k) {
-      const int pass = k / 121, at = k % 121, direction = pass % 2 == 0 ? 1 : -1;
-      const double r_deg = 3.0 * (direction > 0 ? at : 120 - at), off = (r_deg - 180.0) / 20.0;
-      const double error_deg = Sum({{1, 0.05, 327.0}, {4, 0.02, 270.0}}, r_deg) + 0.03 * std::exp(-0.5 * off * off) + 0.01 * direction;
-      record.Add(k, r_deg, r_deg + error_deg + noise_deg(random), direction, pass);
-    }
-    const Answer answer = Ask(record);
+    const Answer answer = Ask(ThereAndBackTwice(121, 3.0, [&](double r_deg, int direction) {
+      const double dirt_deg = 0.03 * std::exp(-0.5 * std::pow((r_deg - 180.0) / 20.0, 2));
+      return r_deg + Sum({{1, 0.05, 327.0}, {4, 0.02, 270.0}}, r_deg) + dirt_deg + 0.01 * direction + noise_deg(random);
+    }));
     EXPECT_NEAR(SizeOfOrder(answer, 1), 0.05, 0.004) << answer.Words();
     EXPECT_NEAR(SizeOfOrder(answer, 4), 0.02, 0.001) << answer.Words();
     EXPECT_NEAR(std::abs(answer.Value("backlash", "width")), 0.02, 0.001) << answer.Words();
@@ -367,14 +366,10 @@ TEST(EncoderDominant, AnOrderOfAPartOfATurnIsOneAndTheRightOne) {
 
 TEST(EncoderDominant, CoarseStepsThatEveryPassRepeatsAreNoCause) {
   constexpr double kStep_deg = 360.0 / 4096.0, kPrint_deg = 1e-4;
-  Record record;
-  record.kind = "stops";
-  for (int k = 0; k < 4 * 180; ++k) {
-    const int pass = k / 180, at = k % 180, direction = pass % 2 == 0 ? 1 : -1;
-    const double r_deg = 2.0 * (direction > 0 ? at : 179 - at), shown_deg = std::round((r_deg + 0.137) / kStep_deg) * kStep_deg;
-    record.Add(k, r_deg, std::round(shown_deg / kPrint_deg) * kPrint_deg, direction, pass);
-  }
-  EXPECT_EQ(Ask(record).run.diagnosis.verdict, Verdict::kNone) << Ask(record).Words();
+  const Answer answer = Ask(ThereAndBackTwice(180, 2.0, [&](double r_deg, int) {
+    return std::round(std::round((r_deg + 0.137) / kStep_deg) * kStep_deg / kPrint_deg) * kPrint_deg;
+  }));
+  EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kNone) << answer.Words();
 }
 
 /// The place at which the shaft turns is read twice, the second time with the device still on the old side.

@@ -2,13 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <map>
-#include <utility>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
-#include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
-#include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
 #include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/core/linear_algebra.h"
 #include "twin/diagnose/conclusion.h"
@@ -16,8 +11,6 @@
 
 namespace twinbench::diagnose::encoder {
 namespace {
-
-constexpr std::size_t kMostLarge = 16;
 
 /// A device whose signals err says where they begin.
 void TellSignalZero(const std::vector<EffectSettings>& effects, DeviceSettings& device) {
@@ -67,27 +60,6 @@ void LeaveSharedToLarge(const Eigen::MatrixXd& free, const std::vector<LargeCaus
     term.amplitudes *= share;
     term.cov *= share * share;
   }
-}
-
-/// Waves of one effect whose orders these readings do not tell apart.
-bool AreOneWave(const LargeCause& a, const LargeCause& b, double apart) {
-  const std::optional<double> order = WaveOrderOf(a.effect), other = WaveOrderOf(b.effect);
-  return a.effect.name == b.effect.name && a.effect.where == b.effect.where && a.effect.parameters.contains("phase") &&
-         order && other && std::abs(*order - *other) < apart;
-}
-
-/// The wave of this order that is what both are together in the middle of the readings.
-LargeCause SumOfWaves(LargeCause wave, const LargeCause& more, double order, double middle_rad) {
-  std::complex<double> sum;
-  for (const LargeCause* part : {&std::as_const(wave), &more}) {
-    const double phase_rad = part->effect.parameters.at("phase") + *WaveOrderOf(part->effect) * middle_rad;
-    sum += std::polar(part->effect.parameters.at("amplitude"), phase_rad);
-  }
-  std::map<std::string, double>& of = wave.effect.parameters;
-  of["order"] = order;
-  of["amplitude"] = std::abs(sum);
-  of["phase"] = std::arg(sum) - order * middle_rad;
-  return wave;
 }
 
 }  // namespace
@@ -152,24 +124,6 @@ void LargeSearch::Review() {
   }
 }
 
-/// Signals that are cut off have all their faults at once: none of them is found alone.
-void LargeSearch::TakeSignals() {
-  const EncoderRun& encoder = large_.first->encoder;
-  if (power_ < kLarge * kLarge || std::ranges::count(options_.excluded, "signal_clipping") > 0) return;
-  const std::optional<SignalGuess> guess = GuessSignals(encoder.context, encoder.run.residual);
-  if (!guess) return;
-  FittedCauses all = fit_->Fit(SignalBlock(*guess, encoder, options_.excluded));
-  if (all.causes.empty() || all.causes.front().effect.name != "signal_clipping" || !(all.power < 0.5 * power_)) return;
-  for (std::size_t k = 0; k < all.causes.size(); ++k)
-    all.causes[k].explained = fit_->PowerWithout(k, all.asked) - all.power;
-  Accept(all.asked, std::move(all.causes), kFewCauses);
-}
-
-void LargeSearch::TakeLarge() {
-  while (large_.causes.size() < kMostLarge && TakeNext()) {
-  }
-}
-
 /// For all that is left, where the last search ended at the first.
 /// @return false if there was no need.
 bool LargeSearch::SearchOn() {
@@ -200,97 +154,6 @@ void LargeSearch::Accept(const AskedAgain& asked, std::vector<LargeCause> causes
   power_ = fit_->PowerOf(asked.left);
   large_.causes = std::move(causes);
   large_.last = std::move(searched);
-}
-
-/// @return false if nothing more is large, or the twin does not show it as the search has it.
-bool LargeSearch::TakeNext() {
-  const std::optional<LargeCause> next = LargestNamed(large_.Last());
-  if (next && Take(*next)) return true;
-  if (TakeOneOfTwoWaves()) return true;
-  const Searched& last = large_.Last();
-  std::vector<Cause> like;
-  for (const int k : NamedLikeUnnamed(last)) {
-    like.push_back(CauseFrom(last.families[static_cast<std::size_t>(k)], last.analysis.found.alone.grid_point(k, 0),
-                             last.encoder.run.residual, fit_->Run().run.sigma, fit_->projector()));
-  }
-  for (Cause& cause : like) cause.probability /= static_cast<double>(like.size());
-  return !like.empty() && Take(LedBy(std::move(like), 0, last.encoder.run.bench));
-}
-
-bool LargeSearch::TakeOneOfTwoWaves() {
-  const std::optional<LargeCause> one = OneOfTwoWaves(large_.Last(), OrdersApart(large_.first->encoder.context));
-  return one && Take(*one);
-}
-
-bool LargeSearch::Take(const LargeCause& next) {
-  std::vector<LargeCause> causes = large_.causes;
-  const double apart = OrdersApart(large_.first->encoder.context);
-  const auto same = std::ranges::find_if(causes, [&](const LargeCause& cause) { return AreOneWave(cause, next, apart); });
-  if (same != causes.end()) return TakeSum(static_cast<std::size_t>(same - causes.begin()), next);
-  causes.push_back(next);
-  // Of a cause whose size is not known there is nothing to be asked.
-  if (MovableOf({next}).empty()) return false;
-  const AskedAgain asked = fit_->Ask(causes);
-  const double power = fit_->PowerOf(asked.left);
-  constexpr double kNeedless = 0.5;  // of what would be dropped in the end
-  if (power_ - power < kNeedless * LeastExplained() || IsOtherFunctionOfSpeed(next, asked)) return false;
-  if (!(power < power_) || !IsHeld(asked.effects.back())) return false;
-  causes.back().explained = power_ - power;
-  Accept(asked, std::move(causes), kFewCauses);
-  return true;
-}
-
-/// What is taken for a latency and goes with another function of the speed: that explains more alone, however the latency bends,
-/// and beside it the latency explains hardly anything.
-bool LargeSearch::IsOtherFunctionOfSpeed(const LargeCause& next, const AskedAgain& asked) const {
-  constexpr double kSame = 0.995, kHardly = 0.01;  // of what that explains; of what the latency does
-  if (next.effect.name != "latency") return false;
-  const Searched& last = large_.Last();
-  const Evidence& alone = last.analysis.found.alone;
-  double named = 0.0, most = 0.0;
-  Eigen::MatrixXd other;
-  for (int k = 0; k < std::ssize(last.families); ++k) {
-    const Family& family = last.families[static_cast<std::size_t>(k)];
-    if (IsOf(next.causes.front(), family)) named = alone.explained(k, 0);
-    if (family.effect != "speed" || alone.explained(k, 0) <= most) continue;
-    most = alone.explained(k, 0);
-    other = family.ColumnsAt(alone.grid_point(k, 0));
-  }
-  if (std::max(named, power_ - fit_->PowerOf(asked.left)) > kSame * most) return false;
-  const Eigen::VectorXd left = fit_->WhiteOf(last.encoder.run.residual);
-  const auto explained = [&](const Eigen::MatrixXd& columns) {
-    Eigen::MatrixXd white(left.size(), columns.cols());
-    for (Eigen::Index k = 0; k < columns.cols(); ++k) white.col(k) = fit_->WhiteOf(columns.col(k));
-    return (white * SolveShortest(white, left)).squaredNorm();
-  };
-  Eigen::MatrixXd both(other.rows(), other.cols() + asked.slopes.cols());
-  both << other, asked.slopes;
-  return explained(both) - explained(other) < kHardly * named;
-}
-
-/// A second wave of the k-th one's order, or of one that is not told from it, is what that lacks: it was fitted before all
-/// was there.
-/// @return false if no order about both explains it.
-bool LargeSearch::TakeSum(std::size_t k, const LargeCause& more) {
-  constexpr double kMostOrdersTried = 16.0;
-  const double middle_rad = large_.first->encoder.context.device_rad.mean();
-  const auto [first, last] = std::minmax(*WaveOrderOf(large_.causes[k].effect), *WaveOrderOf(more.effect));
-  const double about = first < last ? 1.0 : 0.0, step = std::max(1.0, std::ceil((last - first) / kMostOrdersTried));
-  std::vector<LargeCause> best;
-  AskedAgain of_best;
-  for (double order = first - about; order <= last + about; order += step) {
-    std::vector<LargeCause> causes = large_.causes;
-    causes[k] = SumOfWaves(causes[k], more, order, middle_rad);
-    const AskedAgain asked = fit_->Ask(causes);
-    if (!best.empty() && !(asked.power < of_best.power)) continue;
-    best = std::move(causes);
-    of_best = asked;
-  }
-  const double power = fit_->PowerOf(of_best.left);
-  if (!(power < power_ - kBetter)) return false;
-  best[k].explained += power_ - power;
-  Accept(of_best, std::move(best), kFewCauses);
-  return true;
 }
 
 /// Errors of targets are free.
