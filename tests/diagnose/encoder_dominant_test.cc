@@ -296,6 +296,19 @@ TEST(EncoderDominant, ACourseInTimeThatDoesNotRepeatIsNoOrder) {
   EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kUnknown) << answer.Words();
 }
 
+/// A quarter of a turn: what a scale off its axis shows there is a line and a small bend, too.
+TEST(EncoderDominant, AQuarterOfATurnLeavesOpenWhetherItIsOrderOne) {
+  std::mt19937_64 random(61);
+  std::normal_distribution<double> noise_deg(0.0, 0.004);
+  const Answer answer = Ask(ThereAndBackTwice(181, 0.5, [&](double r_deg, int) {
+    return r_deg + Sum({{1, 0.2, 135.0}}, r_deg - 45.0) + 0.05 * std::cos(24.0 * r_deg * units::deg) + noise_deg(random);
+  }));
+  EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kTie) << answer.Words();
+  const auto& notes = answer.run.diagnosis.notes;
+  const auto says_it = [](const std::string& note) { return note.find("once per turn (eccentricity) of 0.2") != std::string::npos; };
+  EXPECT_TRUE(std::ranges::any_of(notes, says_it)) << answer.Words();
+}
+
 /// A place that is dirty, a fifth of a turn wide: the other targets lie on the orders that are there.
 TEST(EncoderDominant, AWornPlaceLeavesTheOrdersBesideIt) {
   for (const unsigned seed : {51u, 52u, 53u}) {

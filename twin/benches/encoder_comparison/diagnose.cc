@@ -7,6 +7,7 @@
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/equal_steps.h"
+#include "twin/benches/encoder_comparison/diagnosis/first_order.h"
 #include "twin/benches/encoder_comparison/diagnosis/glitches.h"
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
@@ -76,6 +77,7 @@ diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario
   diagnose::encoder::AddErrorsOfTargets(large, result);
   diagnose::encoder::TellEqualSteps(result);
   diagnose::encoder::TellCurveInPieces(result);
+  diagnose::encoder::TellOrFirstOrder(large.first->encoder.context, result);
   diagnose::encoder::TellWander(large.bent, result);
   diagnose::encoder::TellGlitches(large.first->encoder.glitches, scenario, result);
   if (limit) diagnose::encoder::TellSpeedLimit(*limit, result);

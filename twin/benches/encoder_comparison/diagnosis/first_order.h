@@ -1,0 +1,12 @@
+#pragma once
+
+#include "twin/benches/encoder_comparison/diagnosis/signals.h"
+#include "twin/diagnose/extend.h"
+
+namespace twinbench::diagnose::encoder {
+
+/// Over a part of a turn a scale and low orders together are what a scale off its axis shows alone: where one wave of order 1
+/// leaves no more of the readings than they do, each of them may be no more than that, and the whole turn would tell.
+void TellOrFirstOrder(const SignalContext& context, DiagnosisRun& result);
+
+}  // namespace twinbench::diagnose::encoder
