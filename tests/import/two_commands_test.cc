@@ -113,6 +113,13 @@ TEST_F(TwoCommands, TakeAGearTrainWithFewRowsATurn) {
   const std::string story = Succeed({"import", "few.csv", "-o", "few"});
   EXPECT_THAT(story, HasSubstr("order 1: 36.00 ±")) << "0.01 deg, of 50 rows a turn";
   EXPECT_THAT(story, HasSubstr("orders 1-20"));
+  std::string folding = "input_deg,output_deg\n";
+  for (int k = 0; k < 141; ++k) {
+    const double out_deg = 360.0 * k / 47.0;
+    folding += fmt::format("{:.6f},{:.6f}\n", 36.0 * out_deg, out_deg + 0.01 * Cosine(1.0, out_deg, 30.0) + 0.002 * Cosine(36.0, out_deg, 10.0));
+  }
+  Write("folding.csv", folding);
+  EXPECT_THAT(Succeed({"import", "folding.csv", "-o", "folding"}), HasSubstr("11 or 36 (7.20)")) << "of 47 rows a turn";
 }
 
 /// 12 faces whose certified deviations are taken out; the table errs by 3 arcsec once a turn, and stands 0.2 arcsec off from the other side.
