@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "tests/import/importing.h"
 
 // Polygons without a certificate in several clampings: said by columns, by their names, by lines above blocks, or
@@ -105,16 +107,18 @@ TEST_F(ClampingTable, StandsInBlocksBelowLines) {
   EXPECT_THAT(taken.story, HasSubstr("the nominal angles are the faces'")) << "a face is the same in all of them";
 }
 
-/// By how much it was turned the readings show, if there are enough.
+/// By how much it was turned the readings show, if there are enough, by equal steps or not.
 TEST_F(ClampingTable, MayOnlyNumberItsClampings) {
-  std::string text =
-      "position (deg),clamping 1 (arcsec),clamping 2 (arcsec),clamping 3 (arcsec),clamping 4 (arcsec)\n";
-  for (int k = 0; k < kFaces; ++k) {
-    text += fmt::format("{}", 36 * k);
-    for (int c = 0; c < 4; ++c) text += fmt::format(",{:.5f}", Shown_arcsec(k, k - 3 * c, c));
-    text += "\n";
+  for (const std::array<int, 4>& turned : {std::array{0, 3, 6, 9}, std::array{0, 1, 3, 7}, std::array{0, 9, 4, 6}}) {
+    std::string text =
+        "position (deg),clamping 1 (arcsec),clamping 2 (arcsec),clamping 3 (arcsec),clamping 4 (arcsec)\n";
+    for (int k = 0; k < kFaces; ++k) {
+      text += fmt::format("{}", 36 * k);
+      for (int c = 0; c < 4; ++c) text += fmt::format(",{:.5f}", Shown_arcsec(k, k - turned[static_cast<std::size_t>(c)], c));
+      text += "\n";
+    }
+    ExpectApart(Take(text), 4);
   }
-  ExpectApart(Take(text), 4);
 }
 
 TEST_F(ClampingTable, IsNotTurnedWhereReadingsDoNotShowIt) {

@@ -178,6 +178,37 @@ std::vector<StepsBetween> SaidTurns(const FaceRows& rows, double sense) {
   return tried;
 }
 
+/// From there on one clamping after the other is turned to where it leaves least, until none does any better.
+StepsBetween Settled(StepsBetween turns, const FaceRows& rows) {
+  double least = LeftBy(turns, rows).squares_arcsec2;
+  for (bool is_better = true; is_better;) {
+    is_better = false;
+    for (std::size_t k = 1; k < turns.size(); ++k) {
+      for (int turned = 0; turned < rows.faces; ++turned) {
+        StepsBetween other = turns;
+        other[k] = turned;
+        const double left = LeftBy(other, rows).squares_arcsec2;
+        if (!(left < least - kWrittenTo_arcsec * kWrittenTo_arcsec)) continue;
+        least = left;
+        turns = std::move(other);
+        is_better = true;
+      }
+    }
+  }
+  return turns;
+}
+
+/// Where clampings are turned by other steps each time: from those with equal steps that leave least, as many as take no time.
+void AddSettled(const FaceRows& rows, std::vector<StepsBetween>& tried) {
+  constexpr int kFewestClampings = 3;  // two fit any turn
+  const auto most = static_cast<std::size_t>(std::max(3, 150 / rows.faces));
+  if (rows.Clampings() < kFewestClampings || rows.faces > kMostTried) return;
+  std::vector<StepsBetween> begins = tried;
+  std::ranges::stable_sort(begins, {}, [&rows](const StepsBetween& turns) { return LeftBy(turns, rows).squares_arcsec2; });
+  if (begins.size() > most) begins.resize(most);
+  for (const StepsBetween& begin : begins) AddOther(Settled(begin, rows), tried);
+}
+
 /// Clampings that are only numbered: as degrees where these are whole steps, else some steps from one to the next.
 std::vector<StepsBetween> NumberedTurns(const FaceRows& rows) {
   std::vector<StepsBetween> tried;
@@ -191,6 +222,7 @@ std::vector<StepsBetween> NumberedTurns(const FaceRows& rows) {
       AddOther(WholeSteps(turned_deg, rows, sense), tried);
     }
   }
+  AddSettled(rows, tried);
   return tried;
 }
 
