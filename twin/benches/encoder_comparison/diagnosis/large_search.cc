@@ -40,26 +40,28 @@ Eigen::MatrixXd BesideSetUps(const EncoderRun& encoder, Eigen::MatrixXd columns)
 }
 
 /// Beside parameters that are free a shape without a name that is much like what they show may have any size, and they
-/// the opposite one: where it adds little to what they explain it has what they cannot show.
+/// the opposite one: where it adds little to what they explain it has what they cannot show, or goes if that is next to nothing.
 /// @param free  What the parameters of the large causes show.
 void LeaveSharedToLarge(const Eigen::MatrixXd& free, const std::vector<LargeCause>& causes, Searched& searched) {
-  constexpr double kMuchAlike = 0.5, kLittle = 0.05;
+  constexpr double kMuchAlike = 0.5, kNothingOwn = 0.1, kLittle = 0.05;
   if (free.cols() == 0) return;
   double explained = 0.0;
   for (const LargeCause& cause : causes) explained += cause.explained;
   const Eigen::MatrixXd slopes = BesideSetUps(searched.encoder, free);
-  for (Term& term : searched.analysis.found.terms) {
+  std::erase_if(searched.analysis.found.terms, [&](Term& term) {
     const bool is_unnamed = searched.families[static_cast<std::size_t>(term.family)].kind == Kind::kUnknown;
-    if (!is_unnamed || term.explained > kLittle * explained) continue;
+    if (!is_unnamed || term.explained > kLittle * explained) return false;
     const Eigen::MatrixXd shown = BesideSetUps(searched.encoder, term.columns);
     Eigen::MatrixXd own = shown;
     for (auto column : own.colwise()) column -= slopes * SolveShortest(slopes, Eigen::VectorXd(column));
     const double share = (own * term.amplitudes).norm() / (shown * term.amplitudes).norm();
-    if (!(share < kMuchAlike) || !(share > 0.0)) continue;
+    if (!(share < kMuchAlike)) return false;
+    if (!(share > kNothingOwn)) return true;
     term.columns = own / share;
     term.amplitudes *= share;
     term.cov *= share * share;
-  }
+    return false;
+  });
 }
 
 }  // namespace
