@@ -152,6 +152,14 @@ TEST(VerdictLine, OfATieListsItsMembersOnceAndLeavesTheReadingsOutBeforeAName) {
   EXPECT_KEPT(VerdictLine(Of(Verdict::kTie, {Without(a, 0.48, {b}), Without(b, 0.48, {a})}), "run.csv"));
 }
 
+/// A tie has the share of whichever of it was fitted; what has none stands last.
+TEST(VerdictLine, BeginsWithWhatExplainsMost) {
+  const std::vector<Cause> causes = {Without("small", 0.9, {}), Without("a", 0.48, {"b"}), Without("b", 0.48, {"a"}), Without("none", 0.9, {})};
+  const std::string line = VerdictLine(Of(Verdict::kTie, causes), "run.csv", {0.2, kNaN, 0.7, kNaN});
+  EXPECT_LT(line.find("a or b"), line.find("small")) << line;
+  EXPECT_LT(line.find("small"), line.find("none")) << line;
+}
+
 TEST(VerdictLine, SaysWhatIsUnknownOrThatNothingWasFound) {
   Diagnosis d = Of(Verdict::kUnknown, {});
   d.unknown.probability = 0.97;

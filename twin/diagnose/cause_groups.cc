@@ -1,6 +1,9 @@
 #include "twin/diagnose/cause_groups.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
 
 namespace twinbench::diagnose {
 namespace {
@@ -33,6 +36,23 @@ std::vector<CauseGroup> GroupsOf(const std::vector<Cause>& causes) {
     else
       its->push_back(k);
   }
+  return groups;
+}
+
+double ShareOf(const CauseGroup& group, const std::vector<double>& share) {
+  for (const std::size_t k : group) {
+    if (k < share.size() && std::isfinite(share[k])) return share[k];
+  }
+  return kNaN;
+}
+
+std::vector<CauseGroup> GroupsByShare(const std::vector<Cause>& causes, const std::vector<double>& share) {
+  std::vector<CauseGroup> groups = GroupsOf(causes);
+  const auto rank = [&share](const CauseGroup& group) {
+    const double own = ShareOf(group, share);
+    return std::isfinite(own) ? own : -std::numeric_limits<double>::infinity();
+  };
+  std::ranges::stable_sort(groups, std::ranges::greater{}, rank);
   return groups;
 }
 

@@ -47,14 +47,6 @@ std::string SizeOfMember(const std::vector<Cause>& causes, const diagnose::Cause
   return fmt::format("aliased: explains {} of it", Percent(overlap));
 }
 
-/// Of whichever of the group was fitted.
-double ShareOf(const diagnose::CauseGroup& group, const std::vector<double>& share) {
-  for (const std::size_t k : group) {
-    if (k < share.size() && std::isfinite(share[k])) return share[k];
-  }
-  return kNaN;
-}
-
 void AddGroup(const DiagnosisRun& found, const diagnose::CauseGroup& group, double share, Cells& rows) {
   const std::vector<Cause>& causes = found.diagnosis.causes;
   for (std::size_t i = 0; i < group.size(); ++i) {
@@ -85,7 +77,7 @@ std::string CauseTable(const DiagnosisRun& found, const diagnose::Shown& shown) 
     unmodelled = {{"unmodelled effect", SignatureLines(d.unknown.signature), Percent(d.unknown.probability),
                    Percent(shown.share_unnamed)}};
   if (d.verdict == Verdict::kUnknown) rows = unmodelled;
-  for (const diagnose::CauseGroup& group : GroupsOf(d.causes)) AddGroup(found, group, ShareOf(group, shown.share), rows);
+  for (const diagnose::CauseGroup& group : GroupsByShare(d.causes, shown.share)) AddGroup(found, group, diagnose::ShareOf(group, shown.share), rows);
   if (d.verdict != Verdict::kUnknown) rows.insert(rows.end(), unmodelled.begin(), unmodelled.end());
   if (rows.empty()) return "";
   return "Causes (share: of the variance beyond noise)\n" +

@@ -138,7 +138,7 @@ std::string DiagnosisText(const DiagnosisPage& page, const PageStyle& style) {
   const diagnose::DiagnosisRun& found = page.found;
   const diagnose::Gain& gain = found.diagnosis.gain;
   const std::string gained = gain.positive ? Sentence("Held-out improvement: ", GainInWords(gain, found.run)) : "";
-  return InPrint(Apart({VerdictLine(found.diagnosis, page.source) + "\n",
+  return InPrint(Apart({VerdictLine(found.diagnosis, page.source, page.shown.share) + "\n",
                         CauseTable(found, page.shown) + NextMeasurements(found.diagnosis),
                         HarmonicsTable(found, style.verbose), CurveOfPage(page, style.letters), gained + Warnings(page)}) +
                  Further(RemarksOn(page, style.verbose), style.verbose));

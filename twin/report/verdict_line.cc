@@ -63,8 +63,8 @@ std::string ShortOf(const std::vector<Cause>& causes, const diagnose::CauseGroup
 }
 
 /// As many groups as fit into `most` characters.
-std::string Causes(const Diagnosis& d, bool with_sizes, std::size_t most = std::string::npos) {
-  const std::vector<diagnose::CauseGroup> groups = GroupsOf(d.causes);
+std::string Causes(const Diagnosis& d, const std::vector<diagnose::CauseGroup>& groups, bool with_sizes,
+                   std::size_t most = std::string::npos) {
   std::string text;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const std::string more = fmt::format("; and {} more", groups.size() - g);
@@ -86,17 +86,18 @@ std::string ShortSource(const std::string& source) {
 
 }  // namespace
 
-std::string VerdictLine(const Diagnosis& d, const std::string& source) {
+std::string VerdictLine(const Diagnosis& d, const std::string& source, const std::vector<double>& share) {
+  const std::vector<diagnose::CauseGroup> groups = GroupsByShare(d.causes, share);
   const std::string name = ShortSource(source), of = fmt::format("{} reading{} of {}", d.readings, d.readings == 1 ? "" : "s", name);
   const auto line = [&](const std::string& verdict) {
     for (const bool with_sizes : {true, false}) {
       for (const std::string& place : {of, name}) {
-        const std::string text = fmt::format("{}: {} in {}", verdict, Causes(d, with_sizes), place);
+        const std::string text = fmt::format("{}: {} in {}", verdict, Causes(d, groups, with_sizes), place);
         if (WidthOf(text) <= kLongest) return text;
       }
     }
     const std::size_t taken = verdict.size() + 6 + name.size();  // ": " and " in "
-    return fmt::format("{}: {} in {}", verdict, Causes(d, true, kLongest - std::min(kLongest, taken)), name);
+    return fmt::format("{}: {} in {}", verdict, Causes(d, groups, true, kLongest - std::min(kLongest, taken)), name);
   };
   switch (d.verdict) {
     case Verdict::kNamed:

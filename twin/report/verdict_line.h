@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "twin/diagnose/diagnosis.h"
 
@@ -11,6 +12,7 @@ namespace twinbench::report {
 /// 0.4)".
 /// @param source  The file or folder; only its name is told if it is long, and not how many readings it holds where
 ///                causes need the room.
-std::string VerdictLine(const diagnose::Diagnosis& diagnosis, const std::string& source);
+/// @param share  What each cause explains (Shown::share): what explains most is named first.
+std::string VerdictLine(const diagnose::Diagnosis& diagnosis, const std::string& source, const std::vector<double>& share = {});
 
 }  // namespace twinbench::report
