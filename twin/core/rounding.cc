@@ -15,10 +15,6 @@ double WavePower(int k, double noise) {
   return std::exp(-std::pow(2.0 * units::kPi * k * noise, 2)) / (2.0 * std::pow(units::kPi * k, 2));
 }
 
-}  // namespace
-
-namespace {
-
 /// Distances of neighbours in size that are more than rounding.
 std::vector<double> GapsOf(std::vector<double> values, double rounding) {
   std::ranges::sort(values);

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
@@ -203,10 +205,11 @@ void AddSettled(const FaceRows& rows, std::vector<StepsBetween>& tried) {
   constexpr int kFewestClampings = 3;  // two fit any turn
   const auto most = static_cast<std::size_t>(std::max(3, 150 / rows.faces));
   if (rows.Clampings() < kFewestClampings || rows.faces > kMostTried) return;
-  std::vector<StepsBetween> begins = tried;
-  std::ranges::stable_sort(begins, {}, [&rows](const StepsBetween& turns) { return LeftBy(turns, rows).squares_arcsec2; });
+  std::vector<std::pair<double, StepsBetween>> begins;
+  for (const StepsBetween& turns : tried) begins.emplace_back(LeftBy(turns, rows).squares_arcsec2, turns);
+  std::ranges::stable_sort(begins, {}, &std::pair<double, StepsBetween>::first);
   if (begins.size() > most) begins.resize(most);
-  for (const StepsBetween& begin : begins) AddOther(Settled(begin, rows), tried);
+  for (const auto& [left, begin] : begins) AddOther(Settled(begin, rows), tried);
 }
 
 /// Clampings that are only numbered: as degrees where these are whole steps, else some steps from one to the next.

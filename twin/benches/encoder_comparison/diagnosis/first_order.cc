@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <string>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/diagnosis/twin_fit.h"
@@ -13,22 +15,21 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-constexpr double kLowOrder = 4.0;
-
-bool IsLow(double order) {
-  return order <= kLowOrder;
+/// @param order  Of a wave that has one.
+bool IsPiece(const std::string& effect, std::optional<double> order) {
+  constexpr double kLow = 4.0;
+  return effect == "scale" || effect == "ellipticity" || (effect == "periodic" && order && *order <= kLow);
 }
 
 bool IsPiece(const Accepted& accepted) {
-  if (accepted.family.kind != Kind::kNamed) return false;
-  const std::string& effect = accepted.family.effect;
-  return effect == "scale" || effect == "ellipticity" || (effect == "periodic" && accepted.shape.size() == 1 && IsLow(accepted.shape[0]));
+  const bool has_order = accepted.shape.size() == 1;
+  return accepted.family.kind == Kind::kNamed &&
+         IsPiece(accepted.family.effect, has_order ? std::optional(accepted.shape[0]) : std::nullopt);
 }
 
 bool IsPiece(const Cause& cause) {
   const auto order = std::ranges::find(cause.parameters, "order", &ParameterEstimate::name);
-  const bool is_low = order != cause.parameters.end() && IsLow(order->value);
-  return cause.effect == "scale" || cause.effect == "ellipticity" || (cause.effect == "periodic" && is_low);
+  return IsPiece(cause.effect, order != cause.parameters.end() ? std::optional(order->value) : std::nullopt);
 }
 
 /// Free numbers, which a wave has to be no more than.

@@ -40,6 +40,17 @@ std::vector<std::string> InItsPlace(const EffectSettings& effect, int signal_per
   return with == kOnce.end() ? Names{} : *with;
 }
 
+/// The k-th term that was found, as the cause that was fitted; nothing if it is none.
+std::optional<LargeCause> AsCause(const Searched& searched, std::size_t k) {
+  const SearchResult& found = searched.analysis.found;
+  const Family& family = searched.families[static_cast<std::size_t>(found.terms[k].family)];
+  if (family.kind != Kind::kNamed) return {};
+  const std::vector<Cause> causes = AnswerOf(found, k, searched.families).causes;
+  const auto fitted = std::ranges::find_if(causes, [&](const Cause& cause) { return IsOf(cause, family); });
+  if (fitted == causes.end()) return {};
+  return LedBy(causes, static_cast<std::size_t>(fitted - causes.begin()), searched.encoder.run.bench);
+}
+
 }  // namespace
 
 std::optional<double> WaveOrderOf(const EffectSettings& effect) {
@@ -97,21 +108,6 @@ LargeCause LedBy(std::vector<Cause> causes, std::size_t leader, const std::strin
   return {std::move(causes), effect, 0.0, {}};
 }
 
-namespace {
-
-/// The k-th term that was found, as the cause that was fitted; nothing if it is none.
-std::optional<LargeCause> AsCause(const Searched& searched, std::size_t k) {
-  const SearchResult& found = searched.analysis.found;
-  const Family& family = searched.families[static_cast<std::size_t>(found.terms[k].family)];
-  if (family.kind != Kind::kNamed) return {};
-  const std::vector<Cause> causes = AnswerOf(found, k, searched.families).causes;
-  const auto fitted = std::ranges::find_if(causes, [&](const Cause& cause) { return IsOf(cause, family); });
-  if (fitted == causes.end()) return {};
-  return LedBy(causes, static_cast<std::size_t>(fitted - causes.begin()), searched.encoder.run.bench);
-}
-
-}  // namespace
-
 std::optional<LargeCause> LargestNamed(const Searched& searched) {
   const std::vector<Term>& terms = searched.analysis.found.terms;
   std::optional<LargeCause> largest;
@@ -126,14 +122,19 @@ std::optional<LargeCause> LargestNamed(const Searched& searched) {
   return largest;
 }
 
+bool AreOneWave(const LargeCause& a, const LargeCause& b, double apart) {
+  const std::optional<double> order = WaveOrderOf(a.effect), other = WaveOrderOf(b.effect);
+  return a.effect.name == b.effect.name && a.effect.where == b.effect.where && a.effect.parameters.contains("phase") &&
+         order && other && std::abs(*order - *other) < apart;
+}
+
 std::optional<LargeCause> OneOfTwoWaves(const Searched& searched, double apart) {
   const std::vector<Term>& terms = searched.analysis.found.terms;
+  std::vector<std::optional<LargeCause>> causes;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      const std::optional<LargeCause> a = AsCause(searched, i), b = AsCause(searched, k);
-      const bool are_one = a && b && a->effect.name == b->effect.name && WaveOrderOf(a->effect) && WaveOrderOf(b->effect) &&
-                           std::abs(*WaveOrderOf(a->effect) - *WaveOrderOf(b->effect)) < apart;
-      if (are_one) return terms[i].explained > terms[k].explained ? a : b;
+    causes.push_back(AsCause(searched, i));
+    for (std::size_t k = 0; causes[i] && k < i; ++k) {
+      if (causes[k] && AreOneWave(*causes[i], *causes[k], apart)) return terms[i].explained > terms[k].explained ? causes[i] : causes[k];
     }
   }
   return {};

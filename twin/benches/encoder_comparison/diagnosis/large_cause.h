@@ -51,6 +51,10 @@ LargeCause LedBy(std::vector<Cause> causes, std::size_t leader, const std::strin
 /// The largest of what has a name, the one that was fitted first.
 std::optional<LargeCause> LargestNamed(const Searched& searched);
 
+/// Waves of one effect whose orders are not told apart.
+/// @param apart  OrdersApart.
+bool AreOneWave(const LargeCause& a, const LargeCause& b, double apart);
+
 /// The larger of two waves that were found at once and whose orders are not told apart: there is one, of an order about theirs.
 /// @param apart  OrdersApart.
 std::optional<LargeCause> OneOfTwoWaves(const Searched& searched, double apart);

@@ -17,13 +17,6 @@ namespace {
 
 constexpr std::size_t kMostLarge = 16;
 
-/// Waves of one effect whose orders these readings do not tell apart.
-bool AreOneWave(const LargeCause& a, const LargeCause& b, double apart) {
-  const std::optional<double> order = WaveOrderOf(a.effect), other = WaveOrderOf(b.effect);
-  return a.effect.name == b.effect.name && a.effect.where == b.effect.where && a.effect.parameters.contains("phase") &&
-         order && other && std::abs(*order - *other) < apart;
-}
-
 /// The wave of this order that is what both are together in the middle of the readings.
 LargeCause SumOfWaves(LargeCause wave, const LargeCause& more, double order, double middle_rad) {
   std::complex<double> sum;
