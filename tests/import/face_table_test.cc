@@ -3,6 +3,8 @@
 
 #include "tests/import/importing.h"
 #include "twin/benches/evaluated.h"
+#include "twin/benches/registry.h"
+#include "twin/separate/index_errors.h"
 
 // Tables of a certified polygon under an autocollimator: other names, orders, units and ways of saying the direction.
 namespace twinbench::imports {
@@ -54,6 +56,9 @@ TEST_F(FaceTable, IsGuessedByItsCertifiedDeviations) {
   Expect(taken, 12);
   EXPECT_THAT(taken.story, HasSubstr("taken as --map face_table"));
   EXPECT_THAT(taken.story, Not(HasSubstr("no certified deviations")));
+  // The second axis of the autocollimator was not read, and a compensation needs none.
+  const Scenario scenario = ParseScenario("bench = \"" + taken.bench + "\"\n", "faces.csv", "", taken.set);
+  EXPECT_EQ(BenchOf(scenario).index_errors(scenario, taken.readings).Count(), 12);
 }
 
 TEST_F(FaceTable, MayBeGermanInRadAndSayTheDirectionInAColumn) {

@@ -6,6 +6,7 @@
 #include "tests/separate/index_spectrum.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/night.h"
+#include "twin/report/compensation_text.h"
 #include "twin/separate/line_search.h"
 
 namespace twinbench::separate {
@@ -69,6 +70,42 @@ TEST(Compensate, AddsNothingWhereNothingIs) {
   const Compensation compensation = Compensate(bench.Read({EvenPositions()}));
   EXPECT_TRUE(compensation.lines.empty());
   for (const double correction_rad : compensation.table.correction_rad) EXPECT_EQ(correction_rad, 0.0);
+}
+
+/// An axis that is driven to where its own encoder shows even angles: it stands off these by just what the encoder errs, which
+/// the sine of order 72 of 72 places shows a ten-thousandth of.
+TEST(Compensate, TakesNoOrderThatThePlacesHardlyShow) {
+  std::vector<IndexReading> readings;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 0.3 * arcsec);
+  for (int i = 0; i < 72; ++i) {
+    const double error_rad = 30.0 * arcsec * std::cos(i * 5.0 * deg + 0.7);
+    readings.push_back({0, i * 5.0 * deg - error_rad, -error_rad + noise(random)});
+  }
+  const Compensation compensation = Compensate(MeansByPlace(readings));
+  ASSERT_THAT(compensation.Orders(LineFate::kCompensated), ElementsAre(1));
+  EXPECT_EQ(compensation.lines.size(), 1u);
+  EXPECT_NEAR(compensation.lines.front().line.Amplitude_rad(), 30.0 * arcsec, 0.2 * arcsec);
+  EXPECT_LT(compensation.remaining.predicted_rms_rad, 0.5 * arcsec);
+}
+
+TEST(Compensate, RefusesAnOrderThatIsAnotherOneEveryTurn) {
+  IndexErrors errors = BenchWith({{1, 5 * arcsec, 0.4}, {2, 9 * arcsec, 1.0}}, 0.1 * arcsec).Read({EvenPositions()});
+  errors.u_order_rad = {3.5 * arcsec, 1.0 * arcsec};
+  const Compensation compensation = Compensate(errors);
+  EXPECT_THAT(compensation.Orders(LineFate::kChanging), ElementsAre(1));
+  EXPECT_THAT(compensation.Orders(LineFate::kCompensated), ElementsAre(2));
+  EXPECT_NEAR(compensation.lines.front().line.u_rad, 3.5 * arcsec, 1e-12);
+}
+
+TEST(CompensationText, SaysWhatTheTableLeaves) {
+  IndexErrors errors = BenchWith({{2, 9 * arcsec, 1.0}}, 0.1 * arcsec).Read({EvenPositions()});
+  errors.reversal_rad = 30.0 * arcsec;
+  errors.u_reversal_rad = 0.1 * arcsec;
+  errors.u_reading_rad = 5.0 * arcsec;  // repeats of a place that play moved
+  const Compensation compensation = Compensate(errors);
+  EXPECT_KEPT(report::CompensationText(errors, compensation));
+  EXPECT_THAT(report::CompensationComments(errors, compensation, "RUN"), testing::Contains(testing::HasSubstr("30.000")));
 }
 
 TEST(CheckCompensation, RefusesARunWithAnotherTable) {

@@ -73,7 +73,7 @@ CompensationMade CompensationOf(const RecordedRun& run, const std::string& sourc
   made.text = report::WithoutNoNumbers(report::CompensationText(errors, compensation));
   if (checked) made.text += report::WithoutNoNumbers(report::CompensationCheckText(*checked));
   made.table = report::ControllerTable(wish.form, compensation.table, wish.axis,
-                                       report::CompensationComments(compensation, source));
+                                       report::CompensationComments(errors, compensation, source));
   return made;
 }
 

@@ -40,8 +40,8 @@ void CheckCount(const std::vector<Reading>& readings, const Plan& plan, std::vec
            "there are {} of the {} readings that the scenario plans{}", readings.size(), plan.readings,
            absent < 0
                ? ": is it the scenario of these readings?"
-               : ": if no more were taken, say in the scenario's procedure which; the others may be bad ones that "
-                 "somebody took out")});
+               : ": a run that was interrupted goes on by `measure ... --resume`; if no more were to be taken, say in "
+                 "the scenario's procedure which; else somebody may have taken bad ones out")});
 }
 
 /// By how much the readings of a pass follow each other slower than planned: the middle of them.

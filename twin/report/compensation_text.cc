@@ -20,6 +20,7 @@ using separate::LineFate;
 using separate::RemainingError;
 
 constexpr std::size_t kWidth = 100;
+constexpr double kReversals = 3.0;  // least reversal that is said, in its u
 constexpr std::size_t kMostAlike = 5;  // orders that a line could have as well
 
 const char* FateName(LineFate fate) {
@@ -30,6 +31,8 @@ const char* FateName(LineFate fate) {
       return "aliased";
     case LineFate::kTooFine:
       return "too_fine";
+    case LineFate::kChanging:
+      return "changing";
     case LineFate::kNoGain:
       return "no_gain";
   }
@@ -60,8 +63,29 @@ std::string LinesTable(const Compensation& compensation) {
                    rows, kWidth);
 }
 
-std::string Warnings(const Compensation& compensation) {
+bool HasReversal(const IndexErrors& errors) {
+  return std::abs(errors.reversal_rad) > kReversals * errors.u_reversal_rad;
+}
+
+std::string ReversalText(const IndexErrors& errors) {
+  return fmt::format("forward and backward differ by {:.3f} ± {:.3f} arcsec in the mean, which the table leaves",
+                     std::abs(errors.reversal_rad) / units::arcsec, errors.u_reversal_rad / units::arcsec);
+}
+
+/// Readings of one place differ by more than the table would leave of their means.
+bool NoiseIsNotWhite(const RemainingError& r) { return r.noise_rms_rad > r.predicted_rms_rad; }
+
+std::string Warnings(const IndexErrors& errors, const Compensation& compensation) {
   std::string text;
+  if (HasReversal(errors)) text += Paragraph("warning: ", ReversalText(errors), 9, kWidth);
+  const RemainingError& r = compensation.remaining;
+  if (NoiseIsNotWhite(r)) {
+    text += Paragraph("warning: ",
+                      fmt::format("readings of one place differ by {:.3f} arcsec rms, which the prediction does not "
+                                  "hold: they drift, slip or play together. Diagnose the run first",
+                                  r.noise_rms_rad / units::arcsec),
+                      9, kWidth);
+  }
   const auto warn = [&](const std::vector<int>& orders, const std::string& why) {
     if (!orders.empty()) text += Paragraph("warning: ", fmt::format("{}: {}", OrderRanges(orders), why), 9, kWidth);
   };
@@ -69,6 +93,8 @@ std::string Warnings(const Compensation& compensation) {
        "refused as aliased: the positions that were read do not tell it from other orders. Readings between these "
        "positions, uneven ones best, do");
   warn(compensation.Orders(LineFate::kTooFine), "refused: a table of so few entries cannot follow it");
+  warn(compensation.Orders(LineFate::kChanging),
+       "refused as changing: from turn to turn by as much as it is. Something drifts or slips; diagnose names it");
   warn(compensation.Orders(LineFate::kNoGain), "refused: nothing would be gained");
   warn(compensation.fit.doubled, "not distinguished at these positions from at least one other order");
   warn(compensation.fit.unseen, "not seen at these positions, at least in one phase");
@@ -113,10 +139,12 @@ std::string CompensationText(const IndexErrors& errors, const Compensation& comp
   text += fmt::format("\n{:24}{:8.3f} arcsec rms\n{:24}{:8.3f} ± {:.3f} arcsec rms", "before",
                       r.before_rms_rad / units::arcsec, "predicted with the table",
                       r.predicted_rms_rad / units::arcsec, r.u_predicted_rms_rad / units::arcsec);
-  if (std::isfinite(r.noise_rms_rad))
+  if (std::isfinite(r.noise_rms_rad) && !NoiseIsNotWhite(r))
     text += fmt::format(", {:.3f} of it noise of the readings", r.noise_rms_rad / units::arcsec);
   if (r.refused_rms_rad > 0.0) text += fmt::format(", {:.3f} refused lines", r.refused_rms_rad / units::arcsec);
-  return text + "\n" + Warnings(compensation);
+  text += "\na correction is added to what is commanded";
+  if (errors.table == "device") text += "; from what the device reads it is subtracted";
+  return text + "\n" + Warnings(errors, compensation);
 }
 
 std::string CompensationCheckText(const CompensationCheck& check) {
@@ -144,7 +172,9 @@ nlohmann::json CompensationJson(const IndexErrors& errors, const Compensation& c
                          {"predicted_rms_arcsec", Arcsec(r.predicted_rms_rad)},
                          {"u_predicted_rms_arcsec", Arcsec(r.u_predicted_rms_rad)},
                          {"refused_rms_arcsec", Arcsec(r.refused_rms_rad)},
-                         {"noise_rms_arcsec", Arcsec(r.noise_rms_rad)}};
+                         {"noise_rms_arcsec", Arcsec(r.noise_rms_rad)},
+                         {"reversal_arcsec", Arcsec(errors.reversal_rad)},
+                         {"u_reversal_arcsec", Arcsec(errors.u_reversal_rad)}};
   if (check) {
     json["check"] = {{"places", check->places},
                      {"before_rms_arcsec", Arcsec(check->before_rms_rad)},
@@ -157,7 +187,8 @@ nlohmann::json CompensationJson(const IndexErrors& errors, const Compensation& c
   return json;
 }
 
-std::vector<std::string> CompensationComments(const Compensation& compensation, const std::string& source) {
+std::vector<std::string> CompensationComments(const IndexErrors& errors, const Compensation& compensation,
+                                              const std::string& source) {
   const RemainingError& r = compensation.remaining;
   const std::vector<int> compensated = compensation.Orders(LineFate::kCompensated);
   const std::vector<int> aliased = compensation.Orders(LineFate::kAliased);
@@ -167,6 +198,7 @@ std::vector<std::string> CompensationComments(const Compensation& compensation, 
       fmt::format("{:.3f} arcsec rms before, {:.3f} predicted", r.before_rms_rad / units::arcsec,
                   r.predicted_rms_rad / units::arcsec)};
   if (!aliased.empty()) comments.push_back(OrderRanges(aliased) + " refused as aliased");
+  if (HasReversal(errors)) comments.push_back(ReversalText(errors));
   return comments;
 }
 

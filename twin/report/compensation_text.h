@@ -18,7 +18,8 @@ nlohmann::json CompensationJson(const separate::IndexErrors& errors, const separ
                                 const separate::CompensationCheck* check);
 
 /// What stands in the table's file.
-std::vector<std::string> CompensationComments(const separate::Compensation& compensation,
+std::vector<std::string> CompensationComments(const separate::IndexErrors& errors,
+                                              const separate::Compensation& compensation,
                                               const std::string& source);
 
 /// "1-3, 18, 90"

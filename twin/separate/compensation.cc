@@ -27,6 +27,7 @@ int PointsFor(const LineFit& fit) {
 
 LineFate FateOf(const IndexLine& line, int points) {
   if (!line.is_certain) return LineFate::kAliased;
+  if (line.changes) return LineFate::kChanging;
   return LeftByInterpolation(line.order, points) > kMostLeft ? LineFate::kTooFine : LineFate::kCompensated;
 }
 

@@ -17,6 +17,7 @@ enum class LineFate {
   kCompensated,
   kAliased,  // the places that were read do not say which order it is: refused
   kTooFine,  // a table of so few entries would leave more than half of it: refused
+  kChanging,  // it differs between turns by as much as it is: refused
   kNoGain    // all together would leave no less than there was: refused
 };
 

@@ -21,6 +21,9 @@ struct IndexErrors {
   double dof = 0.0;                  // behind u_reading_rad
   double u_place_rad = 0.0;          // of what stays at a place and is not the table's: teeth of the reference
   double u_between_rad = 0.0;        // what another measurement shows differently beside noise: its adjustment
+  std::vector<double> u_order_rad;   // [k - 1]: of order k's amplitude, by how it differs between turns; empty: not known
+  double reversal_rad = kNaN;        // forward less backward in the mean, of what the axis does; NaN: not known
+  double u_reversal_rad = kNaN;
   std::optional<CompensationTable> commanded = {};  // was at work while they were read
 
   Eigen::Index Count() const { return value_rad.size(); }

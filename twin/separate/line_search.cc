@@ -20,7 +20,11 @@ constexpr double kRelated = 0.02;      // the same, where no other line is in th
 constexpr double kTheSame = 0.999;     // the same, for orders that no reading there tells apart
 constexpr double kNamed = 0.001;       // least probability of an order that is named as alike
 constexpr double kSameDirection = 1e-6;  // squared sine below which a column lies in the span of others
+// The same of an order: places that stand off an even grid by the errors themselves show a hundredth of what they hide
+// of an order there, and so small a part fits anything.
+constexpr double kLeastSeen = 0.01;
 constexpr double kNothing_rad = 1e-4 * units::arcsec;  // residuals that need no explanation
+constexpr double kRepeats = 2.5;  // least amplitude of an order, in what it differs by between turns
 constexpr int kMostRounds = 4;
 
 /// The columns of one order beside what the model has already, orthonormal; none, one or two.
@@ -31,7 +35,7 @@ Eigen::MatrixXd Beside(const Eigen::MatrixXd& model, Eigen::MatrixXd columns) {
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {
     Eigen::VectorXd v = columns.col(c);
     for (Eigen::Index k = 0; k < kept; ++k) v -= columns.col(k) * columns.col(k).dot(v);
-    if (v.squaredNorm() > kSameDirection * size) columns.col(kept++) = v.normalized();
+    if (v.squaredNorm() > kLeastSeen * size) columns.col(kept++) = v.normalized();
   }
   return columns.leftCols(kept);
 }
@@ -205,6 +209,12 @@ class Search {
     return line;
   }
 
+  double UBetweenTurns_rad(int order) const {
+    if (order > std::ssize(errors_.u_order_rad)) return 0.0;
+    const double u_rad = errors_.u_order_rad[static_cast<std::size_t>(order - 1)];
+    return std::isfinite(u_rad) ? u_rad : 0.0;
+  }
+
   void NoteBlindness(LineFit& fit) const {
     for (int k = 1; k <= options_.highest_order; ++k) {
       if (alone_[static_cast<std::size_t>(k - 1)].cols() < 2) fit.unseen.push_back(k);
@@ -220,7 +230,7 @@ class Search {
     Eigen::MatrixXd design = root_.asDiagonal() * GroupColumns(errors_);
     const Eigen::Index first = design.cols();
     for (const int k : orders) design = Joined(design, Columns(k));
-    constexpr double kSingular = 1e-3;  // half the positions: of such an order one phase is seen, or nearly
+    constexpr double kSingular = 0.1;  // half the positions: of such an order one phase is seen, or nearly (kLeastSeen)
     const auto n = static_cast<Eigen::Index>(value_.size());
     const RankedSolution solution = SolveRanked(design, Eigen::MatrixXd::Identity(n, n), kSingular);
     const Eigen::VectorXd x_rad = solution.x * value_;
@@ -231,7 +241,9 @@ class Search {
       IndexLine line = LineOf(orders[i]);
       line.cos_rad = x_rad[c];
       line.sin_rad = x_rad[c + 1];
-      line.u_rad = fit.residual_rad * std::max(solution.x.row(c).norm(), solution.x.row(c + 1).norm());
+      line.u_rad = std::max(UBetweenTurns_rad(line.order),
+                            fit.residual_rad * std::max(solution.x.row(c).norm(), solution.x.row(c + 1).norm()));
+      line.changes = line.Amplitude_rad() < kRepeats * UBetweenTurns_rad(line.order);
       fit.lines.push_back(line);
     }
     return fit;

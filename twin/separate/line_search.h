@@ -24,11 +24,12 @@ struct AlikeOrder {
 struct IndexLine {
   int order = 0;  // the likeliest
   double cos_rad = kNaN, sin_rad = kNaN;
-  double u_rad = kNaN;            // of either, the larger
+  double u_rad = kNaN;            // of either, the larger; not below what differs between turns
   double probability = kNaN;      // of this order among those alike; they sum to 1
   std::vector<AlikeOrder> alike;  // the others above a thousandth, likeliest first
   double log_odds = kNaN;         // of a line, against none
   bool is_half_seen = false;      // one phase of it changes no value: half the places of an even grid
+  bool changes = false;           // smaller than what it differs by between turns (IndexErrors::u_order_rad) allows
   bool is_certain = false;        // fully seen, and its probability reaches LineSearchOptions::certain
 
   double Amplitude_rad() const { return std::hypot(cos_rad, sin_rad); }

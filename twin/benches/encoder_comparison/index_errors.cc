@@ -27,6 +27,10 @@ separate::IndexErrors IndexErrorsOf(const Scenario& scenario, const std::vector<
     errors.u_reading_rad = std::sqrt(squares_rad2 / known);  // of the mean at a place
     errors.dof = known;                                      // one for each mean: at least two readings
   }
+  for (const separate::harmonics::Coefficient& c : device.curves.device.orders)
+    errors.u_order_rad.push_back(separate::harmonics::LargestUncertainty(c));
+  errors.reversal_rad = -device.reversal.value_rad;
+  errors.u_reversal_rad = device.reversal.u_rad;
   errors.table = "device";
   return errors;
 }

@@ -17,7 +17,9 @@ double ToothError_rad(const AngleSeries& multitooth, double multitooth_rad) {
   constexpr double kSame_rad = 1e-6;
   for (std::size_t i = 0; i < multitooth.position_rad.size(); ++i) {
     const double away_rad = std::remainder(multitooth_rad - multitooth.position_rad[i], units::turn);
-    if (std::abs(away_rad) < kSame_rad) return multitooth.value_rad[static_cast<Eigen::Index>(i)];
+    if (std::abs(away_rad) > kSame_rad) continue;
+    const double value_rad = multitooth.value_rad[static_cast<Eigen::Index>(i)];
+    return std::isfinite(value_rad) ? value_rad : 0.0;
   }
   return 0.0;
 }
@@ -57,9 +59,10 @@ IndexErrors PolygonIndexErrors(const Scenario& scenario, const std::vector<Readi
 
 }  // namespace
 
-IndexErrors TurntableIndexErrors(const Scenario& scenario, const std::vector<Reading>& readings) {
+IndexErrors TurntableIndexErrors(const Scenario& scenario, const std::vector<Reading>& as_read) {
   const TurntableSettings& own = TurntableOf(scenario);
-  if (own.HasPolygon()) return PolygonIndexErrors(scenario, readings);
+  if (own.HasPolygon()) return PolygonIndexErrors(scenario, as_read);
+  const std::vector<Reading> readings = WithTilt(as_read);
   const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, Estimator::kRigorous);
   if (!analysis.separation) throw InputError("readings", analysis.not_separated, "readings of a full-circle test");
   std::vector<IndexReading> values, tilts;
