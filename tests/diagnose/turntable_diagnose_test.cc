@@ -75,6 +75,7 @@ TEST(TurntableDiagnosis, NamesEveryFaultOfTheInstrumentAndWhatTheTurntableDoes) 
   for (const Named& named : std::vector<Named>{
            {{.roll_rad = 3e-3}, "autocollimator_roll", "", "angle", 3e-3},
            {{.gain_error = -0.005}, "autocollimator_scale", "", "gain_error", -0.005},
+           {{.gain_error = 0.03}, "autocollimator_scale", "", "gain_error", 0.03},  // the calibration's readings are all far off
            {{.at_edge_rad = 8.0 * arcsec}, "autocollimator_nonlinearity", "", "at_edge", 8.0 * arcsec},
            {{.ripple_rad = {0.2 * arcsec, 0.0}}, "autocollimator_periodic", "x", "amplitude", 0.2 * arcsec},
            {{.ripple_rad = {0.0, 0.2 * arcsec}}, "autocollimator_periodic", "y", "amplitude", 0.2 * arcsec},

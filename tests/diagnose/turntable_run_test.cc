@@ -109,7 +109,7 @@ TEST(TurntableRun, LeavesOutReadingsWithoutBothValues) {
   readings[20].autocollimator_tilt_rad = kNaN;
   readings[30].status = ReadingStatus::kNoLight;
   EXPECT_EQ(RunOf(readings, scenario).schedule.Readings() + 2, std::ssize(readings));
-  readings.resize(11);
+  readings.resize(7);
   EXPECT_THROW(RunOf(readings, scenario), InputError);
 }
 

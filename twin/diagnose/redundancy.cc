@@ -21,7 +21,7 @@ std::string Count(int count, const char* one, const char* many) {
 }  // namespace
 
 void RefuseTooFew(std::size_t used, std::size_t all) {
-  constexpr std::size_t kFewest = 12;
+  constexpr std::size_t kFewest = 8;
   if (used < kFewest)
     throw InputError("readings", fmt::format("{} of {} have a value", used, all),
                      fmt::format("at least {}", kFewest));

@@ -23,14 +23,14 @@ struct Powers {
 };
 
 /// @param before  W y of the raw rows: the residual once the unknowns have been fitted.
-Powers PowersOf(const DiagnosisRun& found, const Projector& projector, const Eigen::MatrixXd& y,
-                const Eigen::VectorXd& before) {
-  const Eigen::MatrixXd left = found.noise.Whiten(found.run, Eigen::MatrixXd(before));
+Powers PowersOf(const DiagnosisRun& found, const NoiseModel& noise, const Projector& projector,
+                const Eigen::MatrixXd& y, const Eigen::VectorXd& before) {
+  const Eigen::MatrixXd left = noise.Whiten(found.run, Eigen::MatrixXd(before));
   Powers powers;
   double sum = 0.0;
   for (const Accepted& term : found.accepted) {
     const Eigen::MatrixXd signature = term.columns * term.amplitudes;
-    powers.explained.push_back(found.noise.Whiten(found.run, signature).col(0).dot(left.col(0)));
+    powers.explained.push_back(noise.Whiten(found.run, signature).col(0).dot(left.col(0)));
     sum += powers.explained.back();
   }
   powers.removable = std::max(y.col(0).dot(left.col(0)) - projector.DegreesOfFreedom(), sum);
@@ -165,10 +165,11 @@ ErrorCurve CurveOf(const LinearRun& run, const Eigen::VectorXd& before) {
 }  // namespace
 
 Shown ShownBy(const DiagnosisRun& found) {
-  const Projector projector(found.noise.Whiten(found.run, found.run.nuisance.jacobian), found.run.nuisance);
-  const Eigen::MatrixXd y = found.noise.Whiten(found.run, Eigen::MatrixXd(found.run.residual));
+  const NoiseModel noise{found.noise.sigma, {}};
+  const Projector projector(noise.Whiten(found.run, found.run.nuisance.jacobian), found.run.nuisance);
+  const Eigen::MatrixXd y = noise.Whiten(found.run, Eigen::MatrixXd(found.run.residual));
   const Eigen::VectorXd before = found.run.residual - found.run.nuisance.jacobian * projector.Solve(y).col(0);
-  const Powers powers = PowersOf(found, projector, y, before);
+  const Powers powers = PowersOf(found, noise, projector, y, before);
   return {SharesOfCauses(found, powers), ShareUnnamed(found, powers), CurveOf(found.run, before)};
 }
 

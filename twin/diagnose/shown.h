@@ -21,11 +21,12 @@ inline constexpr int kCurvePlaces = 68;
 
 /// How much of the readings' variance each cause explains, and what there is to be explained.
 ///
-/// With y the whitened residual of the believed scenario, W what takes out the free unknowns, and s_k the whitened
-/// signature of accepted term k in its fitted size, all terms fitted together,
+/// With y the residual of the believed scenario, W what takes out the free unknowns, and s_k the signature of accepted
+/// term k in its fitted size, all terms fitted together and all rows in units of their own noise,
 ///
 ///     share_k = s_k' W y / max(y' W y - dof, sum of s_j' W y)
 ///
+/// What noise remembers is not taken out: it would make a slow cause, of which the readings show most, look small.
 /// The first denominator is the variance beyond noise; a small cause in many readings is less than its own
 /// uncertainty, then the second bounds the sum by 1. Shares of causes that overlap add up, whatever their order;
 /// one of them may come out negative.

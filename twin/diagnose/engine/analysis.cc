@@ -5,6 +5,7 @@
 
 #include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/engine/prior.h"
+#include "twin/diagnose/engine/unlike.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
@@ -64,12 +65,25 @@ NoiseView LookAtNoise(const LinearRun& run, const Analysis& analysis) {
   return view;
 }
 
+/// Many readings of which a cause of the catalogue explains most are not each disturbed by itself.
+bool HaveOneReason(const Analysis& analysis, const NoiseCause& cause) {
+  constexpr double kMost = 0.8;
+  constexpr std::size_t kReadingsOfACause = 3;
+  const SearchResult& found = analysis.found;
+  const auto is_named = [&](const Term& term) {
+    return analysis.scanner->Families()[static_cast<std::size_t>(term.family)].kind == Kind::kNamed;
+  };
+  return cause.kind == NoiseCause::Kind::kOutliers && cause.outliers.size() >= kReadingsOfACause * found.terms.size() &&
+         found.joint_evidence > kMost * cause.log_bayes && std::ranges::all_of(found.terms, is_named);
+}
+
 /// The repair that has to come before any cause is believed, if there is one.
 const NoiseCause* NextRepair(const Analysis& analysis, const NoiseView& view) {
   const bool picked = !analysis.found.terms.empty();
   // A cause that leaves clean noise behind needs no other explanation; one that does not may be noise itself.
   const bool clean = view.after.empty() || view.after.front().log_bayes < tuning::kRefuted;
-  if (picked && !clean && !view.before.empty() && view.before.front().log_bayes > analysis.found.joint_evidence) {
+  if (picked && !clean && !view.before.empty() && view.before.front().log_bayes > analysis.found.joint_evidence &&
+      !HaveOneReason(analysis, view.before.front())) {
     return &view.before.front();
   }
   // What follows nearly anything leaves clean noise of any kind: readings that remember each other say as much by less.
@@ -77,7 +91,8 @@ const NoiseCause* NextRepair(const Analysis& analysis, const NoiseView& view) {
   if (remembers != view.but_courses.end() && remembers->log_bayes > view.of_courses) return &*remembers;
   // One step up and another one down leave clean noise as well, and are a single disturbed value.
   const auto disturbed = std::ranges::find(view.before, NoiseCause::Kind::kOutliers, &NoiseCause::kind);
-  if (picked && disturbed != view.before.end() && disturbed->log_bayes > analysis.found.joint_evidence)
+  if (picked && disturbed != view.before.end() && disturbed->log_bayes > analysis.found.joint_evidence &&
+      !HaveOneReason(analysis, *disturbed))
     return &*disturbed;
   for (const NoiseCause& cause : view.after) {
     // Single disturbed values are an effect of their own; other faults of the noise matter only if something was
@@ -130,6 +145,7 @@ Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, cons
     // What else is there yet looks like noise of another kind.
     if (options.largest_only && repair && repair->kind != NoiseCause::Kind::kOutliers) repair = nullptr;
     if (!repair) {
+      NoteUnlike(run, analysis.noise, *analysis.projector, families, analysis.found);
       analysis.observations = view.after;
       return analysis;
     }

@@ -47,6 +47,21 @@ std::string OtherPlaces(const Term& term, const std::vector<Family>& families) {
   return places.empty() ? "" : "; or the same on " + places;
 }
 
+/// Without those that are like nothing of it.
+std::vector<Share> Alike(const std::vector<Share>& set, const Term& term) {
+  std::vector<Share> alike;
+  double all = 0.0, kept = 0.0;
+  for (const Share& share : set) {
+    all += share.second;
+    if (std::ranges::count(term.unlike, share.first) > 0) continue;
+    alike.push_back(share);
+    kept += share.second;
+  }
+  if (alike.empty()) return set;
+  for (auto& [key, probability] : alike) probability *= all / kept;
+  return alike;
+}
+
 /// In full if the search took a shape without a name, else the name of the nearest one.
 std::string SignatureOf(const Term& term, const std::vector<Family>& families, const Posterior& posterior) {
   if (posterior.best_unknown < 0) return "";
@@ -157,7 +172,7 @@ Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Fami
   answer.unknown = 1.0;
   for (const auto& [key, probability] : posterior.named)
     answer.unknown -= probability * ListedShareOf(families, key);
-  for (const Share& share : CredibleSet(posterior)) answer.causes.push_back(CauseOf(term, families, share));
+  for (const Share& share : Alike(CredibleSet(posterior), term)) answer.causes.push_back(CauseOf(term, families, share));
   if (!answer.causes.empty() && found.terms.size() == 1) AddDoubles(term, found, families, answer.causes);
   AddRivals(found, families, answer.causes);
   return answer;

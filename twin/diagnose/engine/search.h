@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "twin/diagnose/engine/null_calibration.h"
@@ -21,6 +23,7 @@ struct Term {
   double explained = 0.0;         // of the whitened power, beyond what the other terms explain
   Eigen::VectorXd amplitudes;     // fitted together with those of the other terms, SI
   Eigen::MatrixXd cov;            // of the amplitudes and the shape parameters after them
+  std::vector<std::pair<std::string, std::string>> unlike = {};  // causes of the place that show nothing of it (unlike.h)
 };
 
 struct SearchResult {

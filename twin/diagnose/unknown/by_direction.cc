@@ -99,6 +99,7 @@ void AddBySpeed(Collector& collect) {
   collect.Add("speed", model::Unit(model::SteadyCourseOf(d.course, d.velocity).rate), "proportional to the acceleration");
   if (d.angles.empty()) return;
   const Angle& angle = d.angles.front();
+  if (angle.first_by_label > 1) return;  // over a part of a turn they are pieces of any function of angle and speed
   const std::string order = "order {} synchronous with " + angle.name;
   collect.AddModulated("speed harmonic", angle, tuning::kModulatedOrders, v,
                        order + ", proportional to the velocity, odd in direction");

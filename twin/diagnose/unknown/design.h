@@ -30,7 +30,7 @@ struct Angle {
   std::string harmonics;            // sort of its whole orders
   std::string by;                   // name of the angle in a signal of the twin; empty: it has none
   bool is_turned_by_motion = true;  // false: direction and speed are of another angle
-  int first_by_label = 1;           // the first order that may differ from pass to pass without a name
+  int first_by_label = 1;           // the first order that is more than a piece of a curve: one that may differ from pass to pass
 };
 
 /// All that generic shapes depend on. Signals have one entry a sample; what a bench has not is empty.
