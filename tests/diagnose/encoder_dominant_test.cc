@@ -1,4 +1,4 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <utility>
 
@@ -287,6 +287,8 @@ TEST(EncoderDominant, WithoutAClockAScaleThatBendsIsNoDrift) {
   const Answer answer = Ask(record);
   ExpectFound(answer, {{"scale", "ratio", 0.001, 1e-4}, {"scale", "curvature", 0.8, 0.1}});
   EXPECT_EQ(answer.Find("drift"), nullptr) << answer.Words();
+  // The straight line through a parabola has its slope in the middle, at 116 deg.
+  EXPECT_THAT(answer.run.diagnosis.notes, testing::Contains(testing::HasSubstr("scale: 0.0015")));
 }
 
 TEST(EncoderDominant, ACourseInTimeThatDoesNotRepeatIsNoOrder) {
@@ -340,6 +342,36 @@ TEST(EncoderDominant, ASlopeOfASinglePassIsAScale) {
     EXPECT_TRUE(answer.Names("scale", 0.5)) << range_deg << answer.Words();
     EXPECT_NEAR(answer.Value("scale", "ratio"), 0.01 / range_deg, 0.1 * 0.01 / range_deg) << range_deg << answer.Words();
   }
+}
+
+/// A rack with a ripple and an arch in one pass that has no clock: nothing of it is a course in time.
+TEST(EncoderDominant, OnePassWithoutAClockIsNoWalk) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise_deg(0.0, 0.005);
+  Record record;
+  record.kind = "stops";
+  for (int k = 0; k < 76; ++k) {
+    const double r_deg = 4.5 * k, error_deg = 0.3 * r_deg / 360.0 * (1.0 - 2.0 * r_deg / 360.0) + 0.02 * std::cos(9.0 * r_deg * units::deg);
+    record.Add(k, r_deg, r_deg + error_deg + noise_deg(random), 1, 0);
+    record.readings.back().extra[kClockColumn] = kNoClock;
+  }
+  const Answer answer = Ask(record);
+  EXPECT_TRUE(answer.Names("scale")) << answer.Words();
+  EXPECT_NEAR(SizeOfOrder(answer, 9), 0.02, 0.004) << answer.Words();
+  EXPECT_THAT(answer.run.diagnosis.unknown.signature, testing::Not(testing::HasSubstr("function of time"))) << answer.Words();
+}
+
+/// An order and play that explain as much as each other are two causes, and no two names of one.
+TEST(EncoderDominant, AnOrderAndPlayOfOneSizeAreBothThere) {
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> noise_deg(0.0, 1e-4);
+  const Answer answer = Ask(ThereAndBackTwice(36, 10.0, [&](double a_deg, int direction) {
+    return a_deg + 0.0035 * std::cos(a_deg * units::deg) + 0.00085 * std::cos(4.0 * a_deg * units::deg) + 0.0006 * direction + noise_deg(random);
+  }));
+  EXPECT_TRUE(answer.Names("periodic")) << answer.Words();
+  EXPECT_TRUE(answer.Names("backlash")) << answer.Words();
+  EXPECT_NEAR(std::abs(answer.Value("backlash", "width")), 0.0012, 1e-4) << answer.Words();
+  EXPECT_FALSE(HasUnmodelled(answer.run.diagnosis)) << answer.Words();
 }
 
 /// The worm beside a slope, as stops that have no clock.

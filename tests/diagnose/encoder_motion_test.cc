@@ -54,6 +54,49 @@ TEST(EncoderClock, IsNotToBlameForAScaleOrForWhatTheSpeedDoes) {
   EXPECT_FALSE(growing.Names("clock_rate", 0.5)) << growing.Words();
 }
 
+/// A plate on a servo over 10 deg at 1 Hz: late, and with a rest of its own that goes on from one reading to the next and is a
+/// tenth of the variance.
+TEST(EncoderMotion, OfAServoOverAPartOfATurnIsLateBesideARestThatWanders) {
+  constexpr double kLate_s = 0.045, kMemory = 0.9, kRest_deg = 0.3;
+  const Swing plate{10.0, 1.0, -5.0};
+  for (const unsigned seed : {81U, 82U, 83U}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> step(0.0, kRest_deg * std::sqrt(1.0 - kMemory * kMemory));
+    double rest_deg = 0.0;
+    const Answer answer = Ask(Swung(plate, 0.01, 17.0, 0.0233, 0.01, seed, [&](double t_s) {
+      rest_deg = kMemory * rest_deg + step(random);
+      return plate.At(t_s - kLate_s) + rest_deg;
+    }));
+    EXPECT_TRUE(answer.Names("latency")) << seed << ": " << answer.Words();
+    EXPECT_NEAR(answer.Value("latency", "delay"), kLate_s, 4.0 * answer.Uncertainty("latency", "delay")) << seed;
+    EXPECT_LT(answer.Uncertainty("latency", "delay"), 0.006) << seed;
+  }
+}
+
+/// Ever faster to and fro: at the end the delay is a third of a period, and the speed of the moment says nothing of how far it is
+/// behind.
+TEST(EncoderMotion, LateByAPartOfAPeriodIsALatencyAndAScale) {
+  constexpr double kLate_s = 0.025, kGain = 0.79;
+  const auto chirp_deg = [](double t_s) { return 1.45 * std::sin(2.0 * units::kPi * (2.0 * t_s + 1.5 * t_s * t_s)); };
+  std::mt19937_64 random(84);
+  std::normal_distribution<double> noise_deg(0.0, 0.02);
+  Record record;
+  int direction = 1, pass = 0;
+  for (double t_s = 0.03; t_s < 4.0; t_s += 0.0031) {
+    const int now = chirp_deg(t_s + 1e-4) > chirp_deg(t_s - 1e-4) ? 1 : -1;
+    pass += now == direction ? 0 : 1;
+    direction = now;
+    record.Add(t_s, chirp_deg(t_s), kGain * chirp_deg(t_s - kLate_s) + noise_deg(random), direction, pass);
+  }
+  const Answer answer = Ask(record);
+  SCOPED_TRACE(answer.Words());
+  EXPECT_TRUE(answer.Names("latency"));
+  EXPECT_TRUE(answer.Names("scale"));
+  EXPECT_FALSE(answer.Names("hysteresis", 0.1) || answer.Names("backlash", 0.1));
+  EXPECT_NEAR(answer.Value("latency", "delay"), kLate_s, 0.02 * kLate_s);
+  EXPECT_NEAR(answer.Value("scale", "ratio"), kGain - 1.0, 0.02);
+}
+
 // Counters that lose counts, written down as they count.
 
 /// There and back in motion, two turns and a bit, twice; what is lost from the reading before to this one.

@@ -62,6 +62,7 @@ void ExpectOrdersAsWithoutGlitches(const Record& record, const std::set<int>& gl
 TEST(EncoderRecordings, OneReadingFarOffTakesNothingFromTheOthers) {
   for (const unsigned seed : {1u, 2u}) {
     ExpectOrdersAsWithoutGlitches(WithGlitches({{417, 89.7}}, seed), {417});
+    ExpectOrdersAsWithoutGlitches(WithGlitches({{0, 50.0}}, seed), {0});
     ExpectOrdersAsWithoutGlitches(WithGlitches({{31, 200.0}, {290, 5.0}, {511, 170.0}}, seed), {31, 290, 511});
   }
 }

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "twin/benches/encoder_comparison/axis_unit.h"
 #include "twin/benches/encoder_comparison/bench.h"
+#include "twin/benches/encoder_comparison/diagnosis/bent_scale.h"
 #include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/equal_steps.h"
 #include "twin/benches/encoder_comparison/diagnosis/first_order.h"
@@ -20,6 +22,7 @@
 #include "twin/benches/encoder_comparison/estimators/coast_passes.h"
 #include "twin/benches/encoder_comparison/twin/factory.h"
 #include "twin/diagnose/conclusion.h"
+#include "twin/diagnose/extend.h"
 
 namespace twinbench::benches::encoder {
 namespace {
@@ -60,6 +63,20 @@ void TellNextMeasurements(std::vector<diagnose::Cause>& causes) {
       cause.next_measurement = NextMeasurement(cause.effect, cause.indistinguishable_from.front().effect);
 }
 
+/// Beside a rest that remembers, a size may turn out to be no more than its own uncertainty: then it is hardly there, however sure
+/// the search was. A curve of two numbers may be there though neither is known.
+void DoubtUnsized(const diagnose::LinearRun& run, std::vector<diagnose::Cause>& causes) {
+  constexpr double kSized = 2.5;
+  for (diagnose::Cause& cause : causes) {
+    const bool is_bent = std::ranges::any_of(cause.parameters, [](const diagnose::ParameterEstimate& p) { return p.name == "curvature" && p.value != 0.0; });
+    if (cause.parameters.empty() || is_bent || cause.effect == "outliers") continue;
+    const double deviations = diagnose::encoder::Deviations(diagnose::EffectOf(cause, run.bench, ""));
+    if (!(deviations > 0.0) || deviations >= kSized) continue;
+    const double log_odds = 0.5 * deviations * deviations - 0.5 * std::log(run.Rows());
+    cause.probability /= 1.0 + std::exp(-log_odds);
+  }
+}
+
 diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario& scenario,
                                    const diagnose::DiagnoseOptions& options) {
   std::optional<diagnose::encoder::SpeedLimit> limit;
@@ -78,9 +95,11 @@ diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario
   diagnose::encoder::TellEqualSteps(result);
   diagnose::encoder::TellCurveInPieces(result);
   diagnose::encoder::TellOrFirstOrder(large.first->encoder.context, result);
+  diagnose::encoder::TellMeanRatio(result);
   diagnose::encoder::TellWander(large.bent, result);
   diagnose::encoder::TellGlitches(large.first->encoder.glitches, scenario, result);
   if (limit) diagnose::encoder::TellSpeedLimit(*limit, result);
+  DoubtUnsized(result.run, result.diagnosis.causes);
   result.diagnosis.left_out = (limit ? limit->asked : searched.encoder).left_out;
   result.diagnosis.harmonics =
       diagnose::encoder::HarmonicTable(large.first->encoder, {searched.encoder.run.sigma, {}});

@@ -109,7 +109,7 @@ void Append(int setup, const measure::PositioningStops& stops, const DeviceSetti
                               travel_rad / coarse.to_SI, coarse.name);
   results.text += targets.size() <= kMostRows ? PositioningText(positioning, told) : AxisText(positioning, told);
   results.text += vdi_text;
-  for (const std::string& what : missing) results.text += "missing: " + what + "\n";
+  for (const std::string& what : missing) results.text += "short of a standard: " + what + "\n";
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ std::vector<double> Farness(const LinearRun& run, const Eigen::VectorXd& relativ
 /// A servo that is sent far is far behind, and no worse for that.
 bool GoesOnAsUsual(const Schedule& s, int begin, int end, double usual_step_rad) {
   constexpr double kLeap = 3.0;
-  for (int i = begin; i <= std::min(end, s.Readings() - 1); ++i) {
+  for (int i = std::max(1, begin); i <= std::min(end, s.Readings() - 1); ++i) {
     if (std::abs(s.reference_rad[i] - s.reference_rad[i - 1]) > kLeap * usual_step_rad) return false;
   }
   return true;
@@ -224,11 +224,12 @@ Glitches FindGlitches(const LinearRun& run, const Eigen::VectorXd& relative_nois
   const std::vector<double> farness = Farness(run, relative_noise);
   Glitches found;
   std::vector<int> begins;
-  for (int i = 1; i < s.Readings(); ++i) {
+  for (int i = 0; i < s.Readings(); ++i) {
     int end = i;
     while (end < s.Readings() && farness[static_cast<std::size_t>(end)] > kFar) ++end;
     if (end == i) continue;
-    if (end - i <= kLongest && GoesOnAsUsual(s, i, end, usual_step_rad) && Returns(run, farness, i, end)) {
+    const int longest = i == 0 ? 1 : kLongest;  // what fades away from the beginning on is no glitch
+    if (end - i <= longest && GoesOnAsUsual(s, i, end, usual_step_rad) && Returns(run, farness, i, end)) {
       begins.push_back(i);
       for (int k = i; k < end; ++k) found.rows.push_back(k);
     }

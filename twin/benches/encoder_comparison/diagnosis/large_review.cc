@@ -139,10 +139,13 @@ std::vector<double> LargeSearch::Strengths() const {
   const AskedAgain beside = fit_->Ask(large_.causes, LeftByTerms());
   const Eigen::VectorXd left = fit_->WhiteOf(beside.left);
   const double memory = fit_->Memory(beside.left), least = LeastExplained();
+  // Beside the rest a fit may end where the twin shows nothing.
+  const bool is_possible = fit_->Shown(beside.effects).allFinite();
+  const std::vector<EffectSettings> effects = is_possible ? beside.effects : EffectsOf(large_.causes);
   std::vector<double> strengths;
   for (std::size_t k = 0; k < large_.causes.size(); ++k) {
     const Eigen::VectorXd own =
-        fit_->WhiteOf(fit_->Shown(beside.effects) - fit_->Shown(EffectsWithout(k, beside.effects)));
+        fit_->WhiteOf(fit_->Shown(effects) - fit_->Shown(EffectsWithout(k, effects)));
     const double most = std::max(memory, MemoryAlong(own, left));
     strengths.push_back(own.squaredNorm() > least ? Deviations(large_.causes[k].effect) / std::sqrt(most) : 0.0);
   }

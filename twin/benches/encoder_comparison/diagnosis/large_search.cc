@@ -41,22 +41,26 @@ Eigen::MatrixXd BesideSetUps(const EncoderRun& encoder, Eigen::MatrixXd columns)
 
 /// Beside parameters that are free a shape without a name that is much like what they show may have any size, and they
 /// the opposite one: where it adds little to what they explain it has what they cannot show, or goes if that is next to nothing.
+/// An order times the direction is a latency of a motion to and fro for the most part, over a part of a turn, and gives it back
+/// whatever it explains.
 /// @param free  What the parameters of the large causes show.
 void LeaveSharedToLarge(const Eigen::MatrixXd& free, const std::vector<LargeCause>& causes, Searched& searched) {
-  constexpr double kMuchAlike = 0.5, kNothingOwn = 0.1, kLittle = 0.05;
+  constexpr double kMuchAlike = 0.5, kAlikeInPart = 0.9, kNothingOwn = 0.1, kLittle = 0.05;
+  const bool is_part = LeastOrder(searched.encoder.context) > 1;
   if (free.cols() == 0) return;
   double explained = 0.0;
   for (const LargeCause& cause : causes) explained += cause.explained;
   const Eigen::MatrixXd slopes = BesideSetUps(searched.encoder, free);
   std::erase_if(searched.analysis.found.terms, [&](Term& term) {
-    const bool is_unnamed = searched.families[static_cast<std::size_t>(term.family)].kind == Kind::kUnknown;
-    if (!is_unnamed || term.explained > kLittle * explained) return false;
+    const Family& family = searched.families[static_cast<std::size_t>(term.family)];
+    const bool is_little = term.explained < kLittle * explained, is_by_direction = is_part && family.effect == "direction harmonic";
+    if (family.kind != Kind::kUnknown || !(is_little || is_by_direction)) return false;
     const Eigen::MatrixXd shown = BesideSetUps(searched.encoder, term.columns);
     Eigen::MatrixXd own = shown;
     for (auto column : own.colwise()) column -= slopes * SolveShortest(slopes, Eigen::VectorXd(column));
     const double share = (own * term.amplitudes).norm() / (shown * term.amplitudes).norm();
-    if (!(share < kMuchAlike)) return false;
-    if (!(share > kNothingOwn)) return true;
+    if (!(share < (is_by_direction ? kAlikeInPart : kMuchAlike))) return false;
+    if (!(share > kNothingOwn)) return is_little;
     term.columns = own / share;
     term.amplitudes *= share;
     term.cov *= share * share;
@@ -78,6 +82,7 @@ std::optional<LargeCauses> LargeSearch::Go(double most_left) {
     large_.first->analysis.found.terms.clear();
   else
     TakeSignals();
+  TakeLag();
   TakeLarge();
   if (power_ - kFewCauses * kLarge * kLarge > most_left) return std::nullopt;  // what is not large has yet to be taken
   while (SearchOn()) TakeLarge();
@@ -114,7 +119,7 @@ void LargeSearch::Begin() {
 
 /// What was held until all moved together beside the rest, and is anybody's guess then, has to go.
 void LargeSearch::Review() {
-  constexpr int kMostRounds = 3;
+  constexpr int kMostRounds = 3;  // one may undo what another does
   constexpr double kGuess = 2.0;
   const auto is_guess = [](const LargeCause& cause) { return Deviations(cause.effect) < kGuess; };
   for (int round = 0; round < kMostRounds && (round == 0 || std::ranges::any_of(large_.causes, is_guess));
@@ -122,7 +127,7 @@ void LargeSearch::Review() {
     DropNeedless();
     EndTies();
     MoveBesideTheRest();
-    while (TakeOther() || Straighten()) MoveBesideTheRest();
+    for (int again = 0; again < kMostRounds && (TakeOther() || Straighten()); ++again) MoveBesideTheRest();
   }
 }
 

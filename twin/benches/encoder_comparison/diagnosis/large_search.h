@@ -35,6 +35,8 @@ class LargeSearch {
   AnalysisOptions For(int most_causes) const;
   void Begin();
   void TakeSignals();
+  void TakeLag();
+  void TakeBlock(std::vector<LargeCause> block);
   void TakeLarge();
   bool TakeNext();
   bool TakeOneOfTwoWaves();

@@ -39,8 +39,22 @@ void LargeSearch::TakeSignals() {
   if (power_ < kLarge * kLarge || std::ranges::count(options_.excluded, "signal_clipping") > 0) return;
   const std::optional<SignalGuess> guess = GuessSignals(encoder.context, encoder.run.residual);
   if (!guess) return;
-  FittedCauses all = fit_->Fit(SignalBlock(*guess, encoder, options_.excluded));
-  if (all.causes.empty() || all.causes.front().effect.name != "signal_clipping" || !(all.power < 0.5 * power_)) return;
+  TakeBlock(SignalBlock(*guess, encoder, options_.excluded));
+}
+
+/// A delay that is too long for the speed to tell, and the gain that comes with it.
+void LargeSearch::TakeLag() {
+  const EncoderRun& encoder = large_.first->encoder;
+  const auto is_excluded = [this](const char* name) { return std::ranges::count(options_.excluded, name) > 0; };
+  if (power_ < kLarge * kLarge || !large_.causes.empty() || is_excluded("latency") || is_excluded("scale")) return;
+  if (const std::optional<LagGuess> guess = GuessLag(encoder)) TakeBlock(LagBlock(*guess, encoder));
+}
+
+/// All at once, if the first of them is held and they leave no more than half.
+void LargeSearch::TakeBlock(std::vector<LargeCause> block) {
+  const std::string leader = block.front().effect.name;
+  FittedCauses all = fit_->Fit(std::move(block));
+  if (all.causes.empty() || all.causes.front().effect.name != leader || !(all.power < 0.5 * power_)) return;
   for (std::size_t k = 0; k < all.causes.size(); ++k)
     all.causes[k].explained = fit_->PowerWithout(k, all.asked) - all.power;
   Accept(all.asked, std::move(all.causes), kFewCauses);

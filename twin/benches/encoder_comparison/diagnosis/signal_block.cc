@@ -63,4 +63,11 @@ std::vector<LargeCause> SignalBlock(const SignalGuess& guess, const EncoderRun& 
   return block;
 }
 
+std::vector<LargeCause> LagBlock(const LagGuess& guess, const EncoderRun& encoder) {
+  constexpr double kFine = 0.02;  // of the delay, and of the gain
+  const Catalogue words(benches::encoder::Format().effects);
+  return {Guessed("latency", {words.Estimate("latency", "delay", guess.delay_s, kFine * guess.delay_s)}, {}, encoder.run.bench),
+          Guessed("scale", {words.Estimate("scale", "ratio", guess.gain - 1.0, kFine)}, {}, encoder.run.bench)};
+}
+
 }  // namespace twinbench::diagnose::encoder

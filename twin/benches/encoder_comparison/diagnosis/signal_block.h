@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/benches/encoder_comparison/diagnosis/lag_guess.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
 
@@ -15,5 +16,8 @@ namespace twinbench::diagnose::encoder {
 /// @param excluded  Effects taken out of the catalogue.
 std::vector<LargeCause> SignalBlock(const SignalGuess& guess, const EncoderRun& encoder,
                                     const std::vector<std::string>& excluded);
+
+/// A delay and the gain beside it, of a device whose motion the speed does not tell.
+std::vector<LargeCause> LagBlock(const LagGuess& guess, const EncoderRun& encoder);
 
 }  // namespace twinbench::diagnose::encoder

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "twin/diagnose/tuning.h"
@@ -45,6 +46,11 @@ bool DifferInSecondOrder(const TwinFit& fit, const FittedCauses& wave, const Fit
   return bent.MayBe(fit.Shown(signals.asked.effects) - fit.Shown(wave.asked.effects));
 }
 
+/// By how much the power of what is left exceeds that of white noise that says as much.
+double NoiseOf(const TwinFit& fit, double power, double memory) {
+  return memory * std::max(1.0, power / fit.projector().DegreesOfFreedom());
+}
+
 /// @param ties  By cause, the members that explain as much as the one that leads it now.
 /// @return the first that is clearly better led by another one.
 std::optional<FittedCauses> BetterLed(const TwinFit& fit, const FittedCauses& now,
@@ -56,8 +62,8 @@ std::optional<FittedCauses> BetterLed(const TwinFit& fit, const FittedCauses& no
     for (std::size_t j = 1; j < now.causes[k].causes.size(); ++j) {
       std::optional<FittedCauses> other = LedByOther(fit, k, j, now);
       if (!other) continue;
-      const double of_rest = std::max(1.0, std::min(other->power, now.power) / fit.projector().DegreesOfFreedom());
-      const double noise = std::max(memory * of_rest, kAsExact * now.causes[k].explained / kBetter);
+      const double of_rest = NoiseOf(fit, std::min(other->power, now.power), memory);
+      const double noise = std::max(of_rest, kAsExact * now.causes[k].explained / kBetter);
       const double more = other->Costs(noise) - now.Costs(noise);
       if (more < -0.5 * kBetter) return other;
       if (more <= kBetter || DifferInSecondOrder(fit, now, *other, k)) ties.back().push_back(now.causes[k].causes[j]);
@@ -66,12 +72,56 @@ std::optional<FittedCauses> BetterLed(const TwinFit& fit, const FittedCauses& no
   return {};
 }
 
+/// What each may be as well, where what is left is no noise of the readings: another cause without a shape of its own that
+/// explains nearly as much in its place.
+std::vector<Cause> RivalsOf(const TwinFit& fit, const FittedCauses& now, std::size_t k, double noise) {
+  constexpr double kNearly = 0.8, kLikelier = 6.0;  // of what it explains; Kass and Raftery, Bayes factors (1995)
+  const LinearRun& plain = fit.Run().run;
+  const double explained = fit.PowerWithout(k, now.asked) - now.power;
+  const Eigen::VectorXd left = plain.residual - fit.Shown(EffectsWithout(k, now.asked.effects));
+  std::vector<Cause> rivals;
+  for (const Family& family : fit.Families()) {
+    const auto has = [&](const LargeCause& cause) {
+      return std::ranges::any_of(cause.causes, [&](const Cause& c) { return IsOf(c, family); });
+    };
+    if (family.kind != Kind::kNamed || !family.shapes.empty() || std::ranges::any_of(now.causes, has)) continue;
+    Cause rival = CauseFrom(family, 0, left, plain.sigma, fit.projector());
+    const double by_rival = rival.rho * rival.rho;
+    if (by_rival < std::max(kNearly * explained, explained - kLikelier * noise)) continue;
+    rival.probability = std::exp(0.5 * std::min(0.0, by_rival - explained) / noise);
+    rivals.push_back(std::move(rival));
+  }
+  return rivals;
+}
+
+/// @param now  Gets more members in its ties, which share the probability of what ties already.
+void AddRivals(const TwinFit& fit, FittedCauses& now) {
+  constexpr double kNoNoise = 20.0;  // below, what is left says what is what
+  const double noise = NoiseOf(fit, now.power, fit.Memory(now.asked.left));
+  if (noise < kNoNoise) return;
+  for (std::size_t k = 0; k < now.causes.size(); ++k) {
+    std::vector<Cause> rivals = RivalsOf(fit, now, k, noise);
+    double all = 1.0;
+    for (const Cause& rival : rivals) all += rival.probability;
+    std::vector<Cause>& members = now.causes[k].causes;
+    const double together = members.front().probability;
+    for (Cause& cause : members) cause.probability /= all;
+    const double explained = fit.PowerWithout(k, now.asked) - now.power;
+    for (Cause& rival : rivals) {
+      rival.probability *= together / all;
+      members.front().indistinguishable_from.push_back({rival.effect, rival.where, std::min(1.0, rival.rho * rival.rho / explained)});
+      members.push_back(std::move(rival));
+    }
+  }
+}
+
 }  // namespace
 
 bool SettleTies(const TwinFit& fit, FittedCauses& now) {
   constexpr int kMostRounds = 16;  // noise is judged anew each time: two might be better than each other
   std::vector<std::vector<Cause>> ties;
   bool is_changed = false;
+  AddRivals(fit, now);
   std::optional<FittedCauses> better = BetterLed(fit, now, ties);
   for (int round = 0; better && round < kMostRounds; ++round) {
     now = *std::move(better);

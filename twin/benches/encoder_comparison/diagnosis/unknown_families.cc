@@ -108,6 +108,9 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   // Without a clock nothing has a frequency or a time constant.
   if (!c.has_clock)
     std::erase_if(families, [](const Family& family) { return family.effect == "tone" || family.effect == "restart"; });
+  // Nor has anything a course in time that goes with the angle.
+  if (!c.has_clock && unknown::TimeFollowsAngle(design))
+    std::erase_if(families, [](const Family& family) { return family.effect == "wander"; });
   if (encoder.targets.size() > 0) {
     std::erase_if(families, [](const Family& family) { return family.effect == "direction harmonic"; });
     if (encoder.targets.cols() > 1) std::ranges::move(ReversalsByTarget(encoder.targets, design), std::back_inserter(families));

@@ -90,13 +90,17 @@ std::vector<ScatteredValue> WithScatter(const std::vector<TargetPositioning>& ta
   std::vector<double> runs(f.runs.begin(), f.runs.end());
   runs.insert(runs.end(), b.runs.begin(), b.runs.end());
   constexpr std::size_t kMostShared = 1 << 20;  // 16 MB
+  // Of very many targets u is known to 7 % at least.
+  constexpr int kMostDraws = 1 << 21, kFewestReplicas = 100;
+  const int affordable = std::max(kFewestReplicas, kMostDraws / std::max(1, static_cast<int>(runs.size())));
+  const int replicas = std::min(bootstrap.replicas, affordable);
   const bool is_shared = runs.size() * static_cast<std::size_t>(bootstrap.replicas) <= kMostShared;
   const std::shared_ptr<const Draws> shared = is_shared ? SharedDraws(bootstrap, name, runs) : nullptr;
   Stream stream(bootstrap.seed, name);
   Draws own;
   Replicas of_f(f), of_b(b);
   ArrayXd sum = ArrayXd::Zero(values.size()), squares = sum;
-  for (int k = 0; k < bootstrap.replicas; ++k) {
+  for (int k = 0; k < replicas; ++k) {
     own.clear();
     if (!shared) AddReplica(runs, stream, own);
     const Draw* const draw = shared ? shared->data() + static_cast<std::size_t>(k) * runs.size() : own.data();
@@ -104,7 +108,7 @@ std::vector<ScatteredValue> WithScatter(const std::vector<TargetPositioning>& ta
     sum += change;
     squares += change.square();
   }
-  const double n = bootstrap.replicas;
+  const double n = replicas;
   const ArrayXd bias = sum / n, u = (squares / n - bias.square()).abs().sqrt();  // rounding may give -0
   std::vector<ScatteredValue> scattered;
   for (Eigen::Index i = 0; i < values.size(); ++i) scattered.push_back({values[i], u[i], bias[i]});

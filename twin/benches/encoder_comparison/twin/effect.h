@@ -17,6 +17,7 @@ struct AngleMoment {
   double velocity_rad_s = 0.0;  // of the shaft
   double approach_rad = 0.0;    // last leg of the usual way to a stop, signed; 0 in motion
   double above_K = 0.0;         // of the room, above that of the reference, as far as it is known
+  double read_rad = 0.0;        // where it was that is read: earlier if the reading is late; told to ShaftError_rad alone
 };
 
 using mechanics::SignalState;

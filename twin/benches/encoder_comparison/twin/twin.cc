@@ -105,14 +105,15 @@ void EncoderTwin::Advance(const AngleMoment& moment) {
   for (const auto& effect : effects_) effect->Advance(moment);
 }
 
-/// Of the device's shaft, as its scale counts.
+/// Of the device's shaft, as its scale counts. What is read late shows the errors of where the shaft was.
 double EncoderTwin::ShaftAngle_rad(const AngleMoment& moment) const {
-  double device_rad = moment.shaft_rad + MountingOf_rad(moment.setup), age_s = 0.0;
-  for (const auto& effect : effects_) {
-    device_rad += effect->ShaftError_rad(moment);
-    age_s += effect->Age_s(moment);
-  }
-  return device_rad + (age_s != 0.0 ? course_.Beside_rad(moment, age_s) : 0.0);
+  double age_s = 0.0;
+  for (const auto& effect : effects_) age_s += effect->Age_s(moment);
+  AngleMoment read = moment;
+  read.read_rad = moment.shaft_rad + (age_s != 0.0 ? course_.Beside_rad(moment, age_s) : 0.0);
+  double device_rad = read.read_rad + MountingOf_rad(moment.setup);
+  for (const auto& effect : effects_) device_rad += effect->ShaftError_rad(read);
+  return device_rad;
 }
 
 double EncoderTwin::DeviceError_rad(const AngleMoment& moment, double device_rad) const {

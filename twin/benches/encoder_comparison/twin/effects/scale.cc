@@ -9,7 +9,7 @@ class Scale : public AngleEffect {
  public:
   explicit Scale(const EffectSettings& e) : ratio_(Parameter(e, "ratio")), curvature_(Parameter(e, "curvature")) {}
   double ShaftError_rad(const AngleMoment& moment) const override {
-    return ratio_ * (1.0 + curvature_ * moment.shaft_rad / units::turn) * moment.shaft_rad;
+    return ratio_ * (1.0 + curvature_ * moment.read_rad / units::turn) * moment.read_rad;
   }
 
  private:
