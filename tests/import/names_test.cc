@@ -114,6 +114,22 @@ TEST_F(Importing, TakesArraysOfAProgramSideBySide) {
   EXPECT_NEAR(Worst_deg(taken.readings), 0.5, 0.002);
 }
 
+TEST_F(Importing, TakesListsOfPythonAndMatlabSideBySide) {
+  std::string python = "import numpy as np\nset_mm = [", python_shown = "\nmeasured_mm = [None, ", matlab = "% stroke\nclc;\nset_mm = [0:10:190];\nmeasured_mm = [";
+  for (int i = 0; i < 20; ++i) {
+    python += fmt::format("{}{}", 10 * i, i < 19 ? ", " : "]");
+    if (i > 0) python_shown += fmt::format("{:.2f}{}", 10.1 * i, i < 19 ? ", " : "]\nplt.plot(set_mm, measured_mm)\n");
+    matlab += fmt::format("{:.2f}{}", 10.1 * i, i == 9 ? "; ...\n" : i < 19 ? "; " : "];\n");
+  }
+  for (const std::string& text : {python + python_shown, matlab}) {
+    const Imported taken = Take(text);
+    EXPECT_THAT(taken.story, HasSubstr("2 arrays in a program text, 20 entries each"));
+    EXPECT_THAT(taken.story, HasSubstr("measured_mm [mm]"));
+    EXPECT_NEAR(taken.readings.back().measured_rad / taken.readings.back().reference_rad, 1.01, 1e-9);
+    EXPECT_EQ(taken.readings.size(), text == matlab ? 20u : 19u);
+  }
+}
+
 /// As a machine's or a laser's display prints them.
 TEST_F(Importing, TakesNamesWithBlanksBetweenWideGapsAndRunsBesideACounter) {
   std::string blocks, runs = "Step,Calibrated length (mm),1st (mm),2nd (mm),3rd (mm)\n";

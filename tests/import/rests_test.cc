@@ -54,6 +54,23 @@ TEST_F(Importing, KeepsTwoThirdsOfTheRestsOfAFastServo) {
   EXPECT_GE(imported.readings[5].n_samples, 45) << "of 77 rows";
 }
 
+/// A sine of 1 Hz that is sent 25 times a second and recorded 500 times: nothing is ever at rest.
+TEST_F(Importing, TakesACommandThatIsHeldForAFewRowsAsMotion) {
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  const auto sine = [](double time_s) { return 20.0 * std::sin(2.0 * units::kPi * time_s); };
+  std::string text = "time [s];commanded [deg];measured [deg]\n";
+  for (int i = 0; i < 3000; ++i) {
+    const double time_s = 0.002 * i, sent_s = 0.04 * (i / 20);
+    text += fmt::format("{:.3f};{:.4f};{:.3f}\n", time_s, sine(sent_s), sine(time_s - 0.03) + noise(random));
+  }
+  const Imported imported = Take(text);
+  ASSERT_EQ(imported.readings.size(), 150u) << "of each value that is new";
+  EXPECT_THAT(imported.story, HasSubstr("taken as motion"));
+  EXPECT_THAT(imported.story, HasSubstr("was held that is not new"));
+  for (const Reading& r : imported.readings) EXPECT_NEAR(r.reference_rad / units::deg, sine(ToSeconds(r.time)), 0.001);
+}
+
 /// It has arrived all the same: nothing goes on.
 TEST_F(Importing, TakesAServoThatHuntsAboutItsPlaceForOneThatArrived) {
   std::string text = "time [s];commanded [deg];measured [deg]\n";

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -15,9 +16,16 @@
 #include "twin/import/layout.h"
 #include "twin/import/table.h"
 #include "twin/import/text.h"
+#include "twin/import/unit_names.h"
 
 namespace twinbench::imports {
 namespace {
+
+/// A line of MATLAB ("%") or Python ("#") that says something for people.
+bool BeginsRemark(std::string_view text, std::size_t at) {
+  if (text[at] != '%' && text[at] != '#') return false;
+  return at == 0 || text[at - 1] == '\n' || text[at - 1] == ' ' || text[at - 1] == ';';
+}
 
 std::string WithoutComments(std::string_view text) {
   std::string code;
@@ -25,7 +33,7 @@ std::string WithoutComments(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     if (text.substr(at, 2) == "/*") {
       at = std::min(text.find("*/", at + 2), text.size() - 2) + 2;
-    } else if (text.substr(at, 2) == "//") {
+    } else if (text.substr(at, 2) == "//" || BeginsRemark(text, at)) {
       at = std::min(text.find('\n', at), text.size());
     } else {
       code += text[at++];
@@ -59,15 +67,40 @@ std::optional<double> EntryNumber(std::string_view field) {
   return FieldNumber(field, false);
 }
 
+/// 0:10:180, as MATLAB counts; nothing of anything else.
+std::vector<double> RangeIn(std::string_view field) {
+  constexpr double kMost = 1e6;
+  std::vector<double> parts;
+  for (std::size_t at = 0; at <= field.size();) {
+    const std::size_t end = std::min(field.find(':', at), field.size());
+    const auto number = FieldNumber(field.substr(at, end - at), false);
+    if (!number) return {};
+    parts.push_back(*number);
+    at = end + 1;
+  }
+  if (parts.size() == 2) parts.insert(parts.begin() + 1, 1.0);
+  if (parts.size() != 3) return {};
+  std::vector<double> numbers;
+  const double steps = std::floor((parts[2] - parts[0]) / parts[1] + 1e-9);
+  for (double k = 0.0; k <= steps && steps < kMost; ++k) numbers.push_back(parts[0] + k * parts[1]);
+  return numbers;
+}
+
 /// @param others  Counts what is no number.
 std::vector<double> NumbersIn(std::string_view list, std::size_t& others) {
   constexpr std::string_view kBetween = ", \t\r\n{}[]();";
   std::vector<double> numbers;
   for (std::size_t at = 0; (at = list.find_first_not_of(kBetween, at)) != std::string_view::npos;) {
     const std::size_t end = std::min(list.find_first_of(kBetween, at), list.size());
-    if (const auto number = EntryNumber(list.substr(at, end - at))) {
+    const std::string_view field = list.substr(at, end - at);
+    const std::vector<double> range = RangeIn(field);
+    if (const auto number = EntryNumber(field)) {
       numbers.push_back(*number);
-    } else {
+    } else if (field == "None" || field == "nan" || field == "NaN" || field == "np.nan") {
+      numbers.push_back(kNaN);
+    } else if (!range.empty()) {
+      numbers.insert(numbers.end(), range.begin(), range.end());
+    } else if (field != "...") {  // the line goes on
       ++others;
     }
     at = end;
@@ -77,6 +110,8 @@ std::vector<double> NumbersIn(std::string_view list, std::size_t& others) {
 
 /// What is declared before an equals sign: "float lookup[256]", "std::array<float, 256> lookup", or in Python "lookup".
 std::string NameIn(std::string_view declared, char opening) {
+  // A statement of Python ends with its line.
+  if (const std::size_t line = declared.rfind('\n'); opening == '[' && line != std::string_view::npos) declared.remove_prefix(line + 1);
   const std::size_t open = declared.find('['), close = declared.rfind(']');
   if (open != std::string_view::npos && close != std::string_view::npos && open < close) return WordBefore(declared, open);
   const bool is_list = opening == '[' || declared.find("array<") != std::string_view::npos;
@@ -123,7 +158,10 @@ std::vector<Column> SideBySide(const std::vector<Column>& arrays) {
   std::size_t rows = 0;
   for (const Column& array : arrays) rows = std::max(rows, array.value.size());
   std::ranges::copy_if(arrays, std::back_inserter(beside), [rows](const Column& a) { return a.value.size() == rows; });
-  const bool says_which = beside.size() > 1 && std::ranges::any_of(beside, [](const Column& a) { return Clearness(a.name, Speaks::kReference) > 0; });
+  const auto speak = [&beside](Speaks of) {
+    return std::ranges::any_of(beside, [of](const Column& a) { return Clearness(a.name, of) > 0; });
+  };
+  const bool says_which = beside.size() > 1 && (speak(Speaks::kReference) || (beside.size() == 2 && speak(Speaks::kDevice)));
   return says_which ? beside : std::vector<Column>();
 }
 
@@ -157,6 +195,15 @@ std::string_view BehindName(std::string_view line) {
 
 }  // namespace
 
+bool OpensList(std::string_view line) {
+  constexpr std::size_t kFewest = 2;
+  const std::size_t equals = line.find('='), opening = equals == std::string_view::npos ? equals : Opening(line, equals + 1);
+  if (opening == std::string_view::npos || line[opening] != '[' || IsComment(line)) return false;
+  std::size_t others = 0;
+  const std::size_t end = std::min(line.find(']', opening), line.size());
+  return !NameIn(line.substr(0, equals), '[').empty() && NumbersIn(line.substr(opening + 1, end - opening - 1), others).size() >= kFewest && others == 0;
+}
+
 bool IsBareList(const std::vector<std::string_view>& lines) {
   constexpr std::size_t kFewest = 12;
   std::size_t rows = 0, numbers = 0, most = 0, others = 0;
@@ -176,6 +223,11 @@ void ReadArray(std::string_view text, const std::string& name, Recording& record
   if (arrays.empty() && name.empty()) TakeBareList(code, arrays);
   if (std::vector<Column> beside = SideBySide(arrays); name.empty() && !beside.empty()) {
     recording.layout = fmt::format("{} arrays in a program text, {} entries each", beside.size(), beside.front().value.size());
+    for (Column& column : beside) {
+      const NameAndUnit split = SplitHeader(column.name);
+      column.name = split.name;
+      column.unit = split.unit;
+    }
     return AddTrack(code, "arrays", std::move(beside), recording);
   }
   const auto found = name.empty()

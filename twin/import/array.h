@@ -8,6 +8,9 @@
 
 namespace twinbench::imports {
 
+/// True of `name = [1.0, 2.0 ...`, as Python and MATLAB have it.
+bool OpensList(std::string_view line);
+
 /// True of numbers and nothing else: all in one line, or one a line.
 bool IsBareList(const std::vector<std::string_view>& lines);
 

@@ -238,12 +238,12 @@ std::string InDegrees(const StepsBetween& turns, double sense, const FaceRows& r
 }
 
 /// The turns that leave least, and what is said of them.
-struct Chosen {
+struct ChosenSteps {
   StepsBetween turns;
   std::string said;
 };
 
-Chosen BestOf(const std::vector<StepsBetween>& tried, bool is_said, double sense, const FaceRows& rows) {
+ChosenSteps BestOf(const std::vector<StepsBetween>& tried, bool is_said, double sense, const FaceRows& rows) {
   std::vector<Left> left;
   for (const StepsBetween& turns : tried) left.push_back(LeftBy(turns, rows));
   std::size_t best = 0;
@@ -343,7 +343,7 @@ void PlaceClampings(const Map& map, Recording& recording, Track& track) {
   const std::vector<StepsBetween> tried = is_said ? SaidTurns(rows, sense) : NumberedTurns(rows);
   if (is_said && !WholeSteps(rows.turned_deg, rows, 1.0)) RefuseOffset(rows, recording.file);
   if (tried.empty()) return PutColumns(nominal, nominal, rows, track);
-  const Chosen best = BestOf(tried, is_said, sense, rows);
+  const ChosenSteps best = BestOf(tried, is_said, sense, rows);
   std::vector<double> other = nominal;
   for (std::size_t i = 0; i < other.size(); ++i)
     other[i] += best.turns[static_cast<std::size_t>(rows.clamping[i])] * rows.Step_deg();

@@ -61,6 +61,10 @@ void Maker::Take(const Session& session, std::size_t most, Imported& imported) {
     const Alignment alignment = AlignmentOf(session, course.reference, bench_, map_);
     if (alignment.IsNeeded()) return Take(Aligned(session, alignment), most, imported);
   }
+  if (const std::vector<std::size_t> fresh = Fresh(session, course); !fresh.empty()) {
+    tally.left_out.push_back({session.Rows() - fresh.size(), "rows in which a value of the reference was held that is not new, while the device went on"});
+    return Take(Chosen(session, fresh), most, imported);
+  }
   if (bench_.compared) {
     const std::string remark = RequireOneToOne(session, course.reference, one_place, bench_, map_);
     if (!remark.empty()) tally.remarks.push_back(remark);
@@ -125,6 +129,12 @@ Session Maker::Aligned(Session session, const Alignment& alignment) {
   for (double& x : session.value.at(bench_.compared->shown)) x *= alignment.shown;
   if (std::ranges::count(tally.assumed, alignment.said) == 0) tally.assumed.push_back(alignment.said);
   return session;
+}
+
+/// Of a reference whose values are held while the device goes on (held_command.h).
+std::vector<std::size_t> Maker::Fresh(const Session& session, const Course& course) const {
+  if (!bench_.compared || !course.stop_and_go || map_.course.kind != "auto") return {};
+  return FreshRows(course, session.value.at(bench_.compared->shown), linear_ ? 0.0 : units::turn);
 }
 
 /// Of a drive from stop to stop; empty: of another.

@@ -87,12 +87,13 @@ struct Place {
     return values;
   }
 
-  /// By rest.
-  std::vector<int> Changes(double middle) const {
+  /// By rest, in its last part.
+  std::vector<int> Changes(double middle, double part = 1.0) const {
     std::vector<int> changes;
     for (const Rest& rest : rests) {
       int count = 0;
-      for (std::size_t i = rest.begin + 1; i < rest.end; ++i)
+      const auto rows = static_cast<double>(rest.end - rest.begin);
+      for (std::size_t i = rest.end - static_cast<std::size_t>(part * rows) + 1; i < rest.end; ++i)
         count += (error[i] > middle) != (error[i - 1] > middle) ? 1 : 0;
       changes.push_back(count);
     }
@@ -102,7 +103,7 @@ struct Place {
 
 /// Pushed there and back twice in one rest, and it stays where it is pushed for longer than chance would have it.
 std::optional<Sides> SidesOf(const Place& place) {
-  constexpr int kChanges = 4;
+  constexpr int kChanges = 4, kLate = 2;  // what only swings about its place has come to rest by then
   const std::vector<double> values = place.Values();
   const std::optional<Sides> sides = TwoSides(values, kLeft);
   if (!sides) return {};
@@ -110,7 +111,8 @@ std::optional<Sides> SidesOf(const Place& place) {
   double all = 0.0;
   for (const int count : changes) all += count;
   const double by_chance = 2.0 * sides->share * (1.0 - sides->share) * static_cast<double>(values.size());
-  return std::ranges::max(changes) >= kChanges && all < 0.5 * by_chance ? sides : std::nullopt;
+  const bool goes_on = std::ranges::max(place.Changes(sides->Middle(), 0.5)) >= kLate;
+  return goes_on && std::ranges::max(changes) >= kChanges && all < 0.5 * by_chance ? sides : std::nullopt;
 }
 
 /// A device that lags behind is pushed forwards. Where nobody pushes it, it is half way, or goes from one side to
@@ -165,6 +167,9 @@ Pushed PushedIn(const Course& course, const std::vector<Rest>& rests, const std:
       if (sides) kept.try_emplace(rest.begin, rest, *sides);
     }
   }
+  // Who pushes does so in most rests: a few of many that look so are counts of a display.
+  constexpr std::size_t kOneOf = 10;
+  if (kOneOf * kept.size() < rests.size()) return {};
   Pushed pushed;
   for (const auto& [begin, rest] : kept) Add(rest.first, error, rest.second, pushed);
   return pushed;
