@@ -25,6 +25,15 @@ std::vector<uncertainty::Budget> BudgetsOf(const Scenario& scenario, const std::
   });
 }
 
+/// Missing, saturated or disturbed, every one: exchanged wires, say.
+void RequireAnyUsable(const std::string& folder) {
+  const std::vector<Reading> readings = RunRecord::Open(folder)->Readings();
+  const auto is_usable = [](const Reading& r) { return r.status == ReadingStatus::kOk; };
+  if (readings.empty() || std::ranges::any_of(readings, is_usable)) return;
+  throw InputError(folder, fmt::format("none of the {} readings is usable", readings.size()),
+                   "readings with status ok: what happened to these stands in readings.csv");
+}
+
 }  // namespace
 
 EvaluatedRun EvaluatedWithBudget(const Scenario& scenario, const std::vector<Reading>& readings) {
@@ -61,6 +70,11 @@ bool EvaluateRun(const Scenario& scenario, const std::string& folder, JsonAnswer
   answer.Write(RunJson({folder}, scenario, readings, run));
   if (run.evaluation.IsRefuted()) throw InputError(folder, run.evaluation.not_separated, "readings of the bench in the scenario");
   return run.evaluation.Separated();
+}
+
+void EvaluateMeasured(const Scenario& scenario, const std::string& folder, JsonAnswer& answer) {
+  EvaluateRun(scenario, folder, answer);
+  RequireAnyUsable(folder);
 }
 
 }  // namespace twinbench::tools

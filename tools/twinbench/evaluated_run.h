@@ -28,4 +28,8 @@ bool EvaluateRun(const Scenario& scenario, const std::string& folder, JsonAnswer
 /// in results.json; "not_separated" says why, where it is not.
 nlohmann::json RunJson(const RunFolder& folder, const Scenario& scenario, const std::vector<Reading>& readings, const EvaluatedRun& run);
 
+/// The same of readings that were measured.
+/// @throws InputError if none of them is usable.
+void EvaluateMeasured(const Scenario& scenario, const std::string& folder, JsonAnswer& answer);
+
 }  // namespace twinbench::tools

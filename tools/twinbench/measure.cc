@@ -190,7 +190,7 @@ void Measure(const MeasureOptions& o, LivePage& page, JsonAnswer& answer) {
   const bool resumes = begun.record != nullptr;
   ListenForStop(kStopIsHeard);
   if (!resumes || !begun.record->finished()) MeasureInto(folder, scenario, file, std::move(begun), options, page);
-  EvaluateRun(scenario, folder.path, answer);
+  EvaluateMeasured(scenario, folder.path, answer);
 }
 
 void AddMeasure(CLI::App& app) {

@@ -205,7 +205,7 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage&
     if (o.rehearse) RehearseMachineFirst(scenario, parts.axes, *bench, file.kind);
     MeasureMachineInto(folder, scenario, file, *bench, std::move(begun), o.allow_homing, page);
   }
-  EvaluateRun(scenario, folder.path, answer);
+  EvaluateMeasured(scenario, folder.path, answer);
 }
 
 }  // namespace twinbench::tools

@@ -64,7 +64,7 @@ void MeasureByProgram(const MeasureOptions& options, const Scenario& scenario, L
     record->AppendAll(back.readings);
     record->Finish();
   }
-  EvaluateRun(scenario, folder.path, answer);
+  EvaluateMeasured(scenario, folder.path, answer);
 }
 
 }  // namespace twinbench::tools

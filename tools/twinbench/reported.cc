@@ -114,7 +114,7 @@ report::Page PageOfWhatIsThere(const std::string& source, const std::string& sco
   if (!fs::exists(source)) throw NothingToRead(source, kExpected);
   if (fs::is_directory(source)) {
     RequireRunFolder(source);
-    throw InputError(source, "there is no results.json", kExpected);
+    throw InputError(source, "there is no results.json: the run was interrupted, or never evaluated", "a whole run: `twinbench measure ... --resume` goes on with it, `twinbench separate` evaluates what is there");
   }
   if (source.ends_with(".toml") || source.ends_with(".csv")) throw NoRun(source);
   return source.ends_with(".json") ? OfJson(source) : OfCampaign(source);

@@ -79,6 +79,7 @@ std::map<std::string, Own> OwnOf(const CsvTable& csv) {
   for (const CsvTable::Row& row : csv.rows) {
     Own own{row.fields[value].empty() ? kNaN : CsvNumber(csv, row, value, 1.0), kNaN};
     if (u && !row.fields[*u].empty()) own.u = CsvNumber(csv, row, *u, 1.0);
+    if (own.u < 0.0) throw InputError(csv.Where(row), "u is " + row.fields[*u], "a standard uncertainty, zero or more");
     if (!all.emplace(row.fields[result], own).second)
       throw InputError(csv.Where(row), row.fields[result] + " comes twice", "every result once");
   }
