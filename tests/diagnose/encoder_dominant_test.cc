@@ -57,6 +57,22 @@ Record ThereAndBackTwice(int stops, double step_deg, Shown shown_deg) {
   return record;
 }
 
+/// Stops from zero on in one pass that has no clock.
+/// @param error_deg  Of an angle.
+template <class Error>
+Record OnePass(int stops, double step_deg, double noise_deg, unsigned seed, Error error_deg) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0.0, noise_deg);
+  Record record;
+  record.kind = "stops";
+  for (int k = 0; k < stops; ++k) {
+    const double angle_deg = step_deg * k;
+    record.Add(k, angle_deg, angle_deg + error_deg(angle_deg) + noise(random), 1, 0);
+    record.readings.back().extra[kClockColumn] = kNoClock;
+  }
+  return record;
+}
+
 /// Of the wave of this order, whatever its name is.
 double SizeOfOrder(const Answer& answer, int order) {
   if (order == 1) return answer.Value("eccentricity", "amplitude");
@@ -275,16 +291,7 @@ TEST(EncoderDominant, OnePlacePushedFromBothSidesShowsThePlay) {
 }
 
 TEST(EncoderDominant, WithoutAClockAScaleThatBendsIsNoDrift) {
-  std::mt19937_64 random(9);
-  std::normal_distribution<double> noise_deg(0.0, 0.001);
-  Record record;
-  record.kind = "stops";
-  for (int k = 0; k < 30; ++k) {
-    const double r_deg = 8.0 * k;
-    record.Add(k, r_deg, r_deg * (1.0 + 0.001 * (1.0 + 0.8 * r_deg / 360.0)) + noise_deg(random), 1, 0);
-    record.readings.back().extra[kClockColumn] = kNoClock;
-  }
-  const Answer answer = Ask(record);
+  const Answer answer = Ask(OnePass(30, 8.0, 0.001, 9, [](double a_deg) { return 0.001 * a_deg * (1.0 + 0.8 * a_deg / 360.0); }));
   ExpectFound(answer, {{"scale", "ratio", 0.001, 1e-4}, {"scale", "curvature", 0.8, 0.1}});
   EXPECT_EQ(answer.Find("drift"), nullptr) << answer.Words();
   // The straight line through a parabola has its slope in the middle, at 116 deg.
@@ -329,16 +336,7 @@ TEST(EncoderDominant, AWornPlaceLeavesTheOrdersBesideIt) {
 /// A scale in one pass and no clock is a scale, whatever part of a turn that is.
 TEST(EncoderDominant, ASlopeOfASinglePassIsAScale) {
   for (const double range_deg : {60.0, 270.0, 400.0, 900.0}) {
-    std::mt19937_64 random(31);
-    std::normal_distribution<double> noise_deg(0.0, 0.0003);
-    Record record;
-    record.kind = "stops";
-    for (int k = 0; k < 40; ++k) {
-      const double r_deg = range_deg * k / 39.0;
-      record.Add(k, r_deg, r_deg + 0.01 * r_deg / range_deg + noise_deg(random), 1, 0);
-      record.readings.back().extra[kClockColumn] = kNoClock;
-    }
-    const Answer answer = Ask(record);
+    const Answer answer = Ask(OnePass(40, range_deg / 39.0, 0.0003, 31, [range_deg](double a_deg) { return 0.01 * a_deg / range_deg; }));
     EXPECT_TRUE(answer.Names("scale", 0.5)) << range_deg << answer.Words();
     EXPECT_NEAR(answer.Value("scale", "ratio"), 0.01 / range_deg, 0.1 * 0.01 / range_deg) << range_deg << answer.Words();
   }
@@ -346,16 +344,9 @@ TEST(EncoderDominant, ASlopeOfASinglePassIsAScale) {
 
 /// A rack with a ripple and an arch in one pass that has no clock: nothing of it is a course in time.
 TEST(EncoderDominant, OnePassWithoutAClockIsNoWalk) {
-  std::mt19937_64 random(5);
-  std::normal_distribution<double> noise_deg(0.0, 0.005);
-  Record record;
-  record.kind = "stops";
-  for (int k = 0; k < 76; ++k) {
-    const double r_deg = 4.5 * k, error_deg = 0.3 * r_deg / 360.0 * (1.0 - 2.0 * r_deg / 360.0) + 0.02 * std::cos(9.0 * r_deg * units::deg);
-    record.Add(k, r_deg, r_deg + error_deg + noise_deg(random), 1, 0);
-    record.readings.back().extra[kClockColumn] = kNoClock;
-  }
-  const Answer answer = Ask(record);
+  const Answer answer = Ask(OnePass(76, 4.5, 0.005, 5, [](double a_deg) {
+    return 0.3 * a_deg / 360.0 * (1.0 - 2.0 * a_deg / 360.0) + 0.02 * std::cos(9.0 * a_deg * units::deg);
+  }));
   EXPECT_TRUE(answer.Names("scale")) << answer.Words();
   EXPECT_NEAR(SizeOfOrder(answer, 9), 0.02, 0.004) << answer.Words();
   EXPECT_THAT(answer.run.diagnosis.unknown.signature, testing::Not(testing::HasSubstr("function of time"))) << answer.Words();

@@ -26,8 +26,7 @@ std::vector<uncertainty::Budget> BudgetsOf(const Scenario& scenario, const std::
 }
 
 /// Missing, saturated or disturbed, every one: exchanged wires, say.
-void RequireAnyUsable(const std::string& folder) {
-  const std::vector<Reading> readings = RunRecord::Open(folder)->Readings();
+void RequireAnyUsable(const std::string& folder, const std::vector<Reading>& readings) {
   const auto is_usable = [](const Reading& r) { return r.status == ReadingStatus::kOk; };
   if (readings.empty() || std::ranges::any_of(readings, is_usable)) return;
   throw InputError(folder, fmt::format("none of the {} readings is usable", readings.size()),
@@ -59,12 +58,13 @@ nlohmann::json RunJson(const RunFolder& folder, const Scenario& scenario, const 
   return json;
 }
 
-bool EvaluateRun(const Scenario& scenario, const std::string& folder, JsonAnswer& answer) {
-  const auto record = RunRecord::Open(folder);
-  const std::vector<Reading> readings = record->Readings();
+namespace {
+
+/// @param record  Of the folder, with these readings.
+bool EvaluateRecord(const Scenario& scenario, const std::string& folder, RunRecord& record, const std::vector<Reading>& readings, JsonAnswer& answer) {
   TellDoubts(readings, scenario, folder);
   const EvaluatedRun run = EvaluatedWithBudget(scenario, readings);
-  record->WriteBeside(kResultsFile, JsonText(run.evaluation.results));
+  record.WriteBeside(kResultsFile, JsonText(run.evaluation.results));
   WriteTables(folder, run.evaluation.tables);
   fmt::print("{}", run.text);
   answer.Write(RunJson({folder}, scenario, readings, run));
@@ -72,9 +72,18 @@ bool EvaluateRun(const Scenario& scenario, const std::string& folder, JsonAnswer
   return run.evaluation.Separated();
 }
 
+}  // namespace
+
+bool EvaluateRun(const Scenario& scenario, const std::string& folder, JsonAnswer& answer) {
+  const auto record = RunRecord::Open(folder);
+  return EvaluateRecord(scenario, folder, *record, record->Readings(), answer);
+}
+
 void EvaluateMeasured(const Scenario& scenario, const std::string& folder, JsonAnswer& answer) {
-  EvaluateRun(scenario, folder, answer);
-  RequireAnyUsable(folder);
+  const auto record = RunRecord::Open(folder);
+  const std::vector<Reading> readings = record->Readings();
+  EvaluateRecord(scenario, folder, *record, readings, answer);
+  RequireAnyUsable(folder, readings);
 }
 
 }  // namespace twinbench::tools

@@ -72,8 +72,7 @@ void DoubtUnsized(const diagnose::LinearRun& run, std::vector<diagnose::Cause>& 
     if (cause.parameters.empty() || is_bent || cause.effect == "outliers") continue;
     const double deviations = diagnose::encoder::Deviations(diagnose::EffectOf(cause, run.bench, ""));
     if (!(deviations > 0.0) || deviations >= kSized) continue;
-    const double log_odds = 0.5 * deviations * deviations - 0.5 * std::log(run.Rows());
-    cause.probability /= 1.0 + std::exp(-log_odds);
+    cause.probability *= diagnose::encoder::ChanceOfSize(deviations, 0.5 * std::log(run.Rows()));
   }
 }
 

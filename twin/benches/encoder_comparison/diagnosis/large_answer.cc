@@ -43,10 +43,8 @@ double PowerOf(const std::vector<Eigen::VectorXd>& shown) {
 /// How sure a size is that it is one, beside all else and with the memory that the rest has; an onset may have been at
 /// any reading.
 double ChanceOf(const LargeCause& cause, double readings) {
-  const double deviations = Deviations(cause.effect);
   const bool is_event = cause.effect.parameters.contains("at_reading");
-  const double log_odds = 0.5 * deviations * deviations - (is_event ? 1.0 : 0.5) * std::log(readings);
-  return 1.0 / (1.0 + std::exp(-log_odds));
+  return ChanceOfSize(Deviations(cause.effect), (is_event ? 1.0 : 0.5) * std::log(readings));
 }
 
 /// What has no name beside the large causes is said; it makes an unknown of the whole only if it explains more than

@@ -206,6 +206,10 @@ double Deviations(const EffectSettings& effect) {
   return most;
 }
 
+double ChanceOfSize(double deviations, double log_places) {
+  return 1.0 / (1.0 + std::exp(log_places - 0.5 * deviations * deviations));
+}
+
 void TakeOver(const AskedAgain& asked, std::vector<LargeCause>& causes) {
   for (std::size_t k = 0; k < causes.size(); ++k) {
     causes[k].effect = asked.effects[k];

@@ -77,6 +77,9 @@ std::vector<std::string> ThatAreOnce(const std::vector<LargeCause>& causes, int 
 /// whole.
 double Deviations(const EffectSettings& effect);
 
+/// How sure a size is that it is one, by how many of its uncertainties it is away from nothing and how many places it was chosen from.
+double ChanceOfSize(double deviations, double log_places);
+
 /// What was asked, in the words of the causes.
 void TakeOver(const AskedAgain& asked, std::vector<LargeCause>& causes);
 

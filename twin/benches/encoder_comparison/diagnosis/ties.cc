@@ -74,10 +74,10 @@ std::optional<FittedCauses> BetterLed(const TwinFit& fit, const FittedCauses& no
 
 /// What each may be as well, where what is left is no noise of the readings: another cause without a shape of its own that
 /// explains nearly as much in its place.
-std::vector<Cause> RivalsOf(const TwinFit& fit, const FittedCauses& now, std::size_t k, double noise) {
+/// @param explained  By the k-th cause.
+std::vector<Cause> RivalsOf(const TwinFit& fit, const FittedCauses& now, std::size_t k, double explained, double noise) {
   constexpr double kNearly = 0.8, kLikelier = 6.0;  // of what it explains; Kass and Raftery, Bayes factors (1995)
   const LinearRun& plain = fit.Run().run;
-  const double explained = fit.PowerWithout(k, now.asked) - now.power;
   const Eigen::VectorXd left = plain.residual - fit.Shown(EffectsWithout(k, now.asked.effects));
   std::vector<Cause> rivals;
   for (const Family& family : fit.Families()) {
@@ -100,13 +100,13 @@ void AddRivals(const TwinFit& fit, FittedCauses& now) {
   const double noise = NoiseOf(fit, now.power, fit.Memory(now.asked.left));
   if (noise < kNoNoise) return;
   for (std::size_t k = 0; k < now.causes.size(); ++k) {
-    std::vector<Cause> rivals = RivalsOf(fit, now, k, noise);
+    const double explained = fit.PowerWithout(k, now.asked) - now.power;
+    std::vector<Cause> rivals = RivalsOf(fit, now, k, explained, noise);
     double all = 1.0;
     for (const Cause& rival : rivals) all += rival.probability;
     std::vector<Cause>& members = now.causes[k].causes;
     const double together = members.front().probability;
     for (Cause& cause : members) cause.probability /= all;
-    const double explained = fit.PowerWithout(k, now.asked) - now.power;
     for (Cause& rival : rivals) {
       rival.probability *= together / all;
       members.front().indistinguishable_from.push_back({rival.effect, rival.where, std::min(1.0, rival.rho * rival.rho / explained)});
