@@ -43,6 +43,21 @@ TEST_F(Importing, FindsUnitsWhereverANameHasThem) {
   for (const auto& [names, deg] : in_deg) EXPECT_NEAR(Last_deg(Take(Scaled(names))), 355.0 * deg, 1e-6) << names;
 }
 
+TEST_F(Importing, TakesJointsOfRobotsAndWhatGoesRoundByTwoPiInRad) {
+  constexpr double kRad_deg = 1.0 / units::deg;
+  EXPECT_NEAR(Last_deg(Take(Scaled("target_q_0,actual_q_0", 0.01))), 0.71 * kRad_deg, 1e-3);
+  EXPECT_NEAR(Last_deg(Take(Scaled("target_angle,actual_angle", 0.0873))), 71 * 0.0873 * kRad_deg, 1e-3);
+  EXPECT_NEAR(Last_deg(Take(Scaled("target_angle,actual_angle", 0.05))), 71 * 0.05, 1e-9) << "half a turn may be anything";
+}
+
+TEST_F(Importing, TakesThePlaceOfAServoAndNotItsGainsOrTorques) {
+  std::string text = "MotorCmdKd,MotorCmdKp,MotorCmdTor,MotorCmdPos,MotorFbTor,MotorFbPos,q_m\n";
+  for (int i = 0; i < 72; ++i) text += fmt::format("{},{},{},{},{},{},{}\n", i % 2, i % 3, i * i, 5 * i, i, 5 * i + 1, 0.01 * i);
+  const std::string story = Take(text).story;
+  EXPECT_THAT(story, HasSubstr("from \"MotorCmdPos\""));
+  EXPECT_THAT(story, HasSubstr("from \"MotorFbPos\""));
+}
+
 TEST_F(Importing, TakesColumnsInOtherLanguagesInAnyOrder) {
   for (const char* names : {"Sollwert [deg];Istwert [deg]", "référence [deg];mesuré [deg]", "目标角度 [deg];实际角度 [deg]",
                             "consigna [deg];medido [deg]", "goal_position [deg];present_position [deg]"})

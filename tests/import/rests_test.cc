@@ -292,6 +292,17 @@ TEST_F(Importing, GivesThePiecesOfARestTheSenseInWhichItWasReached) {
   }
 }
 
+/// A servo that goes on swinging through its place by a third of the way.
+TEST_F(Importing, TakesAServoThatSwingsThroughItsPlaceForNoPush) {
+  constexpr int kRest = 500;
+  const Wave command = [](int i) { return i / kRest % 2 == 1 ? 90.0 : 0.0; };
+  const Wave servo = [&command](int i) {
+    const double since = i % kRest, from = i < kRest ? 0.0 : 90.0 - command(i);
+    return command(i) + 0.35 * (from - command(i)) * (std::cos(0.05 * since) > 0.0 ? 1.0 : -1.0);
+  };
+  EXPECT_THAT(Take(Beside("time [s];goal [deg];position [deg]", 8 * kRest, command, servo)).story, Not(HasSubstr("pushed")));
+}
+
 TEST_F(Importing, SaysWhatARecordingOfOneStepLacks) {
   const Wave step = [](int i) { return i < 40 ? 0.0 : 20.0; }, servo = [](int i) { return i < 40 ? 0.0 : 20.0 - 15.0 * std::exp(-0.2 * (i - 40)); };
   EXPECT_KEPT(MessageOf([&] { Take(Beside("time [s];goal [deg];position [deg]", 200, step, servo)); }));

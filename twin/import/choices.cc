@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "twin/core/errors.h"
+#include "twin/core/units.h"
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
 #include "twin/import/counts.h"
@@ -13,6 +14,18 @@
 
 namespace twinbench::imports {
 namespace {
+
+/// A joint's angle as robots have it, or one that goes round by 2 pi and not by whole numbers.
+bool LooksLikeRad(const Choice& from) {
+  constexpr double kNearlyATurn_rad = 0.95 * units::turn, kBeyond_rad = 0.01;
+  if (IsCalledJoint(from.name)) return true;
+  const std::vector<double>& values = from.column->value;
+  const auto [low, high] = std::ranges::minmax(values);
+  const double from_rad = low < -kBeyond_rad ? -units::turn / 2.0 : 0.0;
+  const auto is_whole = [](double x) { return x == std::round(x); };
+  return high - low > kNearlyATurn_rad && low > from_rad - kBeyond_rad && high < from_rad + units::turn + kBeyond_rad &&
+         2 * std::ranges::count_if(values, is_whole) < std::ssize(values);
+}
 
 /// Of a column that says none: as the other one that it is compared with, or as such files have it.
 std::string UsualUnit(const Choice& from, const std::string& target, const Map& map) {
@@ -23,7 +36,7 @@ std::string UsualUnit(const Choice& from, const std::string& target, const Map& 
     if (unit && wanted && unit->dimension == wanted->dimension && !other.unit.empty()) return other.unit;
   }
   if (wanted && wanted->dimension == Dimension::kAngle && StaysWithin(*from.column, kTwoTurns_rad))
-    return from.recording->usual_angle;
+    return LooksLikeRad(from) ? "rad" : from.recording->usual_angle;
   return wanted ? std::string(wanted->name) : "";
 }
 

@@ -174,9 +174,17 @@ bool IsOtherQuantity(const Column& column) {
     if (column.unit == other) return true;
   }
   if (IsCalledTemperature(column.name)) return true;
-  return HasAny(column.name, std::array{"velocity", "vel", "speed", "torque", "voltage", "current", "geschwindigkeit",
-                                        "acceleration", "acc", "pwm", "humidity", "pressure"}) &&
-         !HasAny(column.name, std::array{"position", "pos", "angle", "encoder", "enc"});
+  return HasAny(column.name, std::array{"velocity", "vel", "speed", "torque", "tor", "trq", "tau", "voltage", "current", "kp", "ki", "kd",
+                                        "geschwindigkeit", "acceleration", "acc", "pwm", "humidity", "pressure", "dq", "qd"}) &&
+         !IsCalledPlace(column.name);
+}
+
+bool IsCalledJoint(const std::string& name) {
+  return HasAny(name, std::array{"q"});
+}
+
+bool IsCalledPlace(const std::string& name) {
+  return HasAny(name, std::array{"position", "pos", "angle", "encoder", "enc"}) || IsCalledJoint(name);
 }
 
 bool IsNoUnit(const std::string& unit) {

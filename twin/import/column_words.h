@@ -45,6 +45,12 @@ bool IsCalledTemperature(const std::string& name);
 /// A speed, a current, a temperature by its name or unit: neither where the axis should stand nor where it does.
 bool IsOtherQuantity(const Column& column);
 
+/// "q", "actual_q_2": a joint's coordinate, which robots count in rad.
+bool IsCalledJoint(const std::string& name);
+
+/// "position", "pos", "angle", "encoder", "q": a place, whatever else the name says.
+bool IsCalledPlace(const std::string& name);
+
 /// A unit that says that there is none: "", "-", "1", "none".
 bool IsNoUnit(const std::string& unit);
 

@@ -90,7 +90,8 @@ const Choice* Clearest(const std::vector<Choice>& columns, Speaks of, const std:
   const Choice* best = nullptr;
   int clearness = 0;
   for (const Choice& column : columns) {
-    const int own = taken.contains(column.name) ? 0 : Clearness(column.name, of);
+    const int clear = taken.contains(column.name) ? 0 : Clearness(column.name, of);
+    const int own = clear > 0 ? 2 * clear + (IsCalledPlace(column.name) ? 1 : 0) : 0;
     if (own > clearness) {
       clearness = own;
       best = &column;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "twin/core/rounding.h"
+#include "twin/import/common.h"
 
 namespace twinbench::imports {
 namespace {
@@ -137,6 +138,17 @@ void Add(const Rest& rest, const std::vector<double>& error, const Sides& sides,
   }
 }
 
+/// A device that goes beyond its place and back by much of the way that it came is not pushed: it swings.
+bool IsMuchOfTheWay(const Sides& sides, const Course& course, const std::vector<Rest>& rests) {
+  constexpr double kMuch = 0.25;
+  std::vector<double> ways;
+  for (std::size_t k = 1; k < rests.size(); ++k) {
+    const double way = std::abs(course.reference[rests[k].begin] - course.reference[rests[k - 1].begin]);
+    if (way > 0.0) ways.push_back(way);
+  }
+  return !ways.empty() && sides.Apart() > kMuch * MedianOf(std::move(ways));
+}
+
 std::vector<double> ErrorsOf(const Course& course, const std::vector<double>& shown, double turn_rad) {
   std::vector<double> error;
   const double last = shown.back() - course.reference.back();  // near which no turn ends
@@ -164,7 +176,7 @@ Pushed PushedIn(const Course& course, const std::vector<Rest>& rests, const std:
     const Place arrived = place.Arrived(*rough);
     const std::optional<Sides> sides = SidesOf(arrived);
     for (const Rest& rest : arrived.rests) {
-      if (sides) kept.try_emplace(rest.begin, rest, *sides);
+      if (sides && !IsMuchOfTheWay(*sides, course, rests)) kept.try_emplace(rest.begin, rest, *sides);
     }
   }
   // Who pushes does so in most rests: a few of many that look so are counts of a display.

@@ -142,8 +142,9 @@ std::optional<NameAndUnit> BehindABlank(std::string_view field) {
   return NameAndUnit{std::string(name), std::string(unit)};
 }
 
-/// "angle_degrees", "positionRad": such a name is kept whole.
+/// "angle_degrees", "positionRad": such a name is kept whole. "q_m" is a joint's at its motor.
 std::optional<NameAndUnit> InTheName(std::string_view field) {
+  if (field == "q_m" || field.ends_with("_q_m")) return std::nullopt;
   if (const auto plain = UnitAtEnd(field)) return NameAndUnit{std::string(field), std::string(plain->name)};
   std::size_t at = field.rfind('_');
   if (at == std::string_view::npos) {

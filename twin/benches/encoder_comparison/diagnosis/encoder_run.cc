@@ -63,10 +63,13 @@ Scenario AsMounted(Scenario scenario, const Schedule& s, const Eigen::VectorXd& 
   return scenario;
 }
 
-/// With the speeds that were derived.
+/// With the speeds that were derived, and without what the twin does not look at: the record is copied each time it is followed.
 std::vector<Reading> AsFollowed(std::vector<Reading> used, const Schedule& s) {
-  for (std::size_t i = 0; i < used.size(); ++i)
+  for (std::size_t i = 0; i < used.size(); ++i) {
     used[i].velocity_rad_s = s.velocity_rad_s[static_cast<Eigen::Index>(i)];
+    used[i].quantities.clear();
+    used[i].extra.clear();
+  }
   return used;
 }
 

@@ -73,8 +73,9 @@ std::vector<EffectSettings> LargeSearch::OthersLike(const EffectSettings& effect
   }
   constexpr std::size_t kFew = 4;  // many are the pieces of a curve
   if (effect.name != "periodic" || LeastOrder(c) == 1 || large_.causes.size() > kFew) return others;
-  const double far = std::max(2.0, std::round(0.25 * OrdersApart(c)));
-  for (const double by : {-1.0, 1.0, -far, far}) {
+  // Over a little of a turn the next one is the same.
+  const double apart = OrdersApart(c), far = std::max(2.0, std::round(0.25 * apart)), near = std::max(1.0, std::round(0.02 * apart));
+  for (const double by : {-near, near, -far, far}) {
     const double order = effect.parameters.at("order") + by;
     if (order < LeastOrder(c) || order > LargestOrder(c)) continue;
     std::map<std::string, double>& parameters = others.emplace_back(effect).parameters;
