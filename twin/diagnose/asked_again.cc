@@ -1,13 +1,12 @@
 #include "twin/diagnose/asked_again.h"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "twin/core/errors.h"
 #include "twin/core/robust_scale.h"
+#include "twin/diagnose/engine/fit_within.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -50,52 +49,29 @@ struct Left {
     const Eigen::VectorXd left = rows - shows(scaled.At(x));
     return projector.Apply(Eigen::MatrixXd(weight.asDiagonal() * left)).col(0);
   }
-  /// Where the twin shows no numbers nobody should go. Ceres is not told that it failed: it would say so on the user's screen.
-  bool operator()(double const* const* x, double* residuals) const {
-    constexpr double kImpossible = 1e30;
-    const Eigen::VectorXd left = Of(Eigen::Map<const Eigen::VectorXd>(x[0], std::ssize(scaled.movable)));
-    Eigen::Map<Eigen::VectorXd>(residuals, left.size()) = left.allFinite() ? left : Eigen::VectorXd::Constant(left.size(), kImpossible);
-    return true;
-  }
 };
 
-ceres::Solver::Options SolverOptions() {
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 40;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;
-  options.max_num_line_search_step_size_iterations = 0;  // at a bound a shorter step does as well, and sooner
-  return options;
-}
-
-/// A tenth of what is known.
-ceres::NumericDiffOptions Steps() {
-  ceres::NumericDiffOptions steps;
-  steps.relative_step_size = 0.1 / kBegin;
-  return steps;
-}
-
-Eigen::VectorXd Solve(const Left& left, const std::vector<EffectEntry>& catalogue, Eigen::VectorXd x) {
+/// Where the twin shows no numbers nobody should go. The fit is not told that it failed: it would say so on the user's screen.
+Eigen::VectorXd Solve(const Left& left, const std::vector<EffectEntry>& catalogue, const Eigen::VectorXd& x) {
+  constexpr double kStep = 0.1;  // of what is known
   const std::vector<Movable>& movable = left.scaled.movable;
   if (movable.empty()) return x;
-  using Cost = ceres::DynamicNumericDiffCostFunction<Left, ceres::CENTRAL>;
-  auto* cost = new Cost(new Left(left), ceres::TAKE_OWNERSHIP, Steps());  // Ceres takes ownership
-  cost->AddParameterBlock(static_cast<int>(x.size()));
-  cost->SetNumResiduals(static_cast<int>(left.rows.size()));
-  ceres::Problem problem;
-  problem.AddResidualBlock(cost, nullptr, x.data());
-  for (std::size_t k = 0; k < movable.size(); ++k) {
-    const EffectSettings& effect = left.scaled.effects[movable[k].effect];
-    const EffectParameter& p = EntryOf(catalogue, effect.name, movable[k].parameter);
-    const double at = effect.parameters.at(movable[k].parameter);
-    problem.SetParameterLowerBound(x.data(), static_cast<int>(k), kBegin + (p.lower_SI - at) / movable[k].sd);
-    problem.SetParameterUpperBound(x.data(), static_cast<int>(k), kBegin + (p.upper_SI - at) / movable[k].sd);
+  Bounds bounds{x, x};
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    const Movable& moved = movable[static_cast<std::size_t>(k)];
+    const EffectSettings& effect = left.scaled.effects[moved.effect];
+    const EffectParameter& p = EntryOf(catalogue, effect.name, moved.parameter);
+    const double at = effect.parameters.at(moved.parameter);
+    bounds.lower[k] = kBegin + (p.lower_SI - at) / moved.sd;
+    bounds.upper[k] = kBegin + (p.upper_SI - at) / moved.sd;
   }
-  const Eigen::VectorXd start = x;
-  ceres::Solver::Summary summary;
-  ceres::Solve(SolverOptions(), &problem, &summary);
-  return summary.IsSolutionUsable() ? x : start;
+  const auto left_at = [&left](const Eigen::VectorXd& at, Eigen::Ref<Eigen::VectorXd> rows) {
+    constexpr double kImpossible = 1e30;
+    rows = left.Of(at);
+    if (!rows.allFinite()) rows.setConstant(kImpossible);
+    return true;
+  };
+  return FitWithin(left_at, left.rows.size(), x, bounds, {.most = 40, .relative_size = kStep / kBegin});
 }
 
 /// Single rows that stand far out of the others count no more; several side by side are structure.

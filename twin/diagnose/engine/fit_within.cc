@@ -1,0 +1,49 @@
+#include "twin/diagnose/engine/fit_within.h"
+
+#include <ceres/ceres.h>
+
+namespace twinbench::diagnose {
+namespace {
+
+struct AsCost {
+  const Residuals& residuals;
+  Eigen::Index rows, parameters;
+
+  bool operator()(double const* const* x, double* left) const {
+    return residuals(Eigen::Map<const Eigen::VectorXd>(x[0], parameters), Eigen::Map<Eigen::VectorXd>(left, rows));
+  }
+};
+
+ceres::Solver::Options SolverOptions(int most) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = most;
+  options.logging_type = ceres::SILENT;
+  options.num_threads = 1;
+  options.max_num_line_search_step_size_iterations = 0;  // at a bound a shorter step does as well, and sooner
+  return options;
+}
+
+}  // namespace
+
+Eigen::VectorXd FitWithin(const Residuals& residuals, Eigen::Index rows, const Eigen::VectorXd& start, const Bounds& bounds,
+                          const FitSteps& steps) {
+  using Cost = ceres::DynamicNumericDiffCostFunction<AsCost, ceres::CENTRAL>;
+  ceres::NumericDiffOptions differences;
+  differences.relative_step_size = steps.relative_size;
+  auto* cost = new Cost(new AsCost{residuals, rows, start.size()}, ceres::TAKE_OWNERSHIP, differences);  // Ceres takes ownership
+  cost->AddParameterBlock(static_cast<int>(start.size()));
+  cost->SetNumResiduals(static_cast<int>(rows));
+  Eigen::VectorXd x = start;
+  ceres::Problem problem;
+  problem.AddResidualBlock(cost, nullptr, x.data());
+  for (int k = 0; k < static_cast<int>(start.size()); ++k) {
+    problem.SetParameterLowerBound(x.data(), k, bounds.lower[k]);
+    problem.SetParameterUpperBound(x.data(), k, bounds.upper[k]);
+  }
+  ceres::Solver::Summary summary;
+  ceres::Solve(SolverOptions(steps.most), &problem, &summary);
+  return summary.IsSolutionUsable() ? x : start;
+}
+
+}  // namespace twinbench::diagnose
