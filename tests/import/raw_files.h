@@ -117,7 +117,8 @@ inline std::string CamonitorLog(const std::vector<AxisSample>& samples, double b
   return text;
 }
 
-/// A night of guiding: calibration, then a session in which pulses take out most of the star's motion.
+/// A night of guiding: calibration, then a session in which pulses take out most of the star's motion, and the place where the star
+/// is held moves now and then.
 /// @param error_arcsec  Of the mount's axis, by its angle [deg].
 inline std::string GuideLog(const std::function<double(double)>& error_arcsec, int frames) {
   constexpr double kScale = 2.0, kRate = 6.5, kDec_deg = 30.0;
@@ -136,15 +137,21 @@ inline std::string GuideLog(const std::function<double(double)>& error_arcsec, i
       "Frame,Time,mount,dx,dy,RARawDistance,DECRawDistance,RAGuideDistance,DECGuideDistance,RADuration,RADirection,"
       "DECDuration,DECDirection,XStep,YStep,StarMass,SNR,ErrorCode\nINFO: SETTLING STATE CHANGE, Settling "
       "started\n";
-  double taken_out_px = 0.0;
+  double taken_out_px = 0.0, held_px = 0.0;
   for (int k = 1; k <= frames; ++k) {
     const double time_s = 6.0 * k, angle_deg = 15.041067 * time_s / 3600.0;
     if (k % 400 == 0) {
       text += fmt::format("{},{:.3f},\"DROP\",,,,,,,,,,,,,0,0.00,2,\"Star lost - low SNR\"\n", k, time_s);
       continue;
     }
+    if (k % 300 == 150) {
+      const double by_px = k % 600 == 150 ? -1.995 : 1.25;
+      held_px += by_px;
+      text += fmt::format("INFO: SET LOCK POSITION, new lock pos = 423.984, 748.603\nINFO: DITHER by {:.3f}, 0.254, new lock pos = 423.945, 750.613\n"
+                          "INFO: SETTLING STATE CHANGE, Settling started\n", by_px);
+    }
     const double raw_px =
-        error_arcsec(angle_deg) * Cosine(1.0, kDec_deg, 0.0) / kScale - taken_out_px + seeing(random);
+        error_arcsec(angle_deg) * Cosine(1.0, kDec_deg, 0.0) / kScale - taken_out_px - held_px + seeing(random);
     const int pulse_ms = std::abs(raw_px) > 0.2 ? static_cast<int>(700.0 * std::abs(raw_px) / kRate) : 0;
     taken_out_px += (raw_px > 0.0 ? 1.0 : -1.0) * pulse_ms / 1000.0 * kRate;
     const char* way = pulse_ms == 0 ? "" : raw_px > 0.0 ? "W" : "E";

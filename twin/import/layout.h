@@ -15,6 +15,7 @@ struct Layout {
   std::string decimal = "auto";    // point | comma
   std::string header;              // what the line of the names begins with; empty: found
   std::string section;             // what a line begins with that opens a part; empty: one part
+  std::string moved_by;            // what lines begin with between the rows that say by how much the zero of the readings moved
   std::vector<std::string> names;  // of the columns of a file without names
   std::string array;               // of a program text: the array's name; empty: the longest
   bool columns_are_open = true;    // no map names columns: numbers alone may be a list, runs up and down a positioning test

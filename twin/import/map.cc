@@ -82,6 +82,8 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
   file.Text("decimal", &map.file.decimal, {"auto", "point", "comma"}, "the decimal mark");
   file.Text("header", &map.file.header, {}, "what the line with the names begins with");
   file.Text("section", &map.file.section, {}, "what a line begins with that opens a part; each part is a mounting");
+  file.Text("moved_by", &map.file.moved_by, {},
+            "what a line between the rows begins with that says by how much the readings' zero moved; their sum is column \"moved\"");
   file.Add("names", kPure, {}, &map.file.names, "of the columns, in order, where the file has none");
   file.Text("array", &map.file.array, {}, "name of the array; left out: the longest");
   Table time(keys, "time");

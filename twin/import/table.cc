@@ -55,9 +55,16 @@ class TableReader {
     if (!named_) return TakeLineAbove(line);
     if (IsComment(line)) return TakeAside(line);
     Split(line, how_.separator, fields_);
+    if (!layout_.header.empty() && IsSaid(fields_[0])) return TakeAside(line);
     if (IsRow(fields_, how_) && (!heading_.found || fields_.size() > 1 || heading_.columns.size() == 1))
       return TakeRow(line);
     TakeAside(line);
+  }
+
+  /// "INFO: DITHER by -1.995", whatever numbers stand behind it.
+  static bool IsSaid(std::string_view field) {
+    const std::size_t colon = field.find(": ");
+    return colon != std::string_view::npos && colon > 0 && std::isalpha(static_cast<unsigned char>(field[colon - 1]));
   }
 
   /// Before the header that the map names.
@@ -194,9 +201,23 @@ class TableReader {
       track_.columns.push_back(std::move(column));
     }
     JoinDateAndTime();
+    TakeMoves();
     FindClock(clock_, recording_.file, track_);
     recording_.tracks.push_back(std::move(track_));
     gatherers_.clear();
+  }
+
+  /// From where on the readings count, by the first numbers of the lines that say so.
+  void TakeMoves() {
+    if (layout_.moved_by.empty()) return;
+    Column moved{"moved", "", std::vector<double>(track_.Rows(), 0.0), {}};
+    for (const TextLine& line : track_.lines) {
+      if (!std::string_view(line.text).starts_with(layout_.moved_by)) continue;
+      Split(std::string_view(line.text).substr(layout_.moved_by.size()), how_.separator, fields_);
+      const double by = FieldNumber(Trimmed(fields_[0]), how_.decimal_comma).value_or(0.0);
+      for (std::size_t i = line.row; i < moved.value.size(); ++i) moved.value[i] += by;
+    }
+    track_.columns.push_back(std::move(moved));
   }
 
   /// A date in one column and the time of day in the next are one instant.
