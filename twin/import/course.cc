@@ -174,10 +174,27 @@ void Sweep(const std::vector<double>& time_s, Course& course) {
   MarkRamps(time_s, course);
 }
 
+/// A reference that goes one way, but for a few single steps back that are no longer than its own: it errs there, and nobody drives
+/// back so.
+void TakeOutFewBack(std::vector<double>& steps) {
+  constexpr double kFew = 0.01, kAsLong = 2.0;  // of all; usual steps
+  const auto forward = std::ranges::count_if(steps, [](double step) { return step > 0.0; });
+  const double sense = 2 * forward > std::ssize(steps) ? 1.0 : -1.0, usual = MedianOf(Sizes(steps));
+  std::vector<std::size_t> back;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (!(sense * steps[i] < 0.0)) continue;
+    if (-sense * steps[i] > kAsLong * usual || (!back.empty() && back.back() + 1 == i)) return;
+    back.push_back(i);
+  }
+  if (static_cast<double>(back.size()) > kFew * static_cast<double>(steps.size())) return;
+  for (const std::size_t i : back) steps[i] = 0.0;
+}
+
 /// Readings at rest, one a row.
 void Stops(Course& course) {
   const std::vector<double>& x = course.reference;
-  const std::vector<double> steps = StepsOf(x);
+  std::vector<double> steps = StepsOf(x);
+  TakeOutFewBack(steps);
   std::vector<double> sizes = Sizes(steps);
   std::erase(sizes, 0.0);
   const double usual = MedianOf(sizes);
