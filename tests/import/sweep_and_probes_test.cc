@@ -74,6 +74,47 @@ TEST_F(AutocollimatorSweep, IsDiagnosedInTheSenseThatItHas) {
   }
 }
 
+/// At even steps of 2 arcsec a period of 23.7 looks like one of 2.18, and what is shown has the ripple itself in it.
+TEST_F(AutocollimatorSweep, HasTheLongestOfThePeriodsThatLookAlike) {
+  for (const auto& [scale, period_arcsec] : {std::pair{-0.985, 23.7}, std::pair{1.0, 23.7}, std::pair{1.0, 150.0}, std::pair{1.002, 1.0 / (1.0 / 1.7 - 0.5)}}) {
+    Stream noise(7, "autocollimator.noise");
+    std::string text = "generator [arcsec],autocollimator x [arcsec],autocollimator y [arcsec]\n";
+    for (const double way : {1.0, -1.0})
+      for (int k = -100; k <= 100; ++k) {
+        const double angle_arcsec = 2.0 * way * k;
+        text += fmt::format("{},{:.4f},{:.4f}\n", angle_arcsec, scale * angle_arcsec + 0.3 * std::sin(units::turn * angle_arcsec / period_arcsec) + 0.03 * noise.Normal(), 0.03 * noise.Normal());
+      }
+    const Imported taken = Take(text);
+    const diagnose::Diagnosis found =
+        benches::turntable::Diagnose(taken.readings, ParseScenario("bench = \"" + taken.bench + "\"\n", "sweep.csv", "", taken.set), {}).diagnosis;
+    SCOPED_TRACE(fmt::format("{} {}", scale, period_arcsec));
+    const auto ripple = std::ranges::find(found.causes, "autocollimator_periodic", &diagnose::Cause::effect);
+    ASSERT_NE(ripple, found.causes.end());
+    const auto& period = *std::ranges::find(ripple->parameters, "period", &diagnose::ParameterEstimate::name);
+    EXPECT_NEAR(period.value, std::abs(scale) * period_arcsec * units::arcsec, 3.0 * period.u);
+    EXPECT_LT(period.u, 0.01 * period.value);
+    EXPECT_FALSE(ripple->indistinguishable_from.empty());
+    EXPECT_THAT(found.notes, testing::Contains(HasSubstr("looks like one of")));
+  }
+}
+
+/// Uneven steps tell a short one.
+TEST_F(AutocollimatorSweep, OfUnevenStepsHasAShortPeriod) {
+  Stream noise(8, "autocollimator.noise");
+  std::string text = "generator [arcsec],autocollimator x [arcsec]\n";
+  for (int k = 0; k < 200; ++k) {
+    const double angle_arcsec = 2.0 * k - 200.0 + 1.6 * noise.Uniform();
+    text += fmt::format("{:.3f},{:.4f}\n", angle_arcsec, angle_arcsec + 0.3 * std::sin(units::turn * angle_arcsec / 1.71) + 0.03 * noise.Normal());
+  }
+  const Imported taken = Take(text);
+  const diagnose::Diagnosis found =
+      benches::turntable::Diagnose(taken.readings, ParseScenario("bench = \"" + taken.bench + "\"\n", "sweep.csv", "", taken.set), {}).diagnosis;
+  ASSERT_FALSE(found.causes.empty());
+  const auto& period = *std::ranges::find(found.causes[0].parameters, "period", &diagnose::ParameterEstimate::name);
+  EXPECT_NEAR(period.value / units::arcsec, 1.71, 0.001);
+  EXPECT_TRUE(found.causes[0].indistinguishable_from.empty());
+}
+
 /// The turns of an axis beside what its encoder shows are no sweep of an autocollimator.
 TEST_F(AutocollimatorSweep, IsNoComparisonOfTurns) {
   std::string text = "reference [deg],x [deg]\n";

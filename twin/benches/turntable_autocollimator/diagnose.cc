@@ -6,6 +6,7 @@
 #include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/benches/turntable_autocollimator/estimators/collimator_sweep.h"
 #include "twin/benches/turntable_autocollimator/estimators/one_axis.h"
+#include "twin/benches/turntable_autocollimator/ripples.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
 #include "twin/core/reading_clock.h"
@@ -25,10 +26,6 @@ constexpr double kFree_rad = 360.0 * arcsec;       // the range of an autocollim
 constexpr double kToothTilt_rad = 5.0 * arcsec;    // of a multi-tooth table
 constexpr double kLeastNoise_rad = 1e-4 * arcsec;  // nothing is known better
 constexpr int kParts = 1000000;                    // of a turn, in which angles are told apart
-
-bool IsInSweep(const Reading& r) {
-  return r.phase == Phase::kCalibration;
-}
 
 int InTurn(double angle_rad) {
   const auto part = static_cast<int>(std::lround(angle_rad / units::turn * kParts) % kParts);
@@ -190,39 +187,6 @@ std::vector<TwinComparison::Scatter> ScatterOf(const Scenario& scenario) {
   return scatter;
 }
 
-using AxisOf = double (*)(const Reading&);
-
-double X_rad(const Reading& r) {
-  return r.autocollimator_yaw_rad;
-}
-double Y_rad(const Reading& r) {
-  return r.autocollimator_tilt_rad;
-}
-
-/// Ripple along an axis: of the stated pixels, within a hundredth, and of any other period that the scatter of the
-/// readings does not wash out.
-void AddRipples(const std::vector<Reading>& readings, const std::string& axis, AxisOf shown_rad,
-                const TurntableSettings& own, TwinComparison& comparison) {
-  constexpr double kShortest_rad = 0.6 * arcsec, kWashedOut = 3.0;  // in noise
-  std::vector<double> all_rad;
-  for (const Reading& r : readings)
-    if (std::isfinite(shown_rad(r))) all_rad.push_back(shown_rad(r));
-  if (all_rad.empty()) return;
-  const auto [least, most] = std::ranges::minmax(all_rad);
-  const double pixel_rad = own.collimator.pixel_pitch_m / (2.0 * own.collimator.focal_length_m);
-  const double shortest_rad = std::max(kShortest_rad, kWashedOut * own.ReadingNoise_rad());
-  const double longest_rad = (most - least) / 1.5;
-  const auto add = [&](double from_rad, double to_rad) {
-    TwinComparison::Product ripple = diagnose::WaveAlong("autocollimator_periodic", axis, "autocollimator." + axis,
-                                                         "period", shown_rad, from_rad, to_rad);
-    ripple.sizes = {"amplitude", "amplitude"};
-    ripple.is_wave = true;
-    comparison.products.push_back(ripple);
-  };
-  if (pixel_rad > shortest_rad && pixel_rad < longest_rad) add(0.99 * pixel_rad, 1.01 * pixel_rad);
-  if (longest_rad > 1.2 * shortest_rad) add(shortest_rad, longest_rad);
-}
-
 bool HasX(const Reading& r) {
   return std::isfinite(X_rad(r)) && std::isfinite(r.target_rad) && std::isfinite(r.reference_rad);
 }
@@ -304,6 +268,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
   const std::vector<Reading> reduced = AlongTheReference(AtNominal(readings, TurntableOf(scenario)), notes);
   diagnose::DiagnosisRun run = diagnose::DiagnoseByTwin(reduced, scenario, options, Comparison(reduced, scenario));
   std::ranges::move(notes, std::back_inserter(run.diagnosis.notes));
+  TellPeriods(reduced, run.diagnosis);
   return run;
 }
 
