@@ -6,6 +6,8 @@
 #include <array>
 
 #include "tests/import/importing.h"
+#include "twin/benches/turntable_autocollimator/bench.h"
+#include "twin/core/stream.h"
 
 // Polygons without a certificate in several clampings: said by columns, by their names, by lines above blocks, or
 // by nothing but the readings.
@@ -118,6 +120,30 @@ TEST_F(ClampingTable, MayOnlyNumberItsClampings) {
       text += "\n";
     }
     ExpectApart(Take(text), 4);
+  }
+}
+
+/// Of clampings that are only numbered nobody knows the faces' errors either: what differs between both ways is found beside them.
+TEST_F(ClampingTable, ReadBothWaysShowsItsHysteresis) {
+  for (const double hysteresis_arcsec : {0.2, 1.0}) {
+    Stream noise(4, "autocollimator.noise");
+    std::string text = "angle_deg,x_arcsec,clamping,direction\n";
+    constexpr std::array kTurned = {0, 1, 3, 7, 8};
+    for (int c = 0; c < std::ssize(kTurned); ++c)
+      for (const int way : {1, -1})
+        for (int k = 0; k < kFaces; ++k) {
+          const int place = way > 0 ? k : kFaces - 1 - k;
+          text += fmt::format("{},{:.4f},{},{}\n", 36 * place, Shown_arcsec(place, place + kTurned[static_cast<std::size_t>(c)], 0) + 0.5 * hysteresis_arcsec * way + 0.03 * noise.Normal(), c + 1, way);
+        }
+    const Imported taken = Take(text);
+    const diagnose::Diagnosis found =
+        benches::turntable::Diagnose(taken.readings, ParseScenario("bench = \"" + taken.bench + "\"\n", "faces.csv", "", taken.set), {}).diagnosis;
+    EXPECT_EQ(found.verdict, diagnose::Verdict::kNamed) << hysteresis_arcsec;
+    ASSERT_EQ(found.causes.size(), 1U) << hysteresis_arcsec;
+    EXPECT_EQ(found.causes[0].effect, "backlash");
+    const diagnose::ParameterEstimate& width = found.causes[0].parameters.front();
+    EXPECT_NEAR(width.value, -hysteresis_arcsec * units::arcsec, 3.0 * width.u);
+    EXPECT_LT(width.u, 0.02 * units::arcsec);
   }
 }
 
