@@ -50,7 +50,7 @@ struct SmoothPass {
 std::map<PassKey, SmoothPass> SmoothPassesOf(const std::vector<Reading>& readings, ShownOf shown_rad, int degree) {
   std::map<PassKey, std::vector<std::pair<double, double>>> passes;
   for (const Reading& r : readings)
-    if (IsInSweep(r) && std::isfinite(shown_rad(r)) && std::isfinite(r.target_rad))
+    if (std::isfinite(shown_rad(r)) && std::isfinite(r.target_rad))
       passes[{r.setup, r.pass}].emplace_back(r.target_rad, shown_rad(r));
   std::map<PassKey, SmoothPass> smooth;
   for (const auto& [key, shown] : passes) {
@@ -138,6 +138,8 @@ std::vector<double> AliasesOf(double period_rad, double folds_at) {
 
 RippleCourse RippleCourseOf(const std::vector<Reading>& readings, ShownOf shown_rad) {
   RippleCourse course;
+  course.along_rad = shown_rad;
+  if (!std::ranges::all_of(readings, IsInSweep)) return course;  // circles show x at steps of no size of their own
   const std::map<PassKey, SmoothPass> smooth = SmoothPassesOf(readings, shown_rad, Bends(readings, shown_rad) ? 3 : 1);
   if (!smooth.empty()) course.scale = course.u_scale = 0.0;
   for (const auto& [key, pass] : smooth) {  // the same steps leak the same into each
@@ -146,7 +148,7 @@ RippleCourse RippleCourseOf(const std::vector<Reading>& readings, ShownOf shown_
   }
   // A shown value has the ripple in it: a wave of the spacing of the readings along it would show that again.
   course.along_rad = [smooth, shown_rad](const Reading& r) {
-    const auto pass = IsInSweep(r) ? smooth.find({r.setup, r.pass}) : smooth.end();
+    const auto pass = smooth.find({r.setup, r.pass});
     return pass != smooth.end() ? pass->second.Shown_rad(r.target_rad) : shown_rad(r);
   };
   const std::vector<double> all_rad = AllAlong(readings, course.along_rad);
@@ -195,7 +197,7 @@ void TellPeriods(const std::vector<Reading>& readings, diagnose::Diagnosis& diag
     if (period == nullptr) continue;
     const RippleCourse course = RippleCourseOf(readings, cause.where == "x" ? X_rad : Y_rad);
     if (course.folds_at > 0.0) TellAliases(course, period->value, cause, diagnosis);
-    if (cause.where == "x" && std::ranges::all_of(readings, IsInSweep)) TellByReference(course, *period, diagnosis);
+    if (cause.where == "x" && std::isfinite(course.scale)) TellByReference(course, *period, diagnosis);
   }
 }
 
