@@ -128,6 +128,8 @@ TEST_F(FaceTable, TakesCertificatesOfOtherKinds) {
                                       [](int face, double) { return fmt::format("{:.4f}", Certified_arcsec(face)); }));
   Expect(numbered, 12);
   EXPECT_THAT(numbered.story, HasSubstr("stand evenly round the circle"));
+  Expect(Take(both("face,remark,autocollimator x [arcsec],correction [arcsec]", correction)), 12);
+  Expect(Take(both("Fläche,Nr,Ablesung [\"],Korrektur [\"]", correction)), 12);
 }
 
 /// An error beside an angle is that of a device; what an autocollimator read at nominal angles is a face table.

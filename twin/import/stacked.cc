@@ -37,8 +37,9 @@ bool SaysWhere(const Map& map, const Column& column) {
 
 /// "CCW", or one of its words says which way: "reading forward".
 int WayIn(const std::string& name) {
-  constexpr std::array<std::string_view, 7> kForward = {"forward", "fwd", "up", "vorwärts", "vor", "hin", "aller"};
-  constexpr std::array<std::string_view, 9> kBack = {"reverse", "rev", "backward", "backwards", "bwd", "down", "rückwärts", "zurück", "retour"};
+  constexpr std::array<std::string_view, 13> kForward = {"forward", "fwd", "up", "vorwärts", "vorwaerts", "vorw", "vor", "hin", "aller", "andata", "ida", "increasing", "ascending"};
+  constexpr std::array<std::string_view, 20> kBack = {"reverse", "rev", "backward", "backwards", "bwd", "back", "down", "rückwärts", "rueckwaerts", "rückw", "rück", "rueck",
+                                                      "zurück", "zurueck", "zur", "retour", "ritorno", "vuelta", "decreasing", "descending"};
   if (const int turn = TurnIn(name); turn != 0) return turn;
   const std::string words = SmallLetters(name) + ' ';
   for (std::size_t from = 0, end; (end = words.find_first_of(" _-.", from)) != std::string::npos; from = end + 1) {
