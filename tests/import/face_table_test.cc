@@ -97,6 +97,43 @@ TEST_F(FaceTable, MayCallItsColumnsByTheWayRoundAlone) {
   Expect(Take(text("No.,Soll [°],Run 1 fwd (\"),Run 1 rev (\"),Kalibrierwert (\"),u (\")\n")), 8);
 }
 
+/// "rück" beside "vor" is the way back; what nothing is made of is said.
+TEST_F(FaceTable, MayAbbreviateTheWayBackAndSaysWhatItLeaves) {
+  const auto text = [](const char* names) {
+    return names + Faces(12, [](int face, double angle, double forward, double reverse) {
+             return fmt::format("{:g};{:.4f};{:.4f};{:.4f}\n", angle, forward, reverse, Certified_arcsec(face - 1));
+           });
+  };
+  for (const char* names : {"Sollwinkel [°];Ablesung vor [″];Ablesung rück [″];Kalibrierwert [″]\n", "angolo [°];lettura andata [\"];lettura ritorno [\"];certificato [\"]\n",
+                            "angle [deg];reading fwd [arcsec];reading back [arcsec];certified [arcsec]\n"}) {
+    const Imported taken = Take(text(names));
+    Expect(taken, 12);
+    EXPECT_THAT(taken.story, Not(HasSubstr("left out"))) << names;
+  }
+  EXPECT_THAT(Take(text("Sollwinkel [°];Ablesung [″];Nullkontrolle [″];Kalibrierwert [″]\n")).story, HasSubstr("left out, for by its name nothing of this map is meant: \"Nullkontrolle\""));
+}
+
+/// Of both axes, in columns of their own for each way: y is no second reading of x, and a certificate may say nothing but zeros.
+TEST_F(FaceTable, TakesTheSecondAxis) {
+  std::string sides = "angle [deg],x forward [arcsec],Y forward [arcsec],x reverse [arcsec],Y reverse [arcsec],certified [arcsec]\n", plain = "angle [deg],x [arcsec],y [arcsec],certified [arcsec]\n";
+  for (int k = 0; k < 12; ++k) {
+    const double angle_deg = 30.0 * k, y_arcsec = 600.0 * std::cos(angle_deg * units::deg);
+    sides += fmt::format("{:g},{:.4f},{:.4f},{:.4f},{:.4f},0.00\n", angle_deg, Table_arcsec(angle_deg, 1), y_arcsec, Table_arcsec(angle_deg, -1), y_arcsec);
+    plain += fmt::format("{:g},{:.4f},{:.4f},0.00\n", angle_deg, Table_arcsec(angle_deg, 1), y_arcsec);
+  }
+  for (const auto& [text, readings] : {std::pair{sides, 24U}, std::pair{plain, 12U}}) {
+    const Imported taken = Take(text);
+    EXPECT_EQ(taken.bench, "turntable_autocollimator");
+    EXPECT_THAT(taken.story, Not(HasSubstr("no certified deviations")));
+    ASSERT_EQ(taken.readings.size(), readings) << taken.story;
+    for (const Reading& r : taken.readings) {
+      EXPECT_NEAR(r.autocollimator_yaw_rad / units::arcsec, Table_arcsec(r.target_rad / units::deg, r.direction), 2e-3);
+      EXPECT_NEAR(r.autocollimator_tilt_rad / units::arcsec, 600.0 * std::cos(r.target_rad), 2e-3);
+    }
+    EXPECT_THAT(taken.set, Contains("autocollimator.range_arcsec=1200")) << "of y, beyond the usual one";
+  }
+}
+
 /// Each run has a column, "up" and "down" say the way, and two apostrophes are seconds.
 TEST_F(FaceTable, MayHaveAColumnForEachRun) {
   const auto text = [](const char* names) {

@@ -114,6 +114,24 @@ class Seeker {
 
   std::string SourceOf(const std::string& name) const { return source_.contains(name) ? source_.at(name) : ""; }
 
+  /// Columns in a unit of what is read that nothing was made of, by what the file calls them.
+  std::vector<std::string> LeftOver(const Map& map) const {
+    std::set<Dimension> read;
+    for (const Sought& sought : all_)
+      if (sought.kind == "value" && HasColumn(sought.name)) read.insert(UnitOf(sought).dimension);
+    std::vector<std::string> left;
+    for (const Column& column : track_.columns) {
+      const auto unit = UnitNamed(column.unit);
+      const auto is_in = [&column](const MappedColumn& c) {
+        const std::vector<std::string> names = Expression(c.expression, c.where).Names();
+        return c.expression == column.name || std::ranges::count(names, column.name) > 0;
+      };
+      if (column.IsNumber() && unit && read.contains(unit->dimension) && !taken_.contains(column.name) && std::ranges::none_of(map.columns, is_in))
+        left.push_back(fmt::format("\"{}\"", column.name));
+    }
+    return left;
+  }
+
   /// In a column, with a unit that says what it is; what has no unit needs none, nor does an angle, but for one in arcsec beside
   /// one other quantity alone, which is none that is called an error.
   bool HasSurely(const std::string& name, bool is_of_two) const {
@@ -356,6 +374,8 @@ void TakeSought(Map& map, Recording& recording) {
     Seeker seeker(map.sought, track);
     seeker.Find();
     SayPlane(map, track, seeker, recording);
+    if (const std::vector<std::string> left = seeker.LeftOver(map); !left.empty())
+      recording.remarks.push_back(fmt::format("left out, for by {} nothing of this map is meant: {}", left.size() > 1 ? "their names" : "its name", fmt::join(left, ", ")));
     for (const std::string& assumed : seeker.assumed()) recording.remarks.push_back(assumed);
     seeker.Make(recording.remarks);
     for (const Sought& sought : map.sought) {

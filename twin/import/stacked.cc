@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <string_view>
 
@@ -37,9 +38,9 @@ bool SaysWhere(const Map& map, const Column& column) {
 
 /// "CCW", or one of its words says which way: "reading forward".
 int WayIn(const std::string& name) {
-  constexpr std::array<std::string_view, 13> kForward = {"forward", "fwd", "up", "vorwärts", "vorwaerts", "vorw", "vor", "hin", "aller", "andata", "ida", "increasing", "ascending"};
-  constexpr std::array<std::string_view, 20> kBack = {"reverse", "rev", "backward", "backwards", "bwd", "back", "down", "rückwärts", "rueckwaerts", "rückw", "rück", "rueck",
-                                                      "zurück", "zurueck", "zur", "retour", "ritorno", "vuelta", "decreasing", "descending"};
+  constexpr auto kForward = std::to_array<std::string_view>({"forward", "fwd", "up", "vorwärts", "vorwaerts", "vorw", "vor", "hin", "aller", "andata", "ida", "increasing", "ascending"});
+  constexpr auto kBack = std::to_array<std::string_view>({"reverse", "rev", "backward", "backwards", "bwd", "back", "down", "rückwärts", "rueckwaerts", "rückw", "rück", "rueck",
+                                                       "zurück", "zurueck", "retour", "ritorno", "vuelta", "decreasing", "descending"});
   if (const int turn = TurnIn(name); turn != 0) return turn;
   const std::string words = SmallLetters(name) + ' ';
   for (std::size_t from = 0, end; (end = words.find_first_of(" _-.", from)) != std::string::npos; from = end + 1) {
@@ -81,21 +82,43 @@ std::string OwnNameOf(const Map& map, const Column& column, const ColumnSide& si
   return column.name;
 }
 
+/// "x forward" of "Y forward": the name that the other axis has beside it; empty: it names no y.
+std::string NameOfX(const std::string& name) {
+  std::string small = SmallLetters(name);
+  const auto is_letter = [&small](std::size_t i) { return i < small.size() && (std::isalpha(static_cast<unsigned char>(small[i])) || static_cast<unsigned char>(small[i]) >= 0x80); };
+  for (std::size_t at = 0; (at = small.find('y', at)) != std::string::npos; ++at) {
+    if (is_letter(at + 1) || (at > 0 && is_letter(at - 1))) continue;
+    small[at] = 'x';
+    return small;
+  }
+  return "";
+}
+
+/// What a second axis of the instrument showed beside it, where the map seeks such; null: nothing.
+const Column* BesideOf(const Map& map, const Track& track, const Column& column) {
+  const auto is_second = [](const Sought& sought) { return sought.kind == "column" && std::ranges::count(sought.words, "y") > 0; };
+  const auto found = std::ranges::find_if(track.columns, [&column](const Column& c) { return c.IsNumber() && NameOfX(c.name) == SmallLetters(column.name); });
+  return found != track.columns.end() && std::ranges::any_of(map.sought, is_second) ? &*found : nullptr;
+}
+
 struct Part {
   const Column* value;
-  const Column* angle;  // null: that of all
+  const Column* beside;  // null: none
+  const Column* angle;   // null: that of all
   ColumnSide side;
 };
 
 std::vector<Part> PartsOf(const Map& map, const Track& track) {
   std::vector<Part> parts;
+  std::vector<const Column*> beside;
+  for (const Column& column : track.columns) beside.push_back(BesideOf(map, track, column));
   for (const Column& column : track.columns) {
     const ColumnSide side = column.IsNumber() ? SideOf(map, column) : ColumnSide{};
-    if (!side.IsOne() || SaysWhere(map, column)) continue;
+    if (!side.IsOne() || SaysWhere(map, column) || std::ranges::count(beside, &column) > 0) continue;
     const auto angle = std::ranges::find_if(track.columns, [&](const Column& c) {
       return c.IsNumber() && SaysWhere(map, c) && SideOf(map, c) == side;
     });
-    parts.push_back({&column, angle == track.columns.end() ? nullptr : &*angle, side});
+    parts.push_back({&column, beside[static_cast<std::size_t>(&column - track.columns.data())], angle == track.columns.end() ? nullptr : &*angle, side});
   }
   return parts;
 }
@@ -115,13 +138,14 @@ class Stack {
       if (IsShared(column)) shared_.push_back({column.name, column.unit, {}, column.words});
     }
     value_ = {OwnNameOf(map, *parts.front().value, parts.front().side), UnitOfValues(parts.front()), {}, {}};
+    if (parts.front().beside) beside_ = {"y", parts.front().beside->unit, {}, {}};
     if (parts.front().angle) angle_ = {"angle", parts.front().angle->unit, {}, {}};
   }
 
   void Into(Track& track) {
     for (std::size_t k = 0; k < parts_.size(); ++k) Take(parts_[k], static_cast<double>(k));
     std::vector<Column> columns = std::move(shared_);
-    for (Column* column : {&angle_, &value_, &direction_, &run_, &clamping_, &offset_}) {
+    for (Column* column : {&angle_, &value_, &beside_, &direction_, &run_, &clamping_, &offset_}) {
       if (std::ranges::any_of(column->value, [](double x) { return std::isfinite(x); }))
         columns.push_back(std::move(*column));
     }
@@ -146,6 +170,7 @@ class Stack {
       }
       if (part.angle) angle_.value.push_back(part.angle->value[row]);
       value_.value.push_back(part.value->value[row]);
+      beside_.value.push_back(part.beside ? part.beside->value[row] : kNaN);
       direction_.value.push_back(part.side.turn == 0 ? kNaN : part.side.turn);
       run_.value.push_back(run);
       clamping_.value.push_back(part.side.clamping.number);
@@ -157,7 +182,7 @@ class Stack {
   const Track& track_;
   const std::vector<Part>& parts_;
   std::vector<Column> shared_;
-  Column angle_, value_, direction_{"direction", "", {}, {}}, run_{"run", "", {}, {}},
+  Column angle_, value_, beside_, direction_{"direction", "", {}, {}}, run_{"run", "", {}, {}},
       clamping_{"clamping", "", {}, {}}, offset_{"offset", "deg", {}, {}};
 };
 
