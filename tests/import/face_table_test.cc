@@ -113,6 +113,21 @@ TEST_F(FaceTable, MayAbbreviateTheWayBackAndSaysWhatItLeaves) {
   EXPECT_THAT(Take(text("Sollwinkel [°];Ablesung [″];Nullkontrolle [″];Kalibrierwert [″]\n")).story, HasSubstr("left out, for by its name nothing of this map is meant: \"Nullkontrolle\""));
 }
 
+/// Old instruments are read in seconds and mean those of arc.
+TEST_F(FaceTable, MayBeInSecondsOfArc) {
+  const Imported taken = Take("Angle,Reading forward (sec),Reading reverse (sec),Certified (sec)\n" + Faces(12, [](int face, double angle, double forward, double reverse) {
+                                return fmt::format("{:g},{:.4f},{:.4f},{:.4f}\n", angle, forward, reverse, Certified_arcsec(face - 1));
+                              }));
+  Expect(taken, 12);
+  EXPECT_THAT(taken.story, HasSubstr("\"Certified\" is no time: its \"sec\" is taken as arcsec"));
+  std::string logged = "time (sec),target (deg),error (sec),dwell (sec)\n";
+  for (int k = 0; k < 40; ++k) logged += fmt::format("{},{},{:.3f},0.5\n", k, 9 * k, 1.0 + 0.01 * k);
+  const Imported clocked = Take(logged);
+  EXPECT_THAT(clocked.story, HasSubstr("clock: time [s]"));
+  EXPECT_THAT(clocked.story, Not(HasSubstr("dwell\" is no time")));
+  EXPECT_NEAR((clocked.readings.back().measured_rad - clocked.readings.back().reference_rad) / units::arcsec, 1.39, 1e-6);
+}
+
 /// Of both axes, in columns of their own for each way: y is no second reading of x, and a certificate may say nothing but zeros.
 TEST_F(FaceTable, TakesTheSecondAxis) {
   std::string sides = "angle [deg],x forward [arcsec],Y forward [arcsec],x reverse [arcsec],Y reverse [arcsec],certified [arcsec]\n", plain = "angle [deg],x [arcsec],y [arcsec],certified [arcsec]\n";

@@ -9,6 +9,7 @@
 #include "twin/core/errors.h"
 #include "twin/import/gatherer.h"
 #include "twin/import/heading.h"
+#include "twin/import/seconds_of_arc.h"
 
 namespace twinbench::imports {
 namespace {
@@ -202,6 +203,7 @@ class TableReader {
     }
     JoinDateAndTime();
     TakeMoves();
+    TakeSecondsOfArc(track_, recording_.remarks);
     FindClock(clock_, recording_.file, track_);
     recording_.tracks.push_back(std::move(track_));
     gatherers_.clear();
