@@ -4,6 +4,7 @@
 #include "tests/import/importing.h"
 #include "twin/benches/evaluated.h"
 #include "twin/benches/registry.h"
+#include "twin/core/stream.h"
 #include "twin/separate/index_errors.h"
 
 // Tables of a certified polygon under an autocollimator: other names, orders, units and ways of saying the direction.
@@ -205,6 +206,30 @@ TEST_F(FaceTable, ReadOnceHasErrorsWithoutAnUncertainty) {
   const auto& turntable = evaluated.results.at("separation").at("turntable");
   EXPECT_FALSE(turntable.contains("u_ez_arcsec"));
   EXPECT_NEAR(turntable.at("ez_arcsec").at(2).get<double>(), 3.0, 0.01);
+}
+
+/// Somebody leant on the stone: of four readings of a place one is far off. Readings in steps of an arcsec that differ by one are not.
+TEST_F(FaceTable, LeavesASingleDisturbedReadingOut) {
+  for (const bool is_coarse : {false, true}) {
+    Stream noise(3, "autocollimator.noise");
+    std::string text = "position (deg),reading (arcsec),certified (arcsec),direction,run\n";
+    for (int run = 1; run < 3; ++run)
+      for (const int way : {1, -1})
+        for (int k = 0; k < 24; ++k) {
+          const double angle_deg = 15.0 * (way > 0 ? k : 23 - k), disturbed = !is_coarse && run == 2 && way > 0 && k == 18 ? 20.0 : 0.0;
+          const double shown = 30.0 * std::sin(angle_deg * units::deg) + (is_coarse ? 0.3 : 0.05) * noise.Normal() + disturbed;
+          text += fmt::format("{:g},{:.2f},0.00,{},{}\n", angle_deg, is_coarse ? std::round(shown) : shown, way > 0 ? "up" : "down", run);
+        }
+    const Imported taken = Take(text);
+    const auto evaluated = EvaluationOf(ParseScenario("bench = \"" + taken.bench + "\"\n", "faces.csv", "", taken.set), taken.readings, Estimator::kRigorous);
+    EXPECT_EQ(evaluated.summary.find("reading 66 is left out of the errors") != std::string::npos, !is_coarse) << evaluated.summary;
+    const auto& turntable = evaluated.results.at("separation").at("turntable");
+    for (std::size_t k = 0; k < 24; ++k) {
+      const double u_arcsec = turntable.at("u_ez_arcsec").at(k).get<double>();
+      EXPECT_LT(u_arcsec, is_coarse ? 0.6 : 0.15);
+      EXPECT_NEAR(turntable.at("ez_arcsec").at(k).get<double>(), 30.0 * std::sin(15.0 * static_cast<double>(k) * units::deg), is_coarse ? 0.6 : 0.15);
+    }
+  }
 }
 
 }  // namespace

@@ -218,6 +218,13 @@ std::string SizeText(const char* name, const ErrorSize& size) {
                      size.rms_rad / units::arcsec, size.count);
 }
 
+std::string ModelText(const HarmonicModel& model) {
+  const std::string orders = model.highest_order == 0   ? "no order: so few positions do not tell one from what is at each"
+                             : model.highest_order == 1 ? "order 1"
+                                                        : fmt::format("orders 1 to {}", model.highest_order);
+  return fmt::format("harmonic model          {}\n", orders);
+}
+
 std::string SummaryOf(const TurntableAnalysis& a) {
   std::string text = fmt::format("{} readings of the full circle", a.used);
   text += a.left_out > 0 ? fmt::format(", {} without numbers left out\n", a.left_out) : "\n";
@@ -226,7 +233,7 @@ std::string SummaryOf(const TurntableAnalysis& a) {
   if (!a.separation->multitooth.position_rad.empty()) {
     text += SizeText("multi-tooth table", separate::turntable::DescribeErrors(a.separation->multitooth.value_rad));
   }
-  if (a.model) text += fmt::format("harmonic model          orders 1 to {}\n", a.model->highest_order);
+  if (a.model) text += ModelText(*a.model);
   if (a.check) {
     text += SizeText("check, as read", a.check->before) + SizeText("check, less the model", a.check->after);
   }

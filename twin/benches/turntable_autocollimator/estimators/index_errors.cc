@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "twin/benches/turntable_autocollimator/estimators/one_axis.h"
 #include "twin/benches/turntable_autocollimator/estimators/polygon_analysis.h"
 #include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
@@ -66,8 +67,9 @@ IndexErrors TurntableIndexErrors(const Scenario& scenario, const std::vector<Rea
   const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, Estimator::kRigorous);
   if (!analysis.separation) throw InputError("readings", analysis.not_separated, "readings of a full-circle test");
   std::vector<IndexReading> values, tilts;
-  for (const Phase phase : {Phase::kFullCircle, Phase::kVerification}) {
-    for (const TurntableStop& stop : StopsOf(readings, scenario, phase)) {
+  for (const std::vector<TurntableStop>& stops : {analysis.stops, StopsOf(readings, scenario, Phase::kVerification)}) {
+    for (const TurntableStop& stop : stops) {
+      if (!std::isfinite(stop.x_rad)) continue;  // left out
       values.push_back({stop.setup, stop.turntable_rad,
                         Levelled_rad(analysis.separation->roll, stop) -
                             ToothError_rad(analysis.separation->multitooth, stop.multitooth_rad)});

@@ -8,9 +8,11 @@
 #include <set>
 
 #include "twin/benches/turntable_autocollimator/estimators/collimator_scale.h"
+#include "twin/benches/turntable_autocollimator/estimators/disturbed_stops.h"
 #include "twin/benches/turntable_autocollimator/estimators/one_axis.h"
 #include "twin/benches/turntable_autocollimator/estimators/tilt_squared.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
+#include "twin/core/units.h"
 
 namespace twinbench::separate::turntable {
 namespace {
@@ -19,6 +21,10 @@ TurntableStop StopOf(const Reading& r, const Scenario& scenario) {
   const Eigen::Vector2d mirror_rad =
       MirrorAngles_rad({r.autocollimator_yaw_rad, r.autocollimator_tilt_rad}, scenario);
   return {r.setup, r.pass, r.direction, r.target_rad, r.reference_rad, mirror_rad.x(), mirror_rad.y()};
+}
+
+bool IsStop(const Reading& r, Phase phase) {
+  return r.phase == phase && r.status == ReadingStatus::kOk;
 }
 
 struct SetUpPair {
@@ -70,6 +76,23 @@ void MakeHonest(double u_multitooth_rad, TurntableAnalysis& analysis) {
         "equation 5: INVALID at {} of {} positions, where the two tilts look alike", invalid, analysis.pointwise.size()));
 }
 
+/// One disturbed reading would shift its place by more than any uncertainty says, and widen that of all others.
+std::vector<std::string> LeaveOutDisturbed(const std::vector<Reading>& readings, const Scenario& scenario, TurntableAnalysis& analysis) {
+  std::vector<int> numbers;
+  for (const Reading& r : readings)
+    if (IsStop(r, Phase::kFullCircle)) numbers.push_back(r.reading);
+  const StopGrid grid = FindGrid(analysis.stops, TurntableOf(scenario).turntable_procedure.positions);
+  std::vector<std::string> notes;
+  for (const DisturbedStop& disturbed : DisturbedStops(analysis.stops, grid, TurntableOf(scenario).ReadingNoise_rad())) {
+    TurntableStop& stop = analysis.stops[disturbed.stop];
+    notes.push_back(fmt::format("reading {} is left out of the errors: {:.2f} arcsec at {:.6g} deg lies {:.3g} times the scatter from all others of its place",
+                                numbers[disturbed.stop], stop.x_rad / units::arcsec, stop.turntable_rad / units::deg, disturbed.times));
+    stop.x_rad = kNaN;
+    --analysis.used;
+  }
+  return notes;
+}
+
 /// What equation 5 gave, as a series that a model can be fitted to; without uncertainty.
 AngleSeries SeriesOf(const std::vector<PointwiseError>& pointwise) {
   AngleSeries series;
@@ -109,7 +132,7 @@ std::vector<TurntableStop> StopsOf(const std::vector<Reading>& readings, const S
   std::vector<TurntableStop> stops;
   std::vector<TiltReading> tilts;
   for (const Reading& reading : readings) {
-    if (reading.phase != phase || reading.status != ReadingStatus::kOk) continue;
+    if (!IsStop(reading, phase)) continue;
     const TurntableStop& stop = stops.emplace_back(StopOf(reading, scenario));
     tilts.push_back({stop.setup, 0, stop.turntable_rad, stop.y_rad});
   }
@@ -132,11 +155,13 @@ TurntableAnalysis AnalyseTurntable(const std::vector<Reading>& as_read, const Sc
     analysis.not_separated = "there are no usable full-circle readings";
     return analysis;
   }
+  const std::vector<std::string> disturbed = LeaveOutDisturbed(readings, scenario, analysis);
   const int positions = TurntableOf(scenario).turntable_procedure.positions;
   IndexingOptions options;
   options.positions = positions;
   options.u_multitooth_rad = TurntableOf(scenario).Tooth_rad();
   analysis.separation = SeparateIndexing(stops, options);
+  analysis.separation->notes.insert(analysis.separation->notes.end(), disturbed.begin(), disturbed.end());
   const StopGrid grid = FindGrid(stops, positions);
   if (const auto pair = PairForEquation5(grid, Collect(stops, grid)))
     analysis.pointwise = SolveEquation5(stops, pair->first, pair->second, analysis.separation->noise, positions);

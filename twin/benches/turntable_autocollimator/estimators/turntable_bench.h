@@ -21,7 +21,7 @@ struct TurntableAnalysis {
   Estimator estimator = Estimator::kRigorous;
   int used = 0;      // readings of the full circle
   int left_out = 0;  // readings of any phase without numbers
-  std::vector<TurntableStop> stops;  // of the full circle
+  std::vector<TurntableStop> stops;  // of the full circle; x of those that were disturbed is NaN
   std::optional<IndexingSeparation> separation;
   /// Equation 5 on two set-ups of equal shift; empty if there are none. With the teeth in its uncertainties, and
   /// without any near a pole: INVALID.
