@@ -6,6 +6,7 @@
 #include <array>
 
 #include "tests/import/importing.h"
+#include "twin/benches/evaluated.h"
 #include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/core/stream.h"
 
@@ -172,6 +173,17 @@ TEST_F(ClampingTable, RefusesOffsetsBetweenTheFaces) {
   std::string text = "nominal_deg,offset 0 deg [arcsec],offset 20 deg [arcsec],offset 72 deg [arcsec]\n";
   for (int k = 0; k < kFaces; ++k) text += fmt::format("{},{:.3f},{:.3f},{:.3f}\n", 36 * k, 0.1 * k, 0.2 * k, 0.1);
   EXPECT_THAT(MessageOf([&] { Take(text, "face_table"); }), HasSubstr("turned by 20 deg"));
+}
+
+/// Five positions are too few for a model of orders: it has none, and does not go from 1 to 0.
+TEST_F(ClampingTable, OfFewPositionsHasNoOrders) {
+  Stream noise(6, "autocollimator.noise");
+  std::string text = "table angle [deg],reading [arcsec],offset [deg]\n";
+  for (int c = 0; c < 3; ++c)
+    for (int k = 0; k < 5; ++k) text += fmt::format("{},{:.4f},{}\n", 72 * k, (k == 2 ? 3.0 : 0.0) + (k + c == 4 ? 1.0 : 0.0) + 0.02 * noise.Normal(), 72 * c);
+  const Imported taken = Take(text);
+  const auto evaluated = EvaluationOf(ParseScenario("bench = \"" + taken.bench + "\"\n", "faces.csv", "", taken.set), taken.readings, Estimator::kRigorous);
+  EXPECT_THAT(evaluated.summary, HasSubstr("harmonic model          no order")) << evaluated.summary;
 }
 
 /// The circle's last reading is its first place again, one face was not read, and clampings stand beside each

@@ -219,7 +219,7 @@ std::string SizeText(const char* name, const ErrorSize& size) {
 }
 
 std::string ModelText(const HarmonicModel& model) {
-  const std::string orders = model.highest_order == 0   ? "no order: so few positions do not tell one from what is at each"
+  const std::string orders = model.highest_order == 0   ? "no order: none stands out of what single positions have"
                              : model.highest_order == 1 ? "order 1"
                                                         : fmt::format("orders 1 to {}", model.highest_order);
   return fmt::format("harmonic model          {}\n", orders);
