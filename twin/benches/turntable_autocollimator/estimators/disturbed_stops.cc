@@ -19,7 +19,7 @@ constexpr std::size_t kFewestToJudge = 12;
 
 using Visits = std::vector<std::size_t>;  // grid stops of one place
 
-std::vector<Visits> PlacesOf(const StopGrid& grid) {
+std::vector<Visits> PlacesMetOften(const StopGrid& grid) {
   std::map<std::tuple<int, int, int>, Visits> places;
   for (std::size_t i = 0; i < grid.stops.size(); ++i) places[{grid.stops[i].setup, grid.stops[i].position, grid.stops[i].tooth}].push_back(i);
   std::vector<Visits> often;
@@ -66,7 +66,7 @@ void TakeOutPasses(const std::vector<TurntableStop>& stops, const StopGrid& grid
 }  // namespace
 
 std::vector<DisturbedStop> DisturbedStops(const std::vector<TurntableStop>& stops, const StopGrid& grid, double noise_rad) {
-  const std::vector<Visits> places = PlacesOf(grid);
+  const std::vector<Visits> places = PlacesMetOften(grid);
   std::vector<double> x_rad, sizes_rad;
   for (const GridStop& g : grid.stops) x_rad.push_back(stops[g.stop].x_rad);
   const double step_rad = Step_rad(places, x_rad);
