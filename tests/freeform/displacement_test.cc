@@ -9,7 +9,7 @@
 #include "tests/core/input_error.h"
 #include "twin/benches/evaluated.h"
 #include "twin/benches/freeform_five_axis/columns.h"
-#include "twin/benches/freeform_five_axis/estimators/displacement_fit.h"
+#include "twin/benches/freeform_five_axis/estimators/likely_sizes.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/registry.h"
 #include "twin/core/stream.h"
@@ -279,6 +279,60 @@ TEST(Displacements, FindTheLikelySizeOfBelievedTermsAsAnAnalysisOfVarianceDoes) 
   EXPECT_NEAR(std::log(size), 0.5 * std::log((of_between / of_within - 1.0) / kEach), std::log(1.25));
   EXPECT_EQ(estimators::LikelySize(mean, groups, 0.1 * between + within), 0.0)
       << "groups differ by less than their means scatter";
+}
+
+/// Means of cells, each told by its own four readings: a group's variance is the mean of their squares less what they
+/// scatter.
+TEST(Displacements, FindTheLikelySizesOfGroupsEachByItsOwnValues) {
+  constexpr int kCells = 7, kEach = 4;
+  const std::vector<int> groups = {0, 0, 1, 1, 2, 2};
+  const std::array<double, kCells - 1> values = {50.0, -30.0, 4.0, 6.0, 0.05, -0.1};
+  Eigen::MatrixXd cells = Eigen::MatrixXd::Zero(kCells * kEach, kCells);
+  Eigen::VectorXd shifts_um(kCells * kEach);
+  for (int i = 0; i < kCells * kEach; ++i) {
+    cells(i, i / kEach) = 1.0;
+    shifts_um[i] = (i / kEach > 0 ? values[static_cast<std::size_t>(i / kEach - 1)] : 0.0) + (i % 2 == 0 ? 1.0 : -1.0);
+  }
+  const Eigen::VectorXd sizes =
+      estimators::LikelySizes(cells.leftCols(1), cells.rightCols(kCells - 1), groups,
+                              Eigen::VectorXd{{0.0, 0.0, 0.0, 0.0, 0.5, 0.5}}, shifts_um);
+  const double noise2 = 1.0 * kCells * kEach / (kCells * kEach - 5);  // five means are free, two are held
+  const auto of = [noise2](double a, double b) { return std::sqrt((0.5 * (a * a + b * b) - noise2 / kEach) / noise2); };
+  EXPECT_NEAR(sizes[0] / of(50.0, 30.0), 1.0, 0.03);
+  EXPECT_NEAR(sizes[3] / of(4.0, 6.0), 1.0, 0.03);
+  EXPECT_DOUBLE_EQ(sizes[5], 0.5) << "no less than its least";
+}
+
+/// Over half a turn an order is nearly a sum of others and of a place of the axis: one that stands alone is neither
+/// stated of others nor of the axis' line beyond what the uncertainty says.
+TEST(Displacements, OverHalfATurnDoNotTakeOneOrderForOthersBeyondTheirUncertainty) {
+  double squares = 0.0, count = 0.0;
+  int seed = 0, seen = 0, alone = 0;
+  for (const char* only : {"EYB2c", "EYB2s", "EXB2c", "EZB1s", "EZB3c", "EYB1c"}) {
+    Machine m = {{{'B', 1.0, {250.0, -120.0, -400.0}}, {'C', 1.0, {0.0, 0.0, 0.0}}},
+                 {},
+                 {},
+                 {{"XOB", -5.0}, {"ZOB", 8.0}, {"AOB", 6.0}, {"COB", 4.0}, {"XOC", 9.0}, {"YOC", 12.0}, {"AOC", -7.0}, {"BOC", 10.0}}};
+    const Errors locations = m.errors;
+    m.errors[only] = 5.0;
+    const nlohmann::json results = ResultsOf(
+        Grid(m, {kBalls[0], kBalls[1]}, {{'B', Steps_deg(-90.0, 30.0, 7)}, {'C', Steps_deg(0.0, 20.0, 18)}}, true, 0.2, ++seed));
+    for (const auto& [name, value] : locations) {
+      const nlohmann::json& one = results.at("errors").at(name);
+      squares += std::pow((one.at("value").get<double>() - value) / one.at("u").get<double>(), 2);
+      count += 1.0;
+    }
+    for (const auto& [name, orders] : results.at("component_errors").items()) {
+      for (const auto& one : orders) {
+        if (!one.contains("amplitude") || one.at("amplitude") < 4.0 * one.at("u_amplitude").get<double>()) continue;
+        ++seen;
+        alone += name + std::to_string(one.at("order").get<int>()) == std::string(only, 4) ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_LT(squares / count, 1.5);
+  EXPECT_GE(alone, 3) << "what is clear is told";
+  EXPECT_EQ(alone, seen);
 }
 
 /// A circle, or four angles, do not tell errors of the second order from squareness: the readings show that there

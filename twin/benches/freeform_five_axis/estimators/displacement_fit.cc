@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <set>
 
+#include "twin/benches/freeform_five_axis/estimators/likely_sizes.h"
 #include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
 
@@ -55,18 +57,12 @@ ShiftDesign DesignOf(const DisplacementSettings& settings, const MachineChain& c
   return design;
 }
 
-struct ChosenTerm {
-  Index at = 0;
-  bool is_weak = false;  // most of what it does others do as well
-};
-
 /// Terms of which enough is done by none before them, by Gram and Schmidt: a fiftieth of a component, less of a
 /// location, for what is left of it would be taken by the others.
-std::vector<ChosenTerm> ChosenTerms(const MatrixXd& slopes, const std::vector<PoseTerm>& terms) {
-  constexpr double kMovesNothing_um = 1e-3, kOwn = 0.02, kOwnOfLocation = 2e-3,
-                   kWeak = 0.3;  // by one um or arcsec, rms; shares
+std::vector<Index> ChosenTerms(const MatrixXd& slopes, const std::vector<PoseTerm>& terms) {
+  constexpr double kMovesNothing_um = 1e-3, kOwn = 0.02, kOwnOfLocation = 2e-3;  // by one um or arcsec, rms; shares
   MatrixXd basis(slopes.rows(), 0);
-  std::vector<ChosenTerm> chosen;
+  std::vector<Index> chosen;
   for (Index k = 0; k < slopes.cols(); ++k) {
     const double norm = slopes.col(k).norm();
     if (!(norm > kMovesNothing_um * std::sqrt(static_cast<double>(slopes.rows()))) ||
@@ -76,7 +72,7 @@ std::vector<ChosenTerm> ChosenTerms(const MatrixXd& slopes, const std::vector<Po
     for (int twice = 0; twice < 2; ++twice) own -= (basis * (basis.transpose() * own)).eval();
     const bool is_component = terms[static_cast<std::size_t>(k)].kind == TermKind::kComponent;
     if (!(own.norm() > (is_component ? kOwn : kOwnOfLocation))) continue;
-    chosen.push_back({k, is_component && own.norm() < kWeak});
+    chosen.push_back(k);
     basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
     basis.col(basis.cols() - 1) = own.normalized();
   }
@@ -93,12 +89,12 @@ struct ShiftSolution {
   double Residual_um() const { return std::sqrt(squares_um2 / static_cast<double>(std::max<Index>(1, dof))); }
 };
 
+/// Degrees of freedom: values less those of the terms, of a believed one the part that the readings tell.
 /// @param believed, size  Terms whose values are thought to be about zero with this standard deviation, by the
 /// residual.
 ShiftSolution SolvedFor(const ShiftDesign& design, std::vector<Index> free, const std::vector<Index>& believed = {},
                         double size = 0.0) {
-  const Index rows = design.shifts_um.size(), first = std::ssize(free),
-              beliefs = size > 0.0 ? std::ssize(believed) : 0;
+  const Index rows = design.shifts_um.size(), beliefs = size > 0.0 ? std::ssize(believed) : 0;
   ShiftSolution solution{std::move(free), {}, {}};
   solution.of.insert(solution.of.end(), believed.begin(), believed.begin() + beliefs);
   MatrixXd slopes = MatrixXd::Zero(rows + beliefs, std::ssize(solution.of));
@@ -109,8 +105,9 @@ ShiftSolution SolvedFor(const ShiftDesign& design, std::vector<Index> free, cons
   const MatrixXd inverse = PseudoInverseOf(slopes);
   solution.values = inverse * shifts_um;
   solution.u = inverse.rowwise().norm();
-  solution.squares_um2 = (shifts_um - slopes * solution.values).squaredNorm();
-  solution.dof = rows - first;
+  solution.squares_um2 = (design.shifts_um - slopes.topRows(rows) * solution.values).squaredNorm();
+  const double told = inverse.leftCols(rows).cwiseProduct(slopes.topRows(rows).transpose()).sum();
+  solution.dof = rows - static_cast<Index>(std::lround(told));
   return solution;
 }
 
@@ -120,7 +117,7 @@ struct Tried {
   ChainAtPoses at;
   std::vector<PoseTerm> terms;
   ShiftDesign design;
-  std::vector<ChosenTerm> chosen;
+  std::vector<Index> chosen;
   ShiftSolution all;
   Index told = 0;  // terms; those behind them are beyond what the poses tell
 
@@ -146,9 +143,7 @@ struct Looked {
     if (static_cast<double>(tried.chosen.size()) >
         kMostUnknowns * static_cast<double>(tried.design.shifts_um.size()))
       return false;
-    std::vector<Index> chosen;
-    for (const ChosenTerm& term : tried.chosen) chosen.push_back(term.at);
-    tried.all = SolvedFor(tried.design, chosen);
+    tried.all = SolvedFor(tried.design, tried.chosen);
     return true;
   }
 };
@@ -236,9 +231,8 @@ VectorXd SizesOf(const Tried& tried, const std::vector<Index>& free, const std::
     std::vector<Index> beside = free, own;
     for (const Index k : components)
       if (term(k).name.back() == axis) own.push_back(k);
-    for (const ChosenTerm& chosen : tried.chosen)
-      if (term(chosen.at).kind == TermKind::kComponent && term(chosen.at).name.back() != axis)
-        beside.push_back(chosen.at);
+    for (const Index k : tried.chosen)
+      if (term(k).kind == TermKind::kComponent && term(k).name.back() != axis) beside.push_back(k);
     MatrixXd slopes = tried.design.slopes(Eigen::all, own);
     for (Index k = 0; k < slopes.cols(); ++k) slopes.col(k) /= term(own[static_cast<std::size_t>(k)]).order;
     const double size = LikelySize(tried.design.slopes(Eigen::all, beside), slopes, tried.design.shifts_um);
@@ -247,29 +241,39 @@ VectorXd SizesOf(const Tried& tried, const std::vector<Index>& free, const std::
   return sizes;
 }
 
-/// Locations are found with all components thought to be as large as the readings make likely, those too that the
-/// poses do not tell apart. Values of components of which others do most are those beside all, without that.
+/// A component at one order is a group: one that is large stands among many that are not.
+std::vector<int> GroupsOf(const Tried& tried, const std::vector<Index>& components) {
+  std::map<std::pair<std::string, int>, int> numbers;
+  std::vector<int> groups;
+  for (const Index k : components) {
+    const PoseTerm& term = tried.terms[static_cast<std::size_t>(k)];
+    groups.push_back(numbers.try_emplace({term.name, term.order}, static_cast<int>(numbers.size())).first->second);
+  }
+  return groups;
+}
+
+/// All components, those too that the poses do not tell apart, are thought to be as large as the readings make
+/// likely.
 void SetTerms(const Tried& tried, double least_u_um, DisplacementFit& fit) {
+  const auto is_component = [&tried](Index k) {
+    return tried.terms[static_cast<std::size_t>(k)].kind == TermKind::kComponent;
+  };
   std::vector<Index> free, components;
-  for (const ChosenTerm& term : tried.chosen)
-    if (tried.terms[static_cast<std::size_t>(term.at)].kind != TermKind::kComponent) free.push_back(term.at);
+  std::ranges::copy_if(tried.chosen, std::back_inserter(free), std::not_fn(is_component));
   for (Index k = 0; k < std::ssize(tried.terms); ++k)
-    if (tried.terms[static_cast<std::size_t>(k)].kind == TermKind::kComponent) components.push_back(k);
-  const VectorXd sizes = SizesOf(tried, free, components);
-  ShiftDesign by_size = tried.design;
-  for (const Index k : components) by_size.slopes.col(k) *= sizes[k];
-  std::erase_if(components, [&sizes](Index k) { return sizes[k] == 0.0; });
+    if (is_component(k)) components.push_back(k);
+  VectorXd sizes = VectorXd::Ones(std::ssize(tried.terms));
+  sizes(components) = LikelySizes(tried.design.slopes(Eigen::all, free), tried.design.slopes(Eigen::all, components),
+                                  GroupsOf(tried, components), SizesOf(tried, free, components)(components),
+                                  tried.design.shifts_um);
+  const ShiftDesign by_size{tried.design.slopes * sizes.asDiagonal(), tried.design.shifts_um};
   const ShiftSolution used = SolvedFor(by_size, free, components, 1.0);
   fit.dof = used.dof;
   fit.residual_um = used.Residual_um();
-  for (std::size_t k = 0; k < tried.chosen.size(); ++k) {
-    const auto own = std::ranges::find(used.of, tried.chosen[k].at);
-    const bool is_beside_all = tried.chosen[k].is_weak || own == used.of.end();
-    const ShiftSolution& by = is_beside_all ? tried.all : used;
-    const Index at = is_beside_all ? static_cast<Index>(k) : own - used.of.begin();
-    const PoseTerm& term = tried.terms[static_cast<std::size_t>(tried.chosen[k].at)];
-    const double unit = is_beside_all || term.kind != TermKind::kComponent ? 1.0 : sizes[tried.chosen[k].at];
-    fit.fitted.push_back({term, unit * by.values[at], unit * std::max(by.Residual_um(), least_u_um) * by.u[at]});
+  for (const Index k : tried.chosen) {
+    const Index at = std::ranges::find(used.of, k) - used.of.begin();
+    fit.fitted.push_back({tried.terms[static_cast<std::size_t>(k)], sizes[k] * used.values[at],
+                          sizes[k] * std::max(used.Residual_um(), least_u_um) * used.u[at]});
   }
   const MatrixXd slopes = tried.design.slopes(Eigen::all, tried.all.of);
   for (Index k = 0; k < tried.told; ++k) {
@@ -334,28 +338,6 @@ void RequireDisplacements(const std::vector<ShiftRead>& reads) {
 }
 
 }  // namespace
-
-double LikelySize(const MatrixXd& free, const MatrixXd& believed, const VectorXd& shifts_um) {
-  const auto rest = [inverse = PseudoInverseOf(free), &free](const auto& of) {
-    return (of - free * (inverse * of)).eval();
-  };
-  const MatrixXd own = rest(believed);
-  const double squares_um2 = rest(shifts_um).squaredNorm(), dof = static_cast<double>(free.rows() - free.cols());
-  if (believed.cols() == 0 || dof < 1.0) return 0.0;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(own.transpose() * own);
-  const VectorXd strength = parts.eigenvalues().cwiseMax(0.0);
-  const VectorXd shown2 = (parts.eigenvectors().transpose() * (own.transpose() * shifts_um)).cwiseAbs2();
-  double best = 0.0, most = -0.5 * dof * std::log(squares_um2);
-  for (double size = 1e-2; size < 1e4; size *= 1.25) {
-    const VectorXd with = 1.0 + size * size * strength.array();
-    const double left_um2 = squares_um2 - (size * size * shown2.array() / with.array()).sum();
-    const double likelihood = -0.5 * (dof * std::log(std::max(left_um2, 1e-300)) + with.array().log().sum());
-    if (likelihood <= most) continue;
-    most = likelihood;
-    best = size;
-  }
-  return best;
-}
 
 std::string WordsOf(const MachineChain& chain) {
   std::string words;

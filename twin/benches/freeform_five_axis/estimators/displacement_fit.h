@@ -39,13 +39,10 @@ struct DisplacementFit {
   double repeat_um = 0.0;     // standard deviation of readings of one pose; NaN: too few
 };
 
-/// How large values that are thought to be about zero are (standard deviation), in residuals: what is most likely
-/// by what the free terms leave (restricted likelihood), within a quarter; 0: none of them is needed.
-double LikelySize(const Eigen::MatrixXd& free, const Eigen::MatrixXd& believed, const Eigen::VectorXd& shifts_um);
-
 /// Weighted alike. A term is fitted if a fiftieth of what it does is done by none before it (pose_terms.h has the
 /// order). All components, those too that the poses do not tell, are believed to be as large as the readings make
-/// likely where the locations are found: nothing, or their part is in u. The highest orders are left out until the
+/// likely, those of an axis alike but for the order, or more at a single order that shows more: nothing, or their
+/// part is in u. The highest orders are left out until the
 /// unknowns are four for five values.
 ///
 /// Uncertainty: what is left over, first order. Not included: errors that are no terms, or whose part is less than
