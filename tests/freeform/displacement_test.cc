@@ -335,6 +335,47 @@ TEST(Displacements, OverHalfATurnDoNotTakeOneOrderForOthersBeyondTheirUncertaint
   EXPECT_EQ(alone, seen);
 }
 
+/// What has elapsed at a reading, from 0 to 1: by its time, or where there is none by its number.
+double ElapsedAt(std::size_t i, std::size_t readings, bool has_times) {
+  const double part = static_cast<double>(i) / static_cast<double>(readings - 1);
+  return has_times ? (part - std::max(0.0, 0.5 * (part - 0.5))) / 0.75 : part;
+}
+
+/// Z of the machine grows while it is measured, at once or evenly, with a clock that tells that the second half took half
+/// the time or without.
+TEST(Displacements, ThatDriftOverTheRunAreThoseOfTheFirstReading) {
+  constexpr double kDrift_um = 6.0;
+  for (const bool has_times : {false, true}) {
+    for (const bool is_even : {true, false}) {
+      const Machine m = TrunnionTable();
+      std::vector<Reading> readings = Grid(m, {kBalls[0], kBalls[1]}, kTilts, true, 0.2, is_even ? 1 : 2);
+      for (std::size_t i = 0; i < readings.size(); ++i) {
+        const double elapsed = ElapsedAt(i, readings.size(), has_times);
+        if (has_times) readings[i].time = Time{} + FromSeconds(600.0 * elapsed);
+        kShift_m[2](readings[i]) += kDrift_um * um * (is_even ? elapsed : elapsed * (2.0 - elapsed));
+      }
+      const report::Evaluation evaluation = EvaluationOf(Displacements(), readings, Estimator::kRigorous);
+      const nlohmann::json drift = evaluation.results.at("drift").at("z_um");
+      EXPECT_LT(drift.at("u"), 0.3);
+      EXPECT_NEAR(drift.at("value"), kDrift_um, 3.0 * drift.at("u").get<double>());
+      EXPECT_THAT(evaluation.summary, testing::HasSubstr("drift over the run: z "));
+      for (const auto& [name, value] : m.errors) {
+        const nlohmann::json& one = evaluation.results.at("errors").at(name);
+        EXPECT_NEAR(one.at("value"), value, 4.0 * one.at("u").get<double>()) << name;
+        EXPECT_LT(one.at("u"), 0.4) << name;
+      }
+    }
+  }
+}
+
+TEST(Displacements, HaveNoDriftWhereNoneIsSeen) {
+  constexpr int kRuns = 12;
+  int drifts = 0;
+  for (int seed = 1; seed <= kRuns; ++seed)
+    drifts += ResultsOf(Grid(TrunnionTable(), kBalls, kTilts, true, 0.3, seed)).contains("drift") ? 1 : 0;
+  EXPECT_LE(drifts, 2);
+}
+
 /// A circle, or four angles, do not tell errors of the second order from squareness: the readings show that there
 /// are some.
 TEST(Displacements, StateInTheirUncertaintyWhatComponentsThatTheyDoNotTellMayBe) {

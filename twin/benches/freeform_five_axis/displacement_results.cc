@@ -247,6 +247,25 @@ std::string NotObservableText(const Json& not_observable) {
                                      fmt::join(words, "; "));
 }
 
+Json DriftJson(const DisplacementFit& fit) {
+  Json all = Json::object();
+  for (const estimators::Drift& drift : fit.drift)
+    all[drift.along + "_um"] = {{"value", drift.over_run_um}, {"u", drift.u_um}};
+  return all;
+}
+
+/// Those that are sure enough to be said.
+std::string DriftText(const DisplacementFit& fit) {
+  constexpr double kSure_u = 3.0;
+  std::vector<std::string> words;
+  for (const estimators::Drift& drift : fit.drift)
+    if (std::abs(drift.over_run_um) > kSure_u * drift.u_um)
+      words.push_back(fmt::format("{} {:.3f} ± {:.2g} µm", drift.along, drift.over_run_um, drift.u_um));
+  if (fit.drift.empty()) return "";
+  return fmt::format("note: the readings drift over the run{}{}; errors are those at the first reading, with what the drift leaves open in u\n",
+                     words.empty() ? "" : ": ", fmt::join(words, ", "));
+}
+
 /// What the fit leaves by the stated noise, or by what readings of one pose scatter; neither is less than a file
 /// has digits.
 double LeftOverNoise(const DisplacementSettings& settings, const DisplacementFit& fit) {
@@ -293,8 +312,9 @@ report::Evaluation EvaluateDisplacements(const Scenario& scenario, const std::ve
   evaluation.results["machine"] = MachineJson(fit);
   evaluation.results["displaced_rms_um"] = fit.displaced_um;
   if (std::isfinite(fit.repeat_um)) evaluation.results["repeatability_um"] = fit.repeat_um;
+  if (!fit.drift.empty()) evaluation.results["drift"] = DriftJson(fit);
   evaluation.summary = MachineText(fit) + LocationsText(fit) + ComponentsText(fit) +
-                       NotObservableText(not_observable) + LeftText(fit, over_noise);
+                       DriftText(fit) + NotObservableText(not_observable) + LeftText(fit, over_noise);
   if (std::isfinite(over_noise)) {
     evaluation.results["residual_over_noise"] = over_noise;
     evaluation.misfits = {{"the fit of the displacements", over_noise}};

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <iterator>
 #include <map>
 #include <set>
 
@@ -83,6 +81,7 @@ std::vector<Index> ChosenTerms(const MatrixXd& slopes, const std::vector<PoseTer
 struct ShiftSolution {
   std::vector<Index> of;
   VectorXd values, u;  // u: of a residual of 1 um
+  MatrixXd inverse;    // from shifts, and beliefs, to values
   double squares_um2 = 0.0;
   Index dof = 0;
 
@@ -95,18 +94,18 @@ struct ShiftSolution {
 ShiftSolution SolvedFor(const ShiftDesign& design, std::vector<Index> free, const std::vector<Index>& believed = {},
                         double size = 0.0) {
   const Index rows = design.shifts_um.size(), beliefs = size > 0.0 ? std::ssize(believed) : 0;
-  ShiftSolution solution{std::move(free), {}, {}};
+  ShiftSolution solution{std::move(free), {}, {}, {}};
   solution.of.insert(solution.of.end(), believed.begin(), believed.begin() + beliefs);
   MatrixXd slopes = MatrixXd::Zero(rows + beliefs, std::ssize(solution.of));
   slopes.topRows(rows) = design.slopes(Eigen::all, solution.of);
   slopes.bottomRightCorner(beliefs, beliefs).diagonal().setConstant(1.0 / size);
   VectorXd shifts_um = VectorXd::Zero(rows + beliefs);
   shifts_um.head(rows) = design.shifts_um;
-  const MatrixXd inverse = PseudoInverseOf(slopes);
-  solution.values = inverse * shifts_um;
-  solution.u = inverse.rowwise().norm();
+  solution.inverse = PseudoInverseOf(slopes);
+  solution.values = solution.inverse * shifts_um;
+  solution.u = solution.inverse.rowwise().norm();
   solution.squares_um2 = (design.shifts_um - slopes.topRows(rows) * solution.values).squaredNorm();
-  const double told = inverse.leftCols(rows).cwiseProduct(slopes.topRows(rows).transpose()).sum();
+  const double told = solution.inverse.leftCols(rows).cwiseProduct(slopes.topRows(rows).transpose()).sum();
   solution.dof = rows - static_cast<Index>(std::lround(told));
   return solution;
 }
@@ -222,6 +221,28 @@ std::vector<std::size_t> Alike(const MatrixXd& fitted, const VectorXd& term) {
   return alike;
 }
 
+std::vector<Index> TermsOfKind(const Tried& tried, TermKind kind) {
+  std::vector<Index> of_kind;
+  for (Index k = 0; k < std::ssize(tried.terms); ++k)
+    if (tried.terms[static_cast<std::size_t>(k)].kind == kind) of_kind.push_back(k);
+  return of_kind;
+}
+
+/// What terms that fall by their order make.
+MatrixXd FallingSlopes(const Tried& tried, const std::vector<Index>& terms) {
+  MatrixXd slopes = tried.design.slopes(Eigen::all, terms);
+  for (Index k = 0; k < slopes.cols(); ++k)
+    slopes.col(k) /= tried.terms[static_cast<std::size_t>(terms[static_cast<std::size_t>(k)])].order;
+  return slopes;
+}
+
+/// How large drifts are beside all that is told; 0: none is seen.
+double SizeOfDrift(const Tried& tried, const std::vector<Index>& drifts) {
+  constexpr double kSurely = 2.0;  // by chance one run in fifty
+  return LikelySize(tried.design.slopes(Eigen::all, tried.chosen), FallingSlopes(tried, drifts), tried.design.shifts_um,
+                    kSurely);
+}
+
 /// How large components are, by residuals, those of each axis alike but for the order, by which they fall; beside
 /// those of the other axes that are told. Of others than components 0.
 VectorXd SizesOf(const Tried& tried, const std::vector<Index>& free, const std::vector<Index>& components) {
@@ -233,48 +254,82 @@ VectorXd SizesOf(const Tried& tried, const std::vector<Index>& free, const std::
       if (term(k).name.back() == axis) own.push_back(k);
     for (const Index k : tried.chosen)
       if (term(k).kind == TermKind::kComponent && term(k).name.back() != axis) beside.push_back(k);
-    MatrixXd slopes = tried.design.slopes(Eigen::all, own);
-    for (Index k = 0; k < slopes.cols(); ++k) slopes.col(k) /= term(own[static_cast<std::size_t>(k)]).order;
-    const double size = LikelySize(tried.design.slopes(Eigen::all, beside), slopes, tried.design.shifts_um);
+    const double size =
+        LikelySize(tried.design.slopes(Eigen::all, beside), FallingSlopes(tried, own), tried.design.shifts_um);
     for (const Index k : own) sizes[k] = size / term(k).order;
   }
   return sizes;
 }
 
 /// A component at one order is a group: one that is large stands among many that are not.
-std::vector<int> GroupsOf(const Tried& tried, const std::vector<Index>& components) {
+std::vector<int> GroupsOf(const Tried& tried, const std::vector<Index>& believed) {
   std::map<std::pair<std::string, int>, int> numbers;
   std::vector<int> groups;
-  for (const Index k : components) {
+  for (const Index k : believed) {
     const PoseTerm& term = tried.terms[static_cast<std::size_t>(k)];
     groups.push_back(numbers.try_emplace({term.name, term.order}, static_cast<int>(numbers.size())).first->second);
   }
   return groups;
 }
 
+/// What is taken as it comes, and what is thought to be about zero, with how large it may be.
+struct Beliefs {
+  std::vector<Index> free, believed;
+  VectorXd sizes;  // of all terms, in residuals; of free ones 1
+};
+
 /// All components, those too that the poses do not tell apart, are thought to be as large as the readings make
-/// likely.
+/// likely, and drifts where there are any.
+Beliefs BeliefsOf(const Tried& tried) {
+  Beliefs beliefs;
+  for (const Index k : tried.chosen)
+    if (tried.terms[static_cast<std::size_t>(k)].kind != TermKind::kComponent) beliefs.free.push_back(k);
+  beliefs.believed = TermsOfKind(tried, TermKind::kComponent);
+  const std::vector<Index> drifts = TermsOfKind(tried, TermKind::kDrift);
+  const double drift = SizeOfDrift(tried, drifts);
+  std::vector<Index> beside = beliefs.free;
+  if (drift > 0.0) beside.insert(beside.end(), drifts.begin(), drifts.end());
+  beliefs.sizes = SizesOf(tried, beside, beliefs.believed);
+  for (const Index k : drifts) beliefs.sizes[k] = drift / tried.terms[static_cast<std::size_t>(k)].order;
+  if (drift > 0.0) beliefs.believed.insert(beliefs.believed.end(), drifts.begin(), drifts.end());
+  const VectorXd own = LikelySizes(tried.design.slopes(Eigen::all, beliefs.free),
+                                   tried.design.slopes(Eigen::all, beliefs.believed), GroupsOf(tried, beliefs.believed),
+                                   beliefs.sizes(beliefs.believed), tried.design.shifts_um);
+  beliefs.sizes.setOnes();
+  beliefs.sizes(beliefs.believed) = own;
+  return beliefs;
+}
+
+/// From the first reading to the last.
+std::vector<Drift> DriftOf(const Tried& tried, const ShiftSolution& used, const VectorXd& sizes, double residual_um) {
+  std::map<std::string, VectorXd> weights;
+  for (Index at = 0; at < std::ssize(used.of); ++at) {
+    const Index k = used.of[static_cast<std::size_t>(at)];
+    const PoseTerm& term = tried.terms[static_cast<std::size_t>(k)];
+    if (term.kind != TermKind::kDrift) continue;
+    VectorXd& own = weights.try_emplace(term.name, VectorXd::Zero(used.values.size())).first->second;
+    const double over_run = 2.0 * (term.order % 2);  // of a Legendre polynomial
+    own[at] = over_run * sizes[k];
+  }
+  std::vector<Drift> drift;
+  for (const auto& [along, own] : weights)
+    drift.push_back({along, own.dot(used.values), residual_um * (own.transpose() * used.inverse).norm()});
+  return drift;
+}
+
 void SetTerms(const Tried& tried, double least_u_um, DisplacementFit& fit) {
-  const auto is_component = [&tried](Index k) {
-    return tried.terms[static_cast<std::size_t>(k)].kind == TermKind::kComponent;
-  };
-  std::vector<Index> free, components;
-  std::ranges::copy_if(tried.chosen, std::back_inserter(free), std::not_fn(is_component));
-  for (Index k = 0; k < std::ssize(tried.terms); ++k)
-    if (is_component(k)) components.push_back(k);
-  VectorXd sizes = VectorXd::Ones(std::ssize(tried.terms));
-  sizes(components) = LikelySizes(tried.design.slopes(Eigen::all, free), tried.design.slopes(Eigen::all, components),
-                                  GroupsOf(tried, components), SizesOf(tried, free, components)(components),
-                                  tried.design.shifts_um);
+  const auto& [free, believed, sizes] = BeliefsOf(tried);
   const ShiftDesign by_size{tried.design.slopes * sizes.asDiagonal(), tried.design.shifts_um};
-  const ShiftSolution used = SolvedFor(by_size, free, components, 1.0);
+  const ShiftSolution used = SolvedFor(by_size, free, believed, 1.0);
   fit.dof = used.dof;
   fit.residual_um = used.Residual_um();
+  const double by_um = std::max(fit.residual_um, least_u_um);
   for (const Index k : tried.chosen) {
     const Index at = std::ranges::find(used.of, k) - used.of.begin();
-    fit.fitted.push_back({tried.terms[static_cast<std::size_t>(k)], sizes[k] * used.values[at],
-                          sizes[k] * std::max(used.Residual_um(), least_u_um) * used.u[at]});
+    fit.fitted.push_back({tried.terms[static_cast<std::size_t>(k)], sizes[k] * used.values[at], sizes[k] * by_um * used.u[at]});
   }
+  fit.drift = DriftOf(tried, used, sizes, by_um);
+  for (Drift& drift : fit.drift) drift.over_run_um *= fit.from_tool ? 1.0 : -1.0;
   const MatrixXd slopes = tried.design.slopes(Eigen::all, tried.all.of);
   for (Index k = 0; k < tried.told; ++k) {
     if (std::ranges::binary_search(tried.all.of, k)) continue;

@@ -23,6 +23,12 @@ struct UntoldTerm {
   std::vector<std::size_t> looks_like{};  // of `fitted`; empty: it moves nothing
 };
 
+/// What the ball went along a machine axis between the first and the last reading, seen as the readings are.
+struct Drift {
+  std::string along;
+  double over_run_um = 0.0, u_um = 0.0;
+};
+
 struct DisplacementFit {
   MachineChain chain;
   bool on_workpiece = false;                // X, Y, Z are places of balls on it
@@ -32,6 +38,7 @@ struct DisplacementFit {
   int highest_order = 0;
   std::vector<FittedTerm> fitted{};
   std::vector<UntoldTerm> untold{};
+  std::vector<Drift> drift{};  // none: the readings show none
   std::vector<double> singular_values{};  // of all terms in unit columns, descending, the largest is 1
   Eigen::Index rank = 0, dof = 0;
   double residual_um = 0.0;   // rms per degree of freedom

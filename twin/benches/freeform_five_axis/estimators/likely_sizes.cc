@@ -52,7 +52,7 @@ class Squares {
 
 }  // namespace
 
-double LikelySize(const MatrixXd& free, const MatrixXd& believed, const VectorXd& shifts_um) {
+double LikelySize(const MatrixXd& free, const MatrixXd& believed, const VectorXd& shifts_um, double least_gain) {
   const auto rest = [inverse = PseudoInverseOf(free), &free](const auto& of) {
     return (of - free * (inverse * of)).eval();
   };
@@ -62,7 +62,7 @@ double LikelySize(const MatrixXd& free, const MatrixXd& believed, const VectorXd
   const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(own.transpose() * own);
   const VectorXd strength = parts.eigenvalues().cwiseMax(0.0);
   const VectorXd shown2 = (parts.eigenvectors().transpose() * (own.transpose() * shifts_um)).cwiseAbs2();
-  double best = 0.0, most = -0.5 * dof * std::log(squares_um2);
+  double best = 0.0, most = -0.5 * dof * std::log(squares_um2) + least_gain;
   for (double size = 1e-2; size < 1e4; size *= 1.25) {
     const VectorXd with = 1.0 + size * size * strength.array();
     const double left_um2 = squares_um2 - (size * size * shown2.array() / with.array()).sum();

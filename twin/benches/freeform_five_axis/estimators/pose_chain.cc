@@ -149,11 +149,22 @@ Vector3d LeverOf(const MachineChain& chain, const Turned& at, const Lengths& len
 PosePlace PlaceAt(const MachineChain& chain, const ShiftRead& read, const Lengths& lengths,
                   const Vector3d& ball_m) {
   const Turned at = TurnedAt(chain, read);
-  PosePlace place{read.ball, read.at_m, ball_m, at.table, at.head, {}};
+  PosePlace place{read.ball, read.at_m, ball_m, at.table, at.head, {}, read.elapsed};
   for (std::size_t k = 0; k < chain.stages.size(); ++k)
     place.stages.push_back(
         {at.before[k], LeverOf(chain, at, lengths, ball_m, k), read.turned_rad[chain.stages[k].axis]});
   return place;
+}
+
+/// From times to parts of the run.
+void SetElapsed(std::vector<ShiftRead>& reads) {
+  if (reads.empty()) return;
+  const auto [first, last] = std::ranges::minmax(reads, {}, &ShiftRead::elapsed);
+  const double begin = first.elapsed, end = last.elapsed, steps = std::max(1.0, static_cast<double>(reads.size()) - 1.0);
+  for (std::size_t i = 0; i < reads.size(); ++i) {
+    double& elapsed = reads[i].elapsed;
+    elapsed = 2.0 * (end > begin ? (elapsed - begin) / (end - begin) : static_cast<double>(i) / steps) - 1.0;
+  }
 }
 
 }  // namespace
@@ -166,8 +177,10 @@ std::vector<ShiftRead> ShiftsOf(const std::vector<Reading>& readings) {
                    {kCommanded[3](r), kCommanded[4](r), std::isfinite(c_rad) ? c_rad : 0.0},
                    {kShift_m[0](r), kShift_m[1](r), kShift_m[2](r)},
                    r.setup};
+    read.elapsed = ToSeconds(r.time);
     if (read.shift_m.array().isFinite().any()) reads.push_back(read);
   }
+  SetElapsed(reads);
   return reads;
 }
 

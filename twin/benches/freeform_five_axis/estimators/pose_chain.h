@@ -16,7 +16,8 @@ struct ShiftRead {
   Eigen::Vector3d at_m, turned_rad;  // X, Y, Z; A, B, C
   Eigen::Vector3d shift_m;           // NaN where a component was not read
   int setup = 0;
-  int ball = 0;  // see NumberBalls
+  int ball = 0;          // see NumberBalls
+  double elapsed = 0.0;  // of the run: from -1 to 1
 };
 
 /// One rotary axis: 0, 1, 2 for A, B, C.
@@ -49,6 +50,7 @@ struct PosePlace {
   Eigen::Vector3d ball_m;       // on the table, in its frame
   Eigen::Matrix3d table, head;  // turned, in machine axes
   std::vector<StageAt> stages;
+  double elapsed = 0.0;  // of the run: from -1 to 1
 };
 
 struct ChainAtPoses {
@@ -56,7 +58,8 @@ struct ChainAtPoses {
   double misfit_m = 0.0;  // of the commanded positions: what the chain leaves of them, rms
 };
 
-/// Readings of which at least one component was read.
+/// Readings of which at least one component was read. What has elapsed is by their times, or without these by how many
+/// there are.
 std::vector<ShiftRead> ShiftsOf(const std::vector<Reading>& readings);
 
 /// Readings of one ball share where it stands on the table: one a set-up, or one a place of a set-up.

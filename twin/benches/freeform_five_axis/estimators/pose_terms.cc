@@ -124,6 +124,19 @@ void AddLinear(const std::vector<PosePlace>& places, int order, std::vector<Pose
   }
 }
 
+/// Of the tool against the table, in machine axes.
+void AddDrift(std::vector<PoseTerm>& terms) {
+  constexpr int kHighest = 3;
+  for (int order = 1; order <= kHighest; ++order) {
+    for (int along = 0; along < 3; ++along)
+      terms.push_back({TermKind::kDrift, kOfSetUp[static_cast<std::size_t>(along)], "um", order, 0, false, false,
+                       [=](const PosePlace& place) -> Vector3d {
+                         return (Legendre(order, place.elapsed) - Legendre(order, -1.0)) * Vector3d::Unit(along);
+                       },
+                       true});
+  }
+}
+
 /// Orders of which an axis' angles are enough: two and more a period.
 int HighestOrderOf(const std::vector<PosePlace>& places, std::size_t stage) {
   std::set<long> angles;
@@ -149,6 +162,7 @@ void AddComponents(const MachineChain& chain, const std::vector<PosePlace>& plac
 std::string PoseTerm::Words() const {
   if (kind == TermKind::kMounting) return fmt::format("where ball {} stands ({})", ball, name);
   if (kind == TermKind::kTool) return fmt::format("the tool's point ({})", name);
+  if (kind == TermKind::kDrift) return fmt::format("a drift along {}", name);
   if (IsLocation()) return name;
   return order == 1 && is_of_linear ? name + " in proportion" : fmt::format("{} order {}", name, order);
 }
@@ -169,6 +183,7 @@ std::vector<PoseTerm> TermsOf(const MachineChain& chain, const std::vector<PoseP
   for (PoseTerm& term : terms)
     term.is_beyond |= term.kind == TermKind::kComponent && term.order > std::max(1, highest_order);
   std::ranges::stable_partition(terms, [](const PoseTerm& term) { return !term.is_beyond; });
+  AddDrift(terms);
   return terms;
 }
 

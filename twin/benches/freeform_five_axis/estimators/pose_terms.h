@@ -9,13 +9,13 @@
 /// ball and tool are set up.
 namespace twinbench::benches::freeform::estimators {
 
-enum class TermKind { kMounting, kTool, kLocation, kSquareness, kComponent };
+enum class TermKind { kMounting, kTool, kLocation, kSquareness, kComponent, kDrift };
 
 struct PoseTerm {
   TermKind kind = TermKind::kComponent;
-  std::string name;         // "XOC", "EXC"; of a mounting "x"
+  std::string name;         // "XOC", "EXC"; of a mounting and a drift "x"
   std::string unit = "um";  // um | arcsec | um_m
-  int order = 0;            // per turn, or of a polynomial of a linear axis
+  int order = 0;            // per turn, or of a polynomial of a linear axis or of what has elapsed
   int ball = 0;             // of a mounting
   bool is_sine = false;     // of a rotary axis' component; else its cosine
   bool is_of_linear = false;
@@ -30,7 +30,8 @@ struct PoseTerm {
 
 /// Those that poses may show, the ones that are taken first where two move the ball alike: set-up, locations,
 /// squareness, scales, components of rotary axes by rising order, translations before rotations, and of linear
-/// ones. Components of more than `highest_order`, up to `possible_order`, come last, beyond what the poses tell.
+/// ones. Components of more than `highest_order`, up to `possible_order`, come last, beyond what the poses tell, and
+/// drifts from the first reading on.
 /// @param is_rigid  What has one number as a ball is a body of many balls, whose place and turn are unknown.
 std::vector<PoseTerm> TermsOf(const MachineChain& chain, const std::vector<PosePlace>& places, int highest_order,
                               int possible_order, bool is_rigid);
