@@ -9,6 +9,7 @@
 #include "tests/core/input_error.h"
 #include "twin/benches/evaluated.h"
 #include "twin/benches/freeform_five_axis/columns.h"
+#include "twin/benches/freeform_five_axis/estimators/far_shifts.h"
 #include "twin/benches/freeform_five_axis/estimators/likely_sizes.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/registry.h"
@@ -374,6 +375,46 @@ TEST(Displacements, HaveNoDriftWhereNoneIsSeen) {
   for (int seed = 1; seed <= kRuns; ++seed)
     drifts += ResultsOf(Grid(TrunnionTable(), kBalls, kTilts, true, 0.3, seed)).contains("drift") ? 1 : 0;
   EXPECT_LE(drifts, 2);
+}
+
+/// About a mean: what lies far is measured from the mean of the others, and a third of all is no outlier.
+TEST(Displacements, FindSingleValuesFarFromTheFitOfAllOthers) {
+  constexpr int kRows = 60;
+  const Eigen::MatrixXd mean = Eigen::MatrixXd::Ones(kRows, 1);
+  const std::vector<int> kinds(kRows, 0);
+  Eigen::VectorXd shifts_um(kRows);
+  for (int i = 0; i < kRows; ++i) shifts_um[i] = i % 2 == 0 ? 1.0 : -1.0;
+  EXPECT_TRUE(estimators::FarRows(mean, shifts_um, kinds, 0.05).empty());
+  shifts_um[7] = 50.0;
+  const std::vector<estimators::FarRow> far = estimators::FarRows(mean, shifts_um, kinds, 0.05);
+  ASSERT_EQ(far.size(), 1U);
+  EXPECT_EQ(far[0].row, 7);
+  EXPECT_NEAR(far[0].off_um, 50.0 - 1.0 / (kRows - 1), 1e-9);
+  for (int i = 0; i < kRows; i += 3) shifts_um[i] = 50.0;
+  EXPECT_TRUE(estimators::FarRows(mean, shifts_um, kinds, 0.05).empty());
+}
+
+/// A tool that touched something, once: nothing but that value is lost, with a drift or without.
+TEST(Displacements, LeaveOutASingleValueThatNothingElseExplains) {
+  for (const double drift_um : {0.0, 6.0}) {
+    const Machine m = TrunnionTable();
+    std::vector<Reading> readings = Grid(m, {kBalls[0], kBalls[1]}, kTilts, true, 0.2, 3);
+    for (std::size_t i = 0; i < readings.size(); ++i)
+      kShift_m[2](readings[i]) += drift_um * um * static_cast<double>(i) / static_cast<double>(readings.size() - 1);
+    EXPECT_FALSE(ResultsOf(readings).contains("left_out"));
+    kShift_m[0](readings[40]) += 8.0 * um;
+    const report::Evaluation evaluation = EvaluationOf(Displacements(), readings, Estimator::kRigorous);
+    ASSERT_EQ(evaluation.results.at("left_out").size(), 1U);
+    EXPECT_EQ(evaluation.results.at("left_out")[0].at("reading"), 40);
+    EXPECT_EQ(evaluation.results.at("left_out")[0].at("column"), "dx_um");
+    EXPECT_NEAR(evaluation.results.at("left_out")[0].at("off_um"), 8.0, 1.0);
+    EXPECT_THAT(evaluation.summary, testing::HasSubstr("doubtful: dx_um of reading 40 (row 41; A "));
+    EXPECT_NEAR(evaluation.results.at("residual_rms").at("displacement_um"), 0.2, 0.04);
+    for (const auto& [name, value] : m.errors) {
+      const nlohmann::json& one = evaluation.results.at("errors").at(name);
+      EXPECT_NEAR(one.at("value"), value, 4.0 * one.at("u").get<double>()) << name;
+    }
+  }
 }
 
 /// A circle, or four angles, do not tell errors of the second order from squareness: the readings show that there

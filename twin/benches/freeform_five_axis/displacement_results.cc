@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/freeform_five_axis/estimators/displacement_fit.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/core/errors.h"
@@ -266,6 +267,31 @@ std::string DriftText(const DisplacementFit& fit) {
                      words.empty() ? "" : ": ", fmt::join(words, ", "));
 }
 
+Json LeftOutJson(const DisplacementFit& fit) {
+  Json all = Json::array();
+  for (const estimators::FarShift& far : fit.left_out)
+    all.push_back({{"reading", far.reading},
+                   {"column", kShift_m[static_cast<std::size_t>(far.component)].column},
+                   {"off_um", far.off_um},
+                   {"times_scatter", far.times}});
+  return all;
+}
+
+std::string LeftOutText(const DisplacementFit& fit) {
+  std::string text;
+  for (const estimators::FarShift& far : fit.left_out) {
+    std::vector<std::string> pose;
+    for (const auto& stage : fit.chain.stages)
+      pose.push_back(fmt::format("{} {:.6g} deg", stage.Letter(), far.turned_rad[stage.axis] / units::deg));
+    text += fmt::format(
+        "doubtful: {} of reading {} (row {}; {}) lies {:.3g} µm from the fit of all others, {:.2g} times their scatter: "
+        "left out\n",
+        kShift_m[static_cast<std::size_t>(far.component)].column, far.reading, far.reading + 1, fmt::join(pose, ", "),
+        far.off_um, far.times);
+  }
+  return text;
+}
+
 /// What the fit leaves by the stated noise, or by what readings of one pose scatter; neither is less than a file
 /// has digits.
 double LeftOverNoise(const DisplacementSettings& settings, const DisplacementFit& fit) {
@@ -312,9 +338,10 @@ report::Evaluation EvaluateDisplacements(const Scenario& scenario, const std::ve
   evaluation.results["machine"] = MachineJson(fit);
   evaluation.results["displaced_rms_um"] = fit.displaced_um;
   if (std::isfinite(fit.repeat_um)) evaluation.results["repeatability_um"] = fit.repeat_um;
+  if (!fit.left_out.empty()) evaluation.results["left_out"] = LeftOutJson(fit);
   if (!fit.drift.empty()) evaluation.results["drift"] = DriftJson(fit);
   evaluation.summary = MachineText(fit) + LocationsText(fit) + ComponentsText(fit) +
-                       DriftText(fit) + NotObservableText(not_observable) + LeftText(fit, over_noise);
+                       DriftText(fit) + LeftOutText(fit) + NotObservableText(not_observable) + LeftText(fit, over_noise);
   if (std::isfinite(over_noise)) {
     evaluation.results["residual_over_noise"] = over_noise;
     evaluation.misfits = {{"the fit of the displacements", over_noise}};

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
+#include "twin/benches/freeform_five_axis/estimators/far_shifts.h"
 #include "twin/benches/freeform_five_axis/estimators/likely_sizes.h"
 #include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
@@ -17,10 +19,17 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
+/// One of the displacements read: which reading, and x, y or z.
+struct ShiftAt {
+  std::size_t read = 0;
+  int component = 0;
+};
+
 /// Displacements one below the other, with what every term makes of them.
 struct ShiftDesign {
   MatrixXd slopes;
   VectorXd shifts_um;
+  std::vector<ShiftAt> of;
 };
 
 Eigen::Matrix3d AlongFrame(const std::string& frame, const PosePlace& place) {
@@ -37,7 +46,7 @@ ShiftDesign DesignOf(const DisplacementSettings& settings, const MachineChain& c
                      const std::vector<ShiftRead>& reads, const std::vector<PosePlace>& places,
                      const std::vector<PoseTerm>& terms) {
   const double sign = IsFromTool(settings, chain) ? 1.0 : -1.0;
-  ShiftDesign design{MatrixXd(3 * std::ssize(reads), std::ssize(terms)), VectorXd(3 * std::ssize(reads))};
+  ShiftDesign design{MatrixXd(3 * std::ssize(reads), std::ssize(terms)), VectorXd(3 * std::ssize(reads)), {}};
   Index rows = 0;
   for (std::size_t i = 0; i < reads.size(); ++i) {
     const Eigen::Matrix3d frame = AlongFrame(settings.frame, places[i]);
@@ -48,6 +57,7 @@ ShiftDesign DesignOf(const DisplacementSettings& settings, const MachineChain& c
       if (!std::isfinite(reads[i].shift_m[c])) continue;
       design.slopes.row(rows) = of_pose.row(c);
       design.shifts_um[rows++] = reads[i].shift_m[c] / units::um;
+      design.of.push_back({i, static_cast<int>(c)});
     }
   }
   design.slopes.conservativeResize(rows, Eigen::NoChange);
@@ -319,7 +329,7 @@ std::vector<Drift> DriftOf(const Tried& tried, const ShiftSolution& used, const 
 
 void SetTerms(const Tried& tried, double least_u_um, DisplacementFit& fit) {
   const auto& [free, believed, sizes] = BeliefsOf(tried);
-  const ShiftDesign by_size{tried.design.slopes * sizes.asDiagonal(), tried.design.shifts_um};
+  const ShiftDesign by_size{tried.design.slopes * sizes.asDiagonal(), tried.design.shifts_um, tried.design.of};
   const ShiftSolution used = SolvedFor(by_size, free, believed, 1.0);
   fit.dof = used.dof;
   fit.residual_um = used.Residual_um();
@@ -349,14 +359,38 @@ void SetSpectrum(const MatrixXd& slopes, DisplacementFit& fit) {
   fit.rank = std::ranges::count_if(fit.singular_values, [](double value) { return value > kNone; });
 }
 
+/// @return the highest order for which the readings are enough.
+int TryAll(const Looked& looked, Tried& tried) {
+  const bool has_places = std::ranges::any_of(looked.reads, [](const ShiftRead& read) { return !read.at_m.isZero(); });
+  // Without levers an axis that tilts is one that moves.
+  const int possible_order = has_places ? looked.settings.highest_order : 0;
+  int highest_order = possible_order;
+  while (!looked.Try(highest_order, possible_order, tried)) --highest_order;
+  return highest_order;
+}
+
+/// Of a chain that may not be the only one: whichever it is, errors of the machine are of many values.
+std::vector<FarShift> FarShiftsOf(const Looked& looked, Tried tried, std::vector<ShiftAt>& of) {
+  constexpr double kDigits_um = 0.05;
+  TryAll(looked, tried);
+  std::vector<Index> terms = tried.chosen;
+  std::ranges::copy(TermsOfKind(tried, TermKind::kDrift), std::back_inserter(terms));
+  std::vector<int> kinds;
+  for (const ShiftAt& at : tried.design.of) kinds.push_back(at.component);
+  std::vector<FarShift> far;
+  for (const FarRow& row : FarRows(tried.design.slopes(Eigen::all, terms), tried.design.shifts_um, kinds,
+                                   std::max(looked.settings.noise_m / units::um, kDigits_um))) {
+    of.push_back(tried.design.of[static_cast<std::size_t>(row.row)]);
+    const ShiftRead& read = looked.reads[of.back().read];
+    far.push_back({read.reading, of.back().component, read.turned_rad, row.off_um, row.times});
+  }
+  return far;
+}
+
 DisplacementFit FitOf(const Looked& looked, Tried& tried) {
   const std::vector<ShiftRead>& reads = looked.reads;
-  const bool has_places = std::ranges::any_of(reads, [](const ShiftRead& read) { return !read.at_m.isZero(); });
   DisplacementFit fit;
-  // Without levers an axis that tilts is one that moves.
-  fit.highest_order = has_places ? looked.settings.highest_order : 0;
-  const int possible_order = fit.highest_order;
-  while (!looked.Try(fit.highest_order, possible_order, tried)) --fit.highest_order;
+  fit.highest_order = TryAll(looked, tried);
   fit.chain = tried.chain;
   fit.on_workpiece = looked.on_workpiece;
   fit.from_tool = IsFromTool(looked.settings, tried.chain);
@@ -427,7 +461,12 @@ DisplacementFit FitDisplacements(const DisplacementSettings& settings, const std
   if (values < kFewest)
     throw InputError("readings", fmt::format("{} displacements were read", values),
                      fmt::format("at least {}", kFewest));
+  std::vector<ShiftAt> far;
+  const std::vector<FarShift> left_out = FarShiftsOf(looked, chains.front(), far);
+  for (const ShiftAt& at : far) reads[at.read].shift_m[at.component] = kNaN;
+  if (!far.empty()) chains = BestChains(looked);
   DisplacementFit fit = FitOf(looked, chains.front());
+  fit.left_out = left_out;
   for (std::size_t k = 1; k < chains.size(); ++k) CompareWith(FitOf(looked, chains[k]), fit);
   return fit;
 }

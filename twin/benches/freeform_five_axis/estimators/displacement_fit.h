@@ -29,6 +29,13 @@ struct Drift {
   double over_run_um = 0.0, u_um = 0.0;
 };
 
+/// A single value that lies far from the fit of all others.
+struct FarShift {
+  int reading = 0, component = 0;  // component: x, y, z
+  Eigen::Vector3d turned_rad;      // A, B, C
+  double off_um = 0.0, times = 0.0;  // times: the scatter of the others
+};
+
 struct DisplacementFit {
   MachineChain chain;
   bool on_workpiece = false;                // X, Y, Z are places of balls on it
@@ -39,6 +46,7 @@ struct DisplacementFit {
   std::vector<FittedTerm> fitted{};
   std::vector<UntoldTerm> untold{};
   std::vector<Drift> drift{};  // none: the readings show none
+  std::vector<FarShift> left_out{};
   std::vector<double> singular_values{};  // of all terms in unit columns, descending, the largest is 1
   Eigen::Index rank = 0, dof = 0;
   double residual_um = 0.0;   // rms per degree of freedom
@@ -51,6 +59,8 @@ struct DisplacementFit {
 /// likely, those of an axis alike but for the order, or more at a single order that shows more: nothing, or their
 /// part is in u. The highest orders are left out until the
 /// unknowns are four for five values.
+///
+/// A value that lies far from the fit of all others is left out.
 ///
 /// Uncertainty: what is left over, first order. Not included: errors that are no terms, or whose part is less than
 /// chance; that rotary axes are where the commanded positions say.

@@ -177,6 +177,7 @@ std::vector<ShiftRead> ShiftsOf(const std::vector<Reading>& readings) {
                    {kCommanded[3](r), kCommanded[4](r), std::isfinite(c_rad) ? c_rad : 0.0},
                    {kShift_m[0](r), kShift_m[1](r), kShift_m[2](r)},
                    r.setup};
+    read.reading = r.reading;
     read.elapsed = ToSeconds(r.time);
     if (read.shift_m.array().isFinite().any()) reads.push_back(read);
   }

@@ -17,6 +17,7 @@ struct ShiftRead {
   Eigen::Vector3d shift_m;           // NaN where a component was not read
   int setup = 0;
   int ball = 0;          // see NumberBalls
+  int reading = 0;       // its number
   double elapsed = 0.0;  // of the run: from -1 to 1
 };
 

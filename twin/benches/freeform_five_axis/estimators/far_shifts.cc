@@ -1,0 +1,79 @@
+#include "twin/benches/freeform_five_axis/estimators/far_shifts.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "twin/core/distributions.h"
+
+namespace twinbench::benches::freeform::estimators {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double kOwn = 0.05;  // of itself: less of a value is left to judge it by
+
+/// What a fit of some rows leaves of each.
+struct Left {
+  VectorXd deviations_um;  // all alike if the noise is; 0 where the others do not tell
+  VectorXd own;            // which part of a row's value the fit leaves to it
+  Index dof = 0;
+};
+
+Left LeftOf(const MatrixXd& slopes, const VectorXd& shifts_um) {
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(slopes);
+  const MatrixXd basis = qr.householderQ() * MatrixXd::Identity(slopes.rows(), qr.rank());
+  Left left;
+  left.dof = slopes.rows() - qr.rank();
+  left.own = (1.0 - basis.rowwise().squaredNorm().array()).matrix();
+  const VectorXd residuals_um = shifts_um - basis * (basis.transpose() * shifts_um);
+  left.deviations_um = (left.own.array() > kOwn).select(residuals_um.array() / left.own.array().max(kOwn).sqrt(), 0.0);
+  return left;
+}
+
+/// Standard deviation of each kind, by the median: what few far ones do not raise.
+std::map<int, double> ScatterOf(const Left& left, const std::vector<int>& kinds, double least_um) {
+  constexpr double kNormal = 1.4826;
+  std::map<int, std::vector<double>> sizes_um;
+  for (Index i = 0; i < left.own.size(); ++i)
+    if (left.own[i] > kOwn) sizes_um[kinds[static_cast<std::size_t>(i)]].push_back(std::abs(left.deviations_um[i]));
+  std::map<int, double> scatter_um;
+  for (auto& [kind, all_um] : sizes_um) scatter_um[kind] = std::max(kNormal * Median(std::move(all_um)), least_um);
+  return scatter_um;
+}
+
+}  // namespace
+
+std::vector<FarRow> FarRows(const MatrixXd& slopes, const VectorXd& shifts_um, const std::vector<int>& kinds,
+                            double least_scatter_um) {
+  constexpr double kFar = 6.0, kMost = 0.02;  // scatters; of all rows
+  constexpr Index kFewestDof = 20;
+  const std::size_t most = std::max<std::size_t>(3, static_cast<std::size_t>(kMost * static_cast<double>(kinds.size())));
+  std::vector<Index> rows(kinds.size());
+  std::iota(rows.begin(), rows.end(), Index{0});
+  std::vector<FarRow> far;
+  while (far.size() <= most) {
+    std::vector<int> own_kinds;
+    for (const Index row : rows) own_kinds.push_back(kinds[static_cast<std::size_t>(row)]);
+    const Left left = LeftOf(slopes(rows, Eigen::all), shifts_um(rows));
+    if (left.dof < kFewestDof) return {};
+    const std::map<int, double> scatter_um = ScatterOf(left, own_kinds, least_scatter_um);
+    FarRow worst;
+    Index at = 0;
+    for (Index i = 0; i < std::ssize(rows); ++i) {
+      if (!(left.own[i] > kOwn)) continue;
+      const double times = std::abs(left.deviations_um[i]) / scatter_um.at(own_kinds[static_cast<std::size_t>(i)]);
+      if (times <= worst.times) continue;
+      worst = {rows[static_cast<std::size_t>(i)], left.deviations_um[i] / std::sqrt(left.own[i]), times};
+      at = i;
+    }
+    if (worst.times < kFar) return far;
+    far.push_back(worst);
+    rows.erase(rows.begin() + at);
+  }
+  return {};
+}
+
+}  // namespace twinbench::benches::freeform::estimators
