@@ -5,6 +5,7 @@
 #include <random>
 
 #include "twin/benches/rotary_4dof/columns.h"
+#include "twin/benches/rotary_4dof/estimators/far_readings.h"
 #include "twin/benches/rotary_4dof/estimators/probe_separation.h"
 #include "twin/benches/rotary_4dof/estimators/standing_orders.h"
 #include "twin/core/units.h"
@@ -184,6 +185,41 @@ TEST(ProbeMotion, KeepsOrdersThatStandOutOfNoise) {
   EXPECT_GT(of_points_um, 1.68) << "what this is good for";
   const ErrorMotion one = OfTurns(Eigen::VectorXd::LinSpaced(8, 0.0, 5.0), Eigen::RowVectorXd::Random(8));
   EXPECT_EQ(OfStandingOrders(one).contour, one.contour) << "of one turn no noise is known";
+}
+
+/// A chip below a probe in one turn is no motion of the axis; a scratch of the artefact comes round in every turn, and in a
+/// single one nothing tells the two apart.
+TEST(ProbeMotion, IsNotOfAReadingThatOneTurnHasAndNoOther) {
+  constexpr std::size_t kChip = 250;
+  const Quantity column = ProbeRadial_m(0);
+  const auto with_scratch = [&column](int turns) {
+    std::vector<Reading> readings = Made({{0.0}, turns, 120, 0.02}, Artefact_um);
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      readings[i].reading = static_cast<int>(i);
+      if (i % 120 == 60) column(readings[i]) += 5.0 * um;
+    }
+    return readings;
+  };
+  std::vector<Reading> scratched = with_scratch(4), once = with_scratch(1);
+  EXPECT_TRUE(ReplaceFar({column}, scratched).empty());
+  EXPECT_TRUE(ReplaceFar({column}, once).empty());
+  std::vector<Reading> chipped = scratched;
+  column(chipped[kChip]) += 5.0 * um;
+  const std::vector<FarReading> far = ReplaceFar({column}, chipped);
+  ASSERT_EQ(far.size(), 1U);
+  EXPECT_EQ(far[0].reading, static_cast<int>(kChip));
+  EXPECT_NEAR(far[0].off / um, 5.0, 0.1);
+  EXPECT_NEAR(column(chipped[kChip]) / um, column(scratched[kChip]) / um, 0.1);
+}
+
+/// Readings of one turn are lost: the turns on both sides stay.
+TEST(ProbeMotion, SaysHowManyTurnsHaveGaps) {
+  std::vector<Reading> readings = Made({{0.0}, 5, 120, 0.0}, Artefact_um);
+  readings.erase(readings.begin() + 290, readings.begin() + 296);
+  const std::vector<ProbeTurns> turns = TurnsOf(readings, {ProbeRadial_m(0)});
+  ASSERT_EQ(turns.size(), 1U);
+  EXPECT_EQ(turns[0].Turns(), 4);
+  EXPECT_EQ(turns[0].incomplete, 1);
 }
 
 }  // namespace

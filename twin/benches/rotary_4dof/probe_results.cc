@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/rotary_4dof/columns.h"
+#include "twin/benches/rotary_4dof/estimators/far_readings.h"
 #include "twin/benches/rotary_4dof/estimators/probe_separation.h"
 #include "twin/benches/rotary_4dof/estimators/standing_orders.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -21,9 +22,11 @@ using report::DirectedMotion;
 using separate::ErrorMotion;
 using separate::OfTurns;
 using separate::PlotCentre;
+using separate::rotary::FarReading;
 using separate::rotary::OfStandingOrders;
 using separate::rotary::ProbeTurns;
 using separate::rotary::RadialMotion;
+using separate::rotary::ReplaceFar;
 using separate::rotary::SeparateRadial;
 using separate::rotary::TurnsOf;
 
@@ -101,6 +104,8 @@ std::vector<std::string> NotesOf(const RadialMotion& radial, const ProbeTurns& f
     notes.push_back(
         "readings lay at other angles from turn to turn: values are linear between two of them, which lowers what "
         "varies from one to the next");
+  if (first.incomplete > 0)
+    notes.push_back(fmt::format("of {} whole turns more than two readings in a row are missing: they are left out", first.incomplete));
   if (first.Turns() < 2) notes.push_back("one turn: there is no asynchronous motion, and no uncertainty");
   return notes;
 }
@@ -129,10 +134,33 @@ nlohmann::json EccentricityJson(const ProbeTurns& m, const std::vector<std::size
   return json;
 }
 
+/// Of readings that were replaced.
+nlohmann::json LeftOutJson(const std::vector<FarReading>& far) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const FarReading& one : far)
+    all.push_back({{"reading", one.reading}, {"column", one.column}, {"times_scatter", one.times}});
+  return all;
+}
+
+std::string LeftOutText(const std::vector<FarReading>& far) {
+  std::string text;
+  for (const FarReading& one : far) {
+    const bool is_angle = one.column.ends_with("arcsec");
+    text += fmt::format(
+        "doubtful: {} of reading {} (row {}; {:.6g} deg) lies {:.3g} {} from the curve through its neighbours, {:.2g} "
+        "times the scatter of the others, and no other turn does: left out\n",
+        one.column, one.reading, one.reading + 1, one.target_rad / units::deg,
+        one.off / (is_angle ? units::arcsec : units::um), is_angle ? "arcsec" : "µm", one.times);
+  }
+  return text;
+}
+
 }  // namespace
 
-report::Evaluation EvaluateProbes(const Scenario& scenario, const std::vector<Reading>& readings) {
+report::Evaluation EvaluateProbes(const Scenario& scenario, const std::vector<Reading>& all_readings) {
   const ProbeSettings& probes = RotaryOf(scenario).probes;
+  std::vector<Reading> readings = all_readings;
+  const std::vector<FarReading> left_out = ReplaceFar(AllColumns(), readings);
   const std::vector<ProbeTurns> mountings = TurnsOf(readings, AllColumns());
   report::Evaluation evaluation;
   evaluation.results = {{"instrument", "probes"}, {"readings", readings.size()}, {"not_separated", kOneAxis}};
@@ -172,6 +200,8 @@ report::Evaluation EvaluateProbes(const Scenario& scenario, const std::vector<Re
   }
   if (radial.separated_by.empty() && !radial_at.empty())
     evaluation.summary += fmt::format("note: {}\n", kArtefactInIt);
+  if (!left_out.empty()) evaluation.results["left_out"] = LeftOutJson(left_out);
+  evaluation.summary += LeftOutText(left_out);
   for (const std::string& note : notes) evaluation.summary += fmt::format("note: {}\n", note);
   return evaluation;
 }

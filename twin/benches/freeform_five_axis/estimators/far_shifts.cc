@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double kOwn = 0.05;  // of itself: less of a value is left to judge it by
+constexpr double kOwnShare = 0.05;  // of itself: less of a value is left to judge it by
 
 /// What a fit of some rows leaves of each.
 struct Left {
@@ -29,7 +29,7 @@ Left LeftOf(const MatrixXd& slopes, const VectorXd& shifts_um) {
   left.dof = slopes.rows() - qr.rank();
   left.own = (1.0 - basis.rowwise().squaredNorm().array()).matrix();
   const VectorXd residuals_um = shifts_um - basis * (basis.transpose() * shifts_um);
-  left.deviations_um = (left.own.array() > kOwn).select(residuals_um.array() / left.own.array().max(kOwn).sqrt(), 0.0);
+  left.deviations_um = (left.own.array() > kOwnShare).select(residuals_um.array() / left.own.array().max(kOwnShare).sqrt(), 0.0);
   return left;
 }
 
@@ -38,7 +38,7 @@ std::map<int, double> ScatterOf(const Left& left, const std::vector<int>& kinds,
   constexpr double kNormal = 1.4826;
   std::map<int, std::vector<double>> sizes_um;
   for (Index i = 0; i < left.own.size(); ++i)
-    if (left.own[i] > kOwn) sizes_um[kinds[static_cast<std::size_t>(i)]].push_back(std::abs(left.deviations_um[i]));
+    if (left.own[i] > kOwnShare) sizes_um[kinds[static_cast<std::size_t>(i)]].push_back(std::abs(left.deviations_um[i]));
   std::map<int, double> scatter_um;
   for (auto& [kind, all_um] : sizes_um) scatter_um[kind] = std::max(kNormal * Median(std::move(all_um)), least_um);
   return scatter_um;
@@ -63,7 +63,7 @@ std::vector<FarRow> FarRows(const MatrixXd& slopes, const VectorXd& shifts_um, c
     FarRow worst;
     Index at = 0;
     for (Index i = 0; i < std::ssize(rows); ++i) {
-      if (!(left.own[i] > kOwn)) continue;
+      if (!(left.own[i] > kOwnShare)) continue;
       const double times = std::abs(left.deviations_um[i]) / scatter_um.at(own_kinds[static_cast<std::size_t>(i)]);
       if (times <= worst.times) continue;
       worst = {rows[static_cast<std::size_t>(i)], left.deviations_um[i] / std::sqrt(left.own[i]), times};

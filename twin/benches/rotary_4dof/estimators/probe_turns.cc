@@ -76,6 +76,7 @@ class Taker {
  private:
   void TakeTurn(const Course& course, long from) {
     const Eigen::Index n = turns_.angle_rad.size();
+    bool is_taken = false;
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       Eigen::RowVectorXd turn(n);
       bool is_between = false;
@@ -85,11 +86,13 @@ class Taker {
             course, columns_[c], turns_.angle_rad[0] + static_cast<double>(at) * step_rad_, step_rad_, is_between);
       }
       if (!turn.allFinite()) continue;
+      is_taken = true;
       turns_.is_interpolated |= is_between;
       Eigen::MatrixXd& shown = turns_.shown[c];
       shown.conservativeResize(shown.rows() + 1, n);
       shown.bottomRows(1) = turn;
     }
+    if (!is_taken) ++turns_.incomplete;
   }
 
   ProbeTurns& turns_;

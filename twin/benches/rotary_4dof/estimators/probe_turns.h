@@ -16,6 +16,7 @@ struct ProbeTurns {
   Eigen::VectorXd angle_rad;           // n, evenly spaced over a turn, in the laboratory's sense
   std::vector<Eigen::MatrixXd> shown;  // by column asked for: turns x n; empty: that column has no numbers
   bool is_interpolated = false;        // readings lay at other angles: linearly between two of them
+  int incomplete = 0;                  // turns with a gap in all columns, which are left out
   int Turns() const;
 };
 
