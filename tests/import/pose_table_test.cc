@@ -93,6 +93,17 @@ TEST_F(PoseTable, MayHaveWhereAProbeMeasuredTheBall) {
                  })));
 }
 
+/// Nominal and measured X, Y, Z beside a rotary axis are nothing else, though no unit is said.
+TEST_F(PoseTable, OfNominalAndMeasuredPlacesNeedsNoUnits) {
+  const Imported taken =
+      Take(Table("touch probe on a sphere\nsphere,nominal X,nominal Y,nominal Z,A,C,measured X,measured Y,measured Z\n", [](const Pose& p) {
+        return fmt::format("{},{:.6f},{:.6f},{:.6f},{},{},{:.8f},{:.8f},{:.8f}\n", p.ball, p.x_mm, p.y_mm, p.z_mm, p.a_deg, p.c_deg,
+                           p.x_mm + p.dx_um / 1e3, p.y_mm + p.dy_um / 1e3, p.z_mm + p.dz_um / 1e3);
+      }));
+  Expect(taken);
+  EXPECT_THAT(taken.story, HasSubstr("the unit of \"measured X\" is not said and taken as mm"));
+}
+
 TEST_F(PoseTable, SaysThatItsBallIsNowhere) {
   const Imported taken = Take(Table("C [deg],dX [um],dY [um]\n", [](const Pose& p) {
     return fmt::format("{},{},{}\n", p.c_deg, p.dx_um, p.dy_um);

@@ -188,6 +188,18 @@ TEST_F(SpindleProbe, HasTheAnglesInTheNamesOfItsProbes) {
   EXPECT_THAT(stated.set, testing::Contains("probes.angles_deg=[5, 100, 213]"));
 }
 
+/// One length that stays small while the angle goes round is a runout; one that goes on is a screw's.
+TEST_F(SpindleProbe, MayBeAlone) {
+  for (const char* names : {"Winkel [°];Weg [µm]", "spindle angle [deg];runout [um]", "angle_deg;axial_um"}) {
+    std::string text = std::string(names) + "\n";
+    for (int k = 0; k < 216; ++k) text += fmt::format("{};{:.4f}\n", (5 * k) % 360, 3.0 * std::cos(10.0 * k * units::deg));
+    EXPECT_THAT(Take(text).story, HasSubstr("taken as --map spindle_probe")) << names;
+  }
+  std::string screw = "angle [deg];x [mm]\n";
+  for (int k = 0; k < 216; ++k) screw += fmt::format("{};{:.5f}\n", 5 * k, 5 * k / 72.0);
+  EXPECT_THAT(Take(screw).story, Not(HasSubstr("spindle_probe")));
+}
+
 /// Without units nothing is guessed, and what the names look like is said.
 TEST_F(SpindleProbe, WithoutUnitsIsNamed) {
   std::string text = "theta,p1,p2\n";

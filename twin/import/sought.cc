@@ -271,8 +271,9 @@ std::vector<std::string> NamesIn(const std::string& list) {
 }
 
 /// The most columns by which a track is of the map's kind; 0: it is not.
-/// @param by_names  Whether columns need no units.
+/// @param by_names  Whether columns need no units, as many of them do not anyway.
 std::size_t ColumnsOfKind(const Track& own, const Map& map, bool by_names) {
+  constexpr std::size_t kSayEnough = 6;  // names that are all there are of nothing else
   if (map.guess_clock == "none" && own.HasClock()) return 0;
   Track track = own;
   TakeAnglesOfProbes(track);
@@ -282,7 +283,11 @@ std::size_t ColumnsOfKind(const Track& own, const Map& map, bool by_names) {
   std::size_t most = 0;
   for (const std::string& list : map.guess_by) {
     const std::vector<std::string> names = NamesIn(list);
-    if (std::ranges::all_of(names, [&](const std::string& name) { return by_names ? seeker.HasColumn(name) : seeker.HasSurely(name, names.size() == 2); })) most = std::max(most, names.size());
+    const bool needs_no_units = by_names || names.size() >= kSayEnough;
+    if (std::ranges::all_of(names, [&](const std::string& name) {
+          return needs_no_units ? seeker.HasColumn(name) : seeker.HasSurely(name, names.size() == 2);
+        }))
+      most = std::max(most, names.size());
   }
   return map.guess_only.empty() || most == 0 || seeker.GivesANumber(map.guess_only) ? most : 0;
 }

@@ -13,7 +13,8 @@ namespace twinbench::imports {
 /// The ready map of whose kind a file is by how its text begins. Nothing: none.
 std::optional<Map> ReadyMapByBegin(const std::string& text);
 
-/// The ready map of whose kind a file is: guessed by its columns, all with a unit that says what they are; of several the one that knows
+/// The ready map of whose kind a file is: guessed by its columns, with a unit that says what they are where
+/// they are few; of several the one that knows
 /// most of them. Nothing: none.
 std::optional<Map> ReadyMapOf(const Recording& recording);
 
