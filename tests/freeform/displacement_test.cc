@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "tests/core/input_error.h"
 #include "twin/benches/evaluated.h"
@@ -296,7 +297,8 @@ TEST(Displacements, FindTheLikelySizesOfGroupsEachByItsOwnValues) {
   }
   const Eigen::VectorXd sizes =
       estimators::LikelySizes(cells.leftCols(1), cells.rightCols(kCells - 1), groups,
-                              Eigen::VectorXd{{0.0, 0.0, 0.0, 0.0, 0.5, 0.5}}, shifts_um);
+                              Eigen::VectorXd{{0.0, 0.0, 0.0, 0.0, 0.5, 0.5}}, shifts_um)
+          .sizes;
   const double noise2 = 1.0 * kCells * kEach / (kCells * kEach - 5);  // five means are free, two are held
   const auto of = [noise2](double a, double b) { return std::sqrt((0.5 * (a * a + b * b) - noise2 / kEach) / noise2); };
   EXPECT_NEAR(sizes[0] / of(50.0, 30.0), 1.0, 0.03);
@@ -382,16 +384,18 @@ TEST(Displacements, FindSingleValuesFarFromTheFitOfAllOthers) {
   constexpr int kRows = 60;
   const Eigen::MatrixXd mean = Eigen::MatrixXd::Ones(kRows, 1);
   const std::vector<int> kinds(kRows, 0);
+  std::vector<int> readings(kRows);
+  std::iota(readings.begin(), readings.end(), 0);
   Eigen::VectorXd shifts_um(kRows);
   for (int i = 0; i < kRows; ++i) shifts_um[i] = i % 2 == 0 ? 1.0 : -1.0;
-  EXPECT_TRUE(estimators::FarRows(mean, shifts_um, kinds, 0.05).empty());
+  EXPECT_TRUE(estimators::FarRows(mean, shifts_um, kinds, readings, 0.05).empty());
   shifts_um[7] = 50.0;
-  const std::vector<estimators::FarRow> far = estimators::FarRows(mean, shifts_um, kinds, 0.05);
+  const std::vector<estimators::FarRow> far = estimators::FarRows(mean, shifts_um, kinds, readings, 0.05);
   ASSERT_EQ(far.size(), 1U);
   EXPECT_EQ(far[0].row, 7);
   EXPECT_NEAR(far[0].off_um, 50.0 - 1.0 / (kRows - 1), 1e-9);
   for (int i = 0; i < kRows; i += 3) shifts_um[i] = 50.0;
-  EXPECT_TRUE(estimators::FarRows(mean, shifts_um, kinds, 0.05).empty());
+  EXPECT_TRUE(estimators::FarRows(mean, shifts_um, kinds, readings, 0.05).empty());
 }
 
 /// A tool that touched something, once: nothing but that value is lost, with a drift or without.

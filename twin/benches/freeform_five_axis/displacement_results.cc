@@ -263,8 +263,10 @@ std::string DriftText(const DisplacementFit& fit) {
     if (std::abs(drift.over_run_um) > kSure_u * drift.u_um)
       words.push_back(fmt::format("{} {:.3f} ± {:.2g} µm", drift.along, drift.over_run_um, drift.u_um));
   if (fit.drift.empty()) return "";
-  return fmt::format("note: the readings drift over the run{}{}; errors are those at the first reading, with what the drift leaves open in u\n",
-                     words.empty() ? "" : ": ", fmt::join(words, ", "));
+  return fmt::format(
+      "note: the readings {} over the run{}{}; errors are those at the first reading, with what the drift leaves open in "
+      "u\n",
+      words.empty() ? "may drift" : "drift", words.empty() ? "" : ": ", fmt::join(words, ", "));
 }
 
 Json LeftOutJson(const DisplacementFit& fit) {

@@ -246,13 +246,6 @@ MatrixXd FallingSlopes(const Tried& tried, const std::vector<Index>& terms) {
   return slopes;
 }
 
-/// How large drifts are beside all that is told; 0: none is seen.
-double SizeOfDrift(const Tried& tried, const std::vector<Index>& drifts) {
-  constexpr double kSurely = 2.0;  // by chance one run in fifty
-  return LikelySize(tried.design.slopes(Eigen::all, tried.chosen), FallingSlopes(tried, drifts), tried.design.shifts_um,
-                    kSurely);
-}
-
 /// How large components are, by residuals, those of each axis alike but for the order, by which they fall; beside
 /// those of the other axes that are told. Of others than components 0.
 VectorXd SizesOf(const Tried& tried, const std::vector<Index>& free, const std::vector<Index>& components) {
@@ -286,28 +279,45 @@ std::vector<int> GroupsOf(const Tried& tried, const std::vector<Index>& believed
 struct Beliefs {
   std::vector<Index> free, believed;
   VectorXd sizes;  // of all terms, in residuals; of free ones 1
+  double log_likelihood = 0.0;
 };
 
 /// All components, those too that the poses do not tell apart, are thought to be as large as the readings make
-/// likely, and drifts where there are any.
-Beliefs BeliefsOf(const Tried& tried) {
+/// likely, and drifts if there are any.
+Beliefs BeliefsOf(const Tried& tried, bool has_drift) {
   Beliefs beliefs;
   for (const Index k : tried.chosen)
     if (tried.terms[static_cast<std::size_t>(k)].kind != TermKind::kComponent) beliefs.free.push_back(k);
   beliefs.believed = TermsOfKind(tried, TermKind::kComponent);
-  const std::vector<Index> drifts = TermsOfKind(tried, TermKind::kDrift);
-  const double drift = SizeOfDrift(tried, drifts);
+  const std::vector<Index> drifts = has_drift ? TermsOfKind(tried, TermKind::kDrift) : std::vector<Index>();
   std::vector<Index> beside = beliefs.free;
-  if (drift > 0.0) beside.insert(beside.end(), drifts.begin(), drifts.end());
+  beside.insert(beside.end(), drifts.begin(), drifts.end());
   beliefs.sizes = SizesOf(tried, beside, beliefs.believed);
+  const double drift = LikelySize(tried.design.slopes(Eigen::all, tried.chosen), FallingSlopes(tried, drifts), tried.design.shifts_um);
   for (const Index k : drifts) beliefs.sizes[k] = drift / tried.terms[static_cast<std::size_t>(k)].order;
-  if (drift > 0.0) beliefs.believed.insert(beliefs.believed.end(), drifts.begin(), drifts.end());
-  const VectorXd own = LikelySizes(tried.design.slopes(Eigen::all, beliefs.free),
-                                   tried.design.slopes(Eigen::all, beliefs.believed), GroupsOf(tried, beliefs.believed),
-                                   beliefs.sizes(beliefs.believed), tried.design.shifts_um);
+  beliefs.believed.insert(beliefs.believed.end(), drifts.begin(), drifts.end());
+  const auto [own, log_likelihood] = LikelySizes(
+      tried.design.slopes(Eigen::all, beliefs.free), tried.design.slopes(Eigen::all, beliefs.believed),
+      GroupsOf(tried, beliefs.believed), beliefs.sizes(beliefs.believed), tried.design.shifts_um);
+  beliefs.log_likelihood = log_likelihood;
   beliefs.sizes.setOnes();
   beliefs.sizes(beliefs.believed) = own;
   return beliefs;
+}
+
+/// Whether there is what a drift does and no error that is told.
+bool ShowsDrift(const Tried& tried) {
+  constexpr double kSurely = 2.0;  // by chance one run in fifty
+  return LikelySize(tried.design.slopes(Eigen::all, tried.chosen), FallingSlopes(tried, TermsOfKind(tried, TermKind::kDrift)),
+                    tried.design.shifts_um, kSurely) > 0.0;
+}
+
+/// With a drift if the readings are clearly likelier so; far more where errors of the machine may do the same.
+Beliefs LikelierBeliefs(const Tried& tried) {
+  constexpr double kClearly = 3.0, kThoughErrorsMay = 30.0;
+  Beliefs without = BeliefsOf(tried, false), with = BeliefsOf(tried, true);
+  const double gain = with.log_likelihood - without.log_likelihood;
+  return gain > (ShowsDrift(tried) ? kClearly : kThoughErrorsMay) ? with : without;
 }
 
 /// From the first reading to the last.
@@ -328,7 +338,7 @@ std::vector<Drift> DriftOf(const Tried& tried, const ShiftSolution& used, const 
 }
 
 void SetTerms(const Tried& tried, double least_u_um, DisplacementFit& fit) {
-  const auto& [free, believed, sizes] = BeliefsOf(tried);
+  const auto [free, believed, sizes, log_likelihood] = LikelierBeliefs(tried);
   const ShiftDesign by_size{tried.design.slopes * sizes.asDiagonal(), tried.design.shifts_um, tried.design.of};
   const ShiftSolution used = SolvedFor(by_size, free, believed, 1.0);
   fit.dof = used.dof;
@@ -375,10 +385,13 @@ std::vector<FarShift> FarShiftsOf(const Looked& looked, Tried tried, std::vector
   TryAll(looked, tried);
   std::vector<Index> terms = tried.chosen;
   std::ranges::copy(TermsOfKind(tried, TermKind::kDrift), std::back_inserter(terms));
-  std::vector<int> kinds;
-  for (const ShiftAt& at : tried.design.of) kinds.push_back(at.component);
+  std::vector<int> kinds, readings;
+  for (const ShiftAt& at : tried.design.of) {
+    kinds.push_back(at.component);
+    readings.push_back(static_cast<int>(at.read));
+  }
   std::vector<FarShift> far;
-  for (const FarRow& row : FarRows(tried.design.slopes(Eigen::all, terms), tried.design.shifts_um, kinds,
+  for (const FarRow& row : FarRows(tried.design.slopes(Eigen::all, terms), tried.design.shifts_um, kinds, readings,
                                    std::max(looked.settings.noise_m / units::um, kDigits_um))) {
     of.push_back(tried.design.of[static_cast<std::size_t>(row.row)]);
     const ShiftRead& read = looked.reads[of.back().read];
@@ -463,7 +476,7 @@ DisplacementFit FitDisplacements(const DisplacementSettings& settings, const std
                      fmt::format("at least {}", kFewest));
   std::vector<ShiftAt> far;
   const std::vector<FarShift> left_out = FarShiftsOf(looked, chains.front(), far);
-  for (const ShiftAt& at : far) reads[at.read].shift_m[at.component] = kNaN;
+  for (const ShiftAt& at : far) reads[at.read].shift_m.setConstant(kNaN);
   if (!far.empty()) chains = BestChains(looked);
   DisplacementFit fit = FitOf(looked, chains.front());
   fit.left_out = left_out;

@@ -29,7 +29,7 @@ struct Drift {
   double over_run_um = 0.0, u_um = 0.0;
 };
 
-/// A single value that lies far from the fit of all others.
+/// A reading of which a value lies far from the fit of all others.
 struct FarShift {
   int reading = 0, component = 0;  // component: x, y, z
   Eigen::Vector3d turned_rad;      // A, B, C
@@ -60,7 +60,7 @@ struct DisplacementFit {
 /// part is in u. The highest orders are left out until the
 /// unknowns are four for five values.
 ///
-/// A value that lies far from the fit of all others is left out.
+/// A reading of which a value lies far from the fit of all others is left out.
 ///
 /// Uncertainty: what is left over, first order. Not included: errors that are no terms, or whose part is less than
 /// chance; that rotary axes are where the commanded positions say.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "twin/core/distributions.h"
 
@@ -47,10 +48,11 @@ std::map<int, double> ScatterOf(const Left& left, const std::vector<int>& kinds,
 }  // namespace
 
 std::vector<FarRow> FarRows(const MatrixXd& slopes, const VectorXd& shifts_um, const std::vector<int>& kinds,
-                            double least_scatter_um) {
-  constexpr double kFar = 6.0, kMost = 0.02;  // scatters; of all rows
+                            const std::vector<int>& readings, double least_scatter_um) {
+  constexpr double kFar = 6.0, kMost = 0.02;  // scatters; of all readings
   constexpr Index kFewestDof = 20;
-  const std::size_t most = std::max<std::size_t>(3, static_cast<std::size_t>(kMost * static_cast<double>(kinds.size())));
+  const double all = static_cast<double>(std::set<int>(readings.begin(), readings.end()).size());
+  const std::size_t most = std::max<std::size_t>(1, static_cast<std::size_t>(kMost * all));
   std::vector<Index> rows(kinds.size());
   std::iota(rows.begin(), rows.end(), Index{0});
   std::vector<FarRow> far;
@@ -61,17 +63,17 @@ std::vector<FarRow> FarRows(const MatrixXd& slopes, const VectorXd& shifts_um, c
     if (left.dof < kFewestDof) return {};
     const std::map<int, double> scatter_um = ScatterOf(left, own_kinds, least_scatter_um);
     FarRow worst;
-    Index at = 0;
     for (Index i = 0; i < std::ssize(rows); ++i) {
       if (!(left.own[i] > kOwnShare)) continue;
       const double times = std::abs(left.deviations_um[i]) / scatter_um.at(own_kinds[static_cast<std::size_t>(i)]);
       if (times <= worst.times) continue;
       worst = {rows[static_cast<std::size_t>(i)], left.deviations_um[i] / std::sqrt(left.own[i]), times};
-      at = i;
     }
     if (worst.times < kFar) return far;
     far.push_back(worst);
-    rows.erase(rows.begin() + at);
+    std::erase_if(rows, [&](Index row) {
+      return readings[static_cast<std::size_t>(row)] == readings[static_cast<std::size_t>(worst.row)];
+    });
   }
   return {};
 }

@@ -1,5 +1,6 @@
 #include "twin/benches/freeform_five_axis/estimators/likely_sizes.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -13,7 +14,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double kLeastSize = 1e-3, kMostSize = 1e5;  // in residuals: nothing, and what no belief holds
-constexpr double kLeastTold = 1e-6;
+constexpr double kLeastTold = 1e-6, kDigits = 1e-13;  // parts
 
 /// Believed values with sizes.
 struct Believed {
@@ -34,13 +35,21 @@ class Squares {
   }
 
   Believed With(const VectorXd& sizes) const {
-    constexpr double kDigits = 1e-13;
     MatrixXd normal = normal_;
     normal.diagonal().tail(believed_) += sizes.cwiseAbs2().cwiseInverse();
     const auto [values, inverse] = SolveNormal(normal, shown_);
     const VectorXd told = 1.0 - inverse.diagonal().tail(believed_).array() / sizes.array().square();
     const double left_um2 = squares_um2_ - 2.0 * shown_.dot(values) + values.dot(normal_ * values);
     return {values.tail(believed_), told, std::max(left_um2, kDigits * squares_um2_) / std::max(1.0, dof_ - told.sum())};
+  }
+
+  double LogLikelihood(const VectorXd& sizes) const {
+    MatrixXd normal = normal_;
+    normal.diagonal().tail(believed_) += sizes.cwiseAbs2().cwiseInverse();
+    const Eigen::LLT<MatrixXd> factor(normal);
+    const double left_um2 = squares_um2_ - shown_.dot(factor.solve(shown_));
+    const double volume = factor.matrixLLT().diagonal().array().log().sum() + sizes.array().log().sum();
+    return -0.5 * dof_ * std::log(std::max(left_um2, kDigits * squares_um2_)) - volume;
   }
 
  private:
@@ -53,7 +62,7 @@ class Squares {
 }  // namespace
 
 double LikelySize(const MatrixXd& free, const MatrixXd& believed, const VectorXd& shifts_um, double least_gain) {
-  const auto rest = [inverse = PseudoInverseOf(free), &free](const auto& of) {
+  const auto rest = [inverse = GeneralInverseOf(free), &free](const auto& of) {
     return (of - free * (inverse * of)).eval();
   };
   const MatrixXd own = rest(believed);
@@ -74,7 +83,7 @@ double LikelySize(const MatrixXd& free, const MatrixXd& believed, const VectorXd
   return best;
 }
 
-VectorXd LikelySizes(const MatrixXd& free, const MatrixXd& believed, const std::vector<int>& groups, const VectorXd& least,
+LikelySizesFound LikelySizes(const MatrixXd& free, const MatrixXd& believed, const std::vector<int>& groups, const VectorXd& least,
                      const VectorXd& shifts_um) {
   constexpr int kRounds = 40;
   const Squares squares(free, believed, shifts_um);
@@ -93,7 +102,7 @@ VectorXd LikelySizes(const MatrixXd& free, const MatrixXd& believed, const std::
       sizes[k] = std::max(least[k], std::clamp(own, kLeastSize, kMostSize));
     }
   }
-  return sizes;
+  return {sizes, squares.LogLikelihood(sizes)};
 }
 
 }  // namespace twinbench::benches::freeform::estimators

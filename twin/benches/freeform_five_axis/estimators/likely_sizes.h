@@ -12,12 +12,17 @@ namespace twinbench::benches::freeform::estimators {
 double LikelySize(const Eigen::MatrixXd& free, const Eigen::MatrixXd& believed, const Eigen::VectorXd& shifts_um,
                   double least_gain = 0.0);
 
+struct LikelySizesFound {
+  Eigen::VectorXd sizes;
+  double log_likelihood = 0.0;  // restricted, but for what is the same of all beliefs about the same readings
+};
+
 /// The same of groups at once, for one of many values may be far larger than the others: sizes of all columns, none
 /// below its least one. By MacKay's fixed point: the squares of a group's values by how many of them the readings
 /// tell.
 /// @param groups  Of each believed column.
-Eigen::VectorXd LikelySizes(const Eigen::MatrixXd& free, const Eigen::MatrixXd& believed,
-                            const std::vector<int>& groups, const Eigen::VectorXd& least,
-                            const Eigen::VectorXd& shifts_um);
+LikelySizesFound LikelySizes(const Eigen::MatrixXd& free, const Eigen::MatrixXd& believed,
+                             const std::vector<int>& groups, const Eigen::VectorXd& least,
+                             const Eigen::VectorXd& shifts_um);
 
 }  // namespace twinbench::benches::freeform::estimators
