@@ -21,6 +21,10 @@ namespace {
 using diagnose::TwinComparison;
 using AngleOf = std::function<double(const Reading&)>;
 
+/// Errors of the table are large for the hob, by the gearbox's ratio: they bend its waves by some degrees, and by which of
+/// the two angles a wave is a pure one no drive and no ring is good enough to tell.
+constexpr double kOneWave = 0.99;
+
 /// Of the table's rotation and of the hob's, as their encoders show them.
 struct Angles {
   AngleOf table_rad;  // counted from the table's origin
@@ -235,6 +239,7 @@ TwinComparison Comparison(const std::vector<Reading>& readings, const Scenario& 
   comparison.most_causes = 6;
   if (!HasClock(readings)) comparison.unrecorded = {"latency"};
   comparison.bends = true;
+  comparison.one_wave = kOneWave;
   comparison.next_measurement = NextMeasurement;
   return comparison;
 }

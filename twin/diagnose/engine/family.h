@@ -91,6 +91,8 @@ struct Family {
   /// Describes a fitted member of an unknown family in the grammar of docs/diagnosis.md.
   std::function<std::string(int grid_point, const Eigen::VectorXd& amplitudes)> describe;
 
+  /// A cause that is a wave of a whole order.
+  bool IsWholeOrder() const { return kind == Kind::kNamed && !at && amplitudes.front().name == "cosine"; }
   Eigen::MatrixXd ColumnsAt(int grid_point) const {
     return base ? base->Columns(grid_point) * map : columns(grid_point);
   }

@@ -8,6 +8,7 @@
 #include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/engine/holding.h"
 #include "twin/diagnose/engine/overtones.h"
+#include "twin/diagnose/engine/refine.h"
 #include "twin/diagnose/engine/take_best.h"
 #include "twin/diagnose/tuning.h"
 
@@ -41,15 +42,10 @@ bool IsRounding(const SearchProblem& problem, const Deflation& others, const Ter
   return sigma * std::sqrt(power / problem.run.Rows()) < largest;
 }
 
-/// A cause that is a wave of a whole order.
-bool IsWholeOrder(const Family& family) {
-  return family.kind == Kind::kNamed && !family.at && family.amplitudes.front().name == "cosine";
-}
-
 bool HasRoom(const SearchProblem& problem, const std::vector<Term>& terms, const Term& more) {
   const auto count = std::ssize(terms);
   const auto is_order = [&](const Term& term) {
-    return IsWholeOrder(problem.scanner.Families()[static_cast<std::size_t>(term.family)]);
+    return problem.scanner.Families()[static_cast<std::size_t>(term.family)].IsWholeOrder();
   };
   return count < problem.extent.most_causes ||
          (count < problem.extent.most_orders && is_order(more) && std::ranges::all_of(terms, is_order));

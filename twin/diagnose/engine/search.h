@@ -44,6 +44,8 @@ struct SearchExtent {
   /// as much the one that has a name. As long as much is not explained, shapes without one follow parts of it. Nothing is
   /// selected again.
   bool largest_only = false;
+  /// Likeness of what two waves of whole orders show from which on they are one; 1: only where they are exactly that.
+  double one_wave = 1.0;
 };
 
 /// Finds simultaneous causes: scan, take the most probable, refine its shape, scan what

@@ -7,6 +7,7 @@
 #include "twin/core/errors.h"
 #include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/engine/holding.h"
+#include "twin/diagnose/engine/one_wave.h"
 #include "twin/diagnose/engine/prior.h"
 #include "twin/diagnose/engine/refine.h"
 #include "twin/diagnose/engine/repeats.h"
@@ -45,10 +46,8 @@ void RefineLeaders(const SearchProblem& problem, const Deflation& others, const 
 }
 
 /// A shape without a name that a cause of the catalogue has exactly is no better than that cause but by chance: by
-/// the grids that the two are sought on. It is as much less likely than the cause as what looks so and is not
-/// listed.
+/// the grids that the two are sought on.
 void HoldBehindTheSame(const SearchProblem& problem, Eigen::VectorXd& logs) {
-  const double behind = std::log((1.0 - tuning::kListed) / tuning::kListed);
   const auto& families = problem.scanner.Families();
   for (int k = 0; k < std::ssize(families); ++k) {
     const Family& unnamed = families[static_cast<std::size_t>(k)];
@@ -58,7 +57,7 @@ void HoldBehindTheSame(const SearchProblem& problem, Eigen::VectorXd& logs) {
       const Family& family = families[static_cast<std::size_t>(other)];
       if (problem.IsTheSame(unnamed, family)) most = std::max(most, logs[other]);
     }
-    if (most > kNever) logs[k] = std::min(logs[k], most + behind);
+    if (most > kNever) logs[k] = std::min(logs[k], most + kBehindTheSame);
   }
 }
 
@@ -159,7 +158,10 @@ Term TakeBest(const SearchProblem& problem, const Deflation& others, Evidence& e
   std::map<int, Eigen::VectorXd> shapes;
   Term term;
   term.statistic = statistic();  // as calibrated: without refinement
-  if (term.statistic >= problem.threshold) RefineLeaders(problem, others, data, evidence, shapes);
+  if (term.statistic >= problem.threshold) {
+    RefineLeaders(problem, others, data, evidence, shapes);
+    LevelOneWave(problem, others, data, shapes, evidence);
+  }
   // A name that does not hold leaves its probability to the others.
   std::map<int, double> of_unknown_size;
   for (;;) {

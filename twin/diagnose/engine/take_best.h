@@ -1,14 +1,19 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "twin/diagnose/engine/search.h"
+#include "twin/diagnose/tuning.h"
 
 /// One step of the search: what explains most beside what has been found.
 namespace twinbench::diagnose {
 
 inline constexpr double kNever = -1e300;  // log prior
+/// Log odds of a shape without a name against a cause of the catalogue that shows the same: of what looks so and is not
+/// listed.
+inline const double kBehindTheSame = std::log((1.0 - tuning::kListed) / tuning::kListed);
 
 /// What every step of the search needs.
 struct SearchProblem {
