@@ -9,6 +9,7 @@
 
 #include "twin/core/bench_format.h"
 #include "twin/diagnose/diagnose.h"
+#include "twin/diagnose/engine/bent_waves.h"
 #include "twin/diagnose/engine/linear_run.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/model/follow.h"
@@ -195,7 +196,7 @@ struct TwinComparison {
   std::map<std::string, std::string> named = {};                                           // see unknown::Design
   int most_causes = 4;
   std::function<bool(const std::string& effect)> may_bend = {};  // so that the twin is asked about it again; empty: any
-  double one_wave = 1.0;  // see SearchExtent: errors of an angle bend the waves that go by it
+  BentWaves bent = {};
   bool bends = false;  // the first cause is searched about itself wherever it is off its tangent by more than noise
   std::function<std::string(const std::string& effect, const std::string& rival)> next_measurement = {};
   std::function<std::string(const std::string& effect)> shown_by = {};  // what would show it; empty: nothing simple

@@ -27,7 +27,7 @@ AnalysisOptions HowToAnalyse(const LinearRun& run, const DiagnoseOptions& option
                              const TwinComparison& comparison) {
   AnalysisOptions how = AnalysisOptionsOf(options);
   how.most_causes = comparison.most_causes;
-  how.one_wave = comparison.one_wave;
+  how.bent = comparison.bent;
   if (comparison.sampled) how.null_runs = NullRuns(run, options.null_runs);
   return how;
 }

@@ -21,10 +21,6 @@ namespace {
 using diagnose::TwinComparison;
 using AngleOf = std::function<double(const Reading&)>;
 
-/// Errors of the table are large for the hob, by the gearbox's ratio: they bend its waves by some degrees, and by which of
-/// the two angles a wave is a pure one no drive and no ring is good enough to tell.
-constexpr double kOneWave = 0.99;
-
 /// Of the table's rotation and of the hob's, as their encoders show them.
 struct Angles {
   AngleOf table_rad;  // counted from the table's origin
@@ -90,6 +86,19 @@ std::vector<TwinComparison::FreeCourses> FreeOrders(const TransmissionSettings& 
     free.push_back({"transmission", wave, fmt::format("order {}", k)});
   }
   return free;
+}
+
+/// Errors of the table are large for the hob, by the gearbox's ratio: they bend its waves, and by which of the two angles a
+/// wave is a pure one no drive and no ring is good enough to tell.
+diagnose::BentWaves BentWavesOf(const std::vector<Reading>& readings, const Angles& angles, double ratio) {
+  constexpr double kOne = 0.99;
+  constexpr int kOrder = 2;  // ellipticity: higher ones are small
+  std::vector<Reading> samples;
+  std::ranges::copy_if(readings, std::back_inserter(samples), IsSample);
+  if (samples.empty()) return {};
+  const Eigen::VectorXd error_rad = OfEach(samples, angles.table_rad) - DrivenTable_rad(samples, angles, ratio);
+  const double hob_rad = std::sqrt(2.0) * model::Rms(error_rad) / std::abs(ratio);
+  return {kOne, std::min(1.0 - kOne, std::pow(kOrder * hob_rad, 2))};
 }
 
 /// Travel of the table since its last reversal: before one it runs out over the way of a ramp, and comes back over
@@ -239,7 +248,7 @@ TwinComparison Comparison(const std::vector<Reading>& readings, const Scenario& 
   comparison.most_causes = 6;
   if (!HasClock(readings)) comparison.unrecorded = {"latency"};
   comparison.bends = true;
-  comparison.one_wave = kOneWave;
+  comparison.bent = BentWavesOf(readings, angles, train.Ratio());
   comparison.next_measurement = NextMeasurement;
   return comparison;
 }

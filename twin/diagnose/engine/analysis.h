@@ -18,7 +18,7 @@ struct AnalysisOptions {
   bool design_only = false;               // no search
   bool largest_only = false;              // the first large cause with a name, to be asked about: see Search
   int most_orders = 0;                    // see SearchExtent
-  double one_wave = 1.0;                  // likewise
+  BentWaves bent = {};                    // likewise
 };
 
 /// A run searched with a noise model that its own residuals do not refute.

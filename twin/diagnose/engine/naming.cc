@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "twin/diagnose/engine/answer.h"
 #include "twin/diagnose/engine/prior.h"
@@ -98,6 +100,20 @@ void MarkPieces(const SearchResult& found, Answered& answered) {
     Answer& answer = answered.answers[k];
     answer.may_be_piece = answer.weight < rest || Likeness(SignalOf(found.terms[k]), unnamed) > kAlike;
   }
+}
+
+/// A wave beside a larger one that its bend may leave is no cause.
+void LeaveOutBends(const SearchResult& found, const std::vector<Family>& families, Answered& answered) {
+  double most = 0.0;
+  const auto is_wave = [&](std::size_t k) {
+    return families[static_cast<std::size_t>(found.terms[k].family)].IsWholeOrder();
+  };
+  for (std::size_t k = 0; k < found.terms.size(); ++k)
+    if (is_wave(k)) most = std::max(most, answered.answers[k].weight);
+  std::vector<Answer> kept;
+  for (std::size_t k = 0; k < found.terms.size(); ++k)
+    if (!is_wave(k) || answered.answers[k].weight >= found.rest_of_bend * most) kept.push_back(answered.answers[k]);
+  answered.answers = std::move(kept);
 }
 
 /// Power of what has a name and is not like what has none.
@@ -197,6 +213,7 @@ Naming Name(const SearchResult& found, const std::vector<Family>& families, doub
   Answered answered = AnswerAll(found, families);
   MarkPieces(found, answered);
   const bool is_mostly_unnamed = IsMostlyUnnamed(found, answered, threshold);
+  LeaveOutBends(found, families, answered);
   if (noise_free) std::erase_if(answered.answers, [&](const Answer& a) { return answered.IsSmall(a); });
   Naming naming{VerdictOf(answered), CausesOf(answered), UnknownOf(answered)};
   const double one_unknown = ChanceOfOneUnknown(found, families);

@@ -44,7 +44,7 @@ std::vector<int> SameAs(int first, const SearchProblem& problem, const Deflation
   for (int k = 0; k < std::ssize(families); ++k) {
     const bool is_worth = evidence.explained(k, 0) >= kWorthAsking * evidence.explained(first, 0);
     if (k == first || !is_worth || !MayBeWave(families[static_cast<std::size_t>(k)])) continue;
-    if (Likeness(shown_by(k), shown) > problem.extent.one_wave) same.push_back(k);
+    if (Likeness(shown_by(k), shown) > problem.extent.bent.one) same.push_back(k);
   }
   return same;
 }
@@ -53,7 +53,7 @@ std::vector<int> SameAs(int first, const SearchProblem& problem, const Deflation
 
 void LevelOneWave(const SearchProblem& problem, const Deflation& others, const Projected& data,
                   const std::map<int, Eigen::VectorXd>& shapes, Evidence& evidence) {
-  const int first = problem.extent.one_wave < 1.0 ? WaveThatExplainsMost(problem.scanner.Families(), evidence) : -1;
+  const int first = problem.extent.bent.one < 1.0 ? WaveThatExplainsMost(problem.scanner.Families(), evidence) : -1;
   if (first < 0) return;
   const std::vector<int> same = SameAs(first, problem, others, data, shapes, evidence);
   const auto explained = [&evidence](int k) { return evidence.explained(k, 0); };

@@ -151,6 +151,7 @@ void TryFirst(SearchProblem problem, const IsOneOf& is_last, int most, SearchRes
   Settle(problem, first);
   first.first_statistic = result.first_statistic;
   first.alone = result.alone;
+  first.rest_of_bend = result.rest_of_bend;
   result = std::move(first);
 }
 
@@ -162,6 +163,7 @@ SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Project
   const SearchProblem problem{run,        noise,     projector, scanner,
                               log_priors, threshold, extent,    noise.Whiten(run, run.residual)};
   SearchResult result;
+  result.rest_of_bend = extent.bent.rest;
   Forward(problem, result);
   if (!extent.largest_only) {
     Settle(problem, result);

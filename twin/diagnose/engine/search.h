@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "twin/diagnose/engine/bent_waves.h"
 #include "twin/diagnose/engine/null_calibration.h"
 #include "twin/diagnose/engine/scanner.h"
 
@@ -31,6 +32,7 @@ struct SearchResult {
   double first_statistic = 0.0;  // alarm statistic of the whole run
   double last_statistic = 0.0;   // of what remains
   double joint_evidence = 0.0;   // of all terms together: each given those before it
+  double rest_of_bend = 0.0;     // see BentWaves
   double overtones = 0.0;        // probability that a named wave repeats and is no sine (overtones.h)
   Evidence alone;                // the first scan
 };
@@ -44,8 +46,7 @@ struct SearchExtent {
   /// as much the one that has a name. As long as much is not explained, shapes without one follow parts of it. Nothing is
   /// selected again.
   bool largest_only = false;
-  /// Likeness of what two waves of whole orders show from which on they are one; 1: only where they are exactly that.
-  double one_wave = 1.0;
+  BentWaves bent = {};
 };
 
 /// Finds simultaneous causes: scan, take the most probable, refine its shape, scan what
