@@ -8,6 +8,13 @@ namespace twinbench::separate::harmonics {
 enum class PositionStatus { kOk, kNoTurn };  // kNoTurn: no turn was complete enough
 enum class ScatterSource { kBetweenTurns, kWithinTurn };
 
+/// Of the turn of a shaft that the table is geared to.
+struct HobOrder {
+  int times = 0;     // per turn of that shaft
+  Coefficient wave;  // by its angle
+  double dof = kNaN;
+};
+
 /// Mean over the turns of one set-up in one direction.
 struct PositionError {
   int setup = 0;
@@ -24,6 +31,7 @@ struct PositionError {
   double u_drift_rad_per_turn = kNaN;
   std::vector<double> of_drift_rad2 = {};  // [k - 1]: of the variance of either part of order k, what that leaves
   std::vector<double> of_rounding_rad2 = {};  // likewise, what the steps of counts repeat in every turn; empty: nothing
+  std::vector<HobOrder> of_hob = {};  // that are no orders of the table's turn which are fitted
   double of_folding_rad2 = 0.0;  // of that variance of every order, what orders above them fold onto them
 };
 

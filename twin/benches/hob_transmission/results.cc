@@ -21,6 +21,7 @@ using separate::hob::Coefficient;
 using separate::hob::DirectionResult;
 using separate::hob::HarmonicSeries;
 using separate::hob::HobAnalysis;
+using separate::hob::HobOrder;
 using separate::hob::OrderComparison;
 using separate::hob::OrderStatus;
 using separate::hob::Phase;
@@ -76,6 +77,13 @@ nlohmann::json ToJson(const DirectionResult& result, const HobAnalysis& a, const
   json["u_parts"] = PartsOf(UsedOf(a.positions, result.direction), StepVariance_rad2(settings, false), true);
   json["direction"] = result.direction;
   json["lines"] = result.lines;
+  for (const HobOrder& order : result.of_hob)
+    json["of_hob"].push_back({{"order", order.times * settings.transmission.HobOrder()},
+                              {"per_turn_of_hob", order.times},
+                              {"amplitude_arcsec", report::Arcsec(Amplitude(order.wave))},
+                              {"u_amplitude_arcsec", report::Arcsec(AmplitudeUncertainty(order.wave))},
+                              {"phase_deg", report::In(units::deg, separate::hob::Phase(order.wave))},
+                              {"u_phase_deg", report::In(units::deg, PhaseUncertainty(order.wave))}});
   if (result.against_interferometer.empty()) return json;
   const nlohmann::json by_interferometer =
       PartsOf(UsedOf(a.transmission_by_interferometer, result.direction), kCountsNothing_rad2, false);
@@ -214,13 +222,17 @@ std::string OrderText(const char* what, const Coefficient& c) {
 }
 
 /// @param folded  Orders as which the samples show a higher one.
-std::string LinesText(const DirectionResult& result, const std::map<int, int>& folded) {
+std::string LinesText(const DirectionResult& result, const HobSettings& settings, const std::map<int, int>& folded) {
   std::string text = fmt::format("transmission, direction {:+d}: lines at order", result.direction);
-  if (result.lines.empty()) return text + " none\n";
+  if (result.lines.empty() && result.of_hob.empty()) return text + " none\n";
   for (const int order : result.lines) {
     const double amplitude_arcsec = Amplitude(result.transmission.At(order)) / units::arcsec;
     const auto higher = folded.find(order);
     text += fmt::format(" {}{} ({:.2f})", order, higher == folded.end() ? "" : fmt::format(" or {}", higher->second), amplitude_arcsec);
+  }
+  for (const HobOrder& order : result.of_hob) {
+    text += fmt::format(" {:.6g} ({:.2f} ± {:.2f}, {} per turn of the hob)", order.times * settings.transmission.HobOrder(),
+                        Amplitude(order.wave) / units::arcsec, AmplitudeUncertainty(order.wave) / units::arcsec, order.times);
   }
   return text + " [arcsec]\n";
 }
@@ -252,7 +264,7 @@ std::string LostText(const HobAnalysis& a) {
   return text;
 }
 
-std::string SummaryOf(const HobAnalysis& a) {
+std::string SummaryOf(const HobAnalysis& a, const HobSettings& settings) {
   std::string text = fmt::format("{} samples", a.used);
   text += a.left_out > 0 ? fmt::format(", {} left out\n", a.left_out) : "\n";
   for (const PositionError& position : a.positions) text += PositionText(position);
@@ -263,7 +275,7 @@ std::string SummaryOf(const HobAnalysis& a) {
   if (!published && separated) text += OrderText("table encoder, order 1", a.encoder.At(1));
   if (a.is_interferometer_at_rest)
     text += OrderText("table encoder, order 1, by the interferometer at rest", a.encoder_by_interferometer.At(1));
-  for (const DirectionResult& direction : a.directions) text += LinesText(direction, a.folded);
+  for (const DirectionResult& direction : a.directions) text += LinesText(direction, settings, a.folded);
   return text + ComparisonText(a.is_interferometer_at_rest ? " at rest" : "", a.encoder_against_interferometer) +
          ComparisonText(" with the first head alone", a.encoder_against_one_place) + LostText(a);
 }
@@ -286,7 +298,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
   const nlohmann::json separation =
       analysis.separation ? SeparationJson(analysis, HobOf(scenario)) : nlohmann::json();
-  report::Evaluation evaluation{ResultsOf(analysis, HobOf(scenario)), separation, analysis.not_separated, SummaryOf(analysis)};
+  report::Evaluation evaluation{ResultsOf(analysis, HobOf(scenario)), separation, analysis.not_separated, SummaryOf(analysis, HobOf(scenario))};
   if (analysis.separation) evaluation.misfits = {MisfitOf(*analysis.separation)};
   evaluation.score = [analysis](const nlohmann::json& truth) { return ScoreOf(analysis, truth); };
   return evaluation;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 
+#include "twin/benches/hob_transmission/estimators/hob_orders.h"
 #include "twin/benches/hob_transmission/estimators/rounding_orders.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/core/distributions.h"
@@ -26,19 +27,38 @@ TransmissionOptions OptionsOf(const Scenario& scenario) {
   return options;
 }
 
+/// From sample to sample; NaN if nothing moves.
+double UsualWay_rad(const std::vector<HobSample>& samples, double HobSample::*angle_rad) {
+  std::vector<double> ways_rad;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (samples[i].setup == samples[i - 1].setup && samples[i].pass == samples[i - 1].pass)
+      ways_rad.push_back(std::abs(samples[i].*angle_rad - samples[i - 1].*angle_rad));
+  }
+  std::erase_if(ways_rad, [](double way_rad) { return !(way_rad > 0.0); });
+  return ways_rad.empty() ? kNaN : Median(std::move(ways_rad));
+}
+
 /// Of readings that are farther apart than the procedure's: so many orders as they still tell, regular or not.
 int OrdersThatShow(const std::vector<HobSample>& samples, const TransmissionOptions& options) {
   constexpr double kOrdersASample = 0.4;
-  std::vector<double> steps_rad;
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    if (samples[i].setup == samples[i - 1].setup && samples[i].pass == samples[i - 1].pass)
-      steps_rad.push_back(std::abs(samples[i].table_encoder_rad - samples[i - 1].table_encoder_rad));
-  }
-  std::erase_if(steps_rad, [](double step_rad) { return !(step_rad > 0.0); });
-  if (steps_rad.empty()) return options.max_order;
-  const double a_turn = units::turn / Median(std::move(steps_rad));
+  const double way_rad = UsualWay_rad(samples, &HobSample::table_encoder_rad);
+  if (!std::isfinite(way_rad)) return options.max_order;
+  const double a_turn = units::turn / way_rad;
   if (a_turn > 2.0 * options.max_order) return options.max_order;
   return std::max(1, static_cast<int>(kOrdersASample * a_turn));
+}
+
+/// Of the hob's turn, those that the orders of the table's are not, as far as the samples tell them.
+std::vector<int> HobOrdersBeside(const TransmissionSettings& t, const std::vector<HobSample>& samples, int highest) {
+  constexpr int kMost = 4;
+  constexpr double kWaysOfAPeriod = 2.5;
+  const double way_rad = UsualWay_rad(samples, &HobSample::hob_encoder_rad);
+  std::vector<int> orders;
+  for (int k = 1; k <= kMost && kWaysOfAPeriod * k * way_rad < units::turn; ++k) {
+    const double of_table = k * t.HobOrder();
+    if (of_table != std::round(of_table) || of_table > highest) orders.push_back(k);
+  }
+  return orders;
 }
 
 bool HasTurns(const PositionError& position) {
@@ -90,6 +110,7 @@ bool IsAtRest(const HobSample& s) {
 
 TransmissionOptions Uncounted(TransmissionOptions options) {
   options.hob_step_rad = 0.0;
+  options.hob_orders.clear();
   return options;
 }
 
@@ -129,6 +150,18 @@ void AddRoundingAtStops(const std::vector<HobSample>& at_rest, const Transmissio
   analysis.encoder_rounding_rad2 = AddRounding(th_rad.head(rows), waves, analysis.encoder_by_interferometer);
 }
 
+/// Mean over the places of the head: those that noise would not show.
+std::vector<HobOrder> HobOrdersOf(const std::vector<PositionError>& positions, int direction) {
+  constexpr double kFalseAlarm = 0.01;
+  std::vector<std::vector<HobOrder>> all;
+  for (const PositionError& p : positions)
+    if (p.direction == direction && HasTurns(p)) all.push_back(p.of_hob);
+  std::vector<HobOrder> orders = MeanOf(all);
+  const double chance = kFalseAlarm / static_cast<double>(std::max<std::size_t>(1, orders.size()));
+  std::erase_if(orders, [chance](const HobOrder& o) { return !(ChanceOf(o.wave, o.dof) < chance); });
+  return orders;
+}
+
 void AddDirections(const std::vector<HobSample>& samples, const TransmissionOptions& options,
                    const std::vector<int>& orders, HobAnalysis& analysis) {
   std::vector<PositionError>& seen = analysis.transmission_by_interferometer;
@@ -138,6 +171,7 @@ void AddDirections(const std::vector<HobSample>& samples, const TransmissionOpti
     result.direction = direction;
     result.transmission = TransmissionSeries(*analysis.separation, direction);
     result.lines = FindLines(result.transmission);
+    result.of_hob = HobOrdersOf(analysis.positions, direction);
     const HarmonicSeries reference = TransmissionByInterferometer(seen, direction);
     if (!reference.orders.empty())
       result.against_interferometer = CompareTransmission(*analysis.separation, direction, reference, orders);
@@ -195,6 +229,7 @@ HobAnalysis AnalyseHob(const std::vector<Reading>& readings, const Scenario& sce
   std::erase_if(samples, IsAtRest);
   TransmissionOptions options = OptionsOf(scenario);
   options.max_order = OrdersThatShow(samples, options);
+  options.hob_orders = HobOrdersBeside(HobOf(scenario).transmission, samples, options.max_order);
   analysis.positions = MeasurePositions(samples, options);
   if (std::ranges::none_of(analysis.positions, HasTurns)) {
     analysis.not_separated = "no head position has a complete turn";

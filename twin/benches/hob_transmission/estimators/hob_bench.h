@@ -22,6 +22,7 @@ struct DirectionResult {
   int direction = 1;
   HarmonicSeries transmission;                          // e_T
   std::vector<int> lines;                               // orders that noise would not show
+  std::vector<HobOrder> of_hob;                         // likewise, of the hob's turn, that are no such orders
   std::vector<OrderComparison> against_interferometer;  // empty without one
 };
 

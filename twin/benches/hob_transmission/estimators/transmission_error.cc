@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/hob_transmission/estimators/hob_orders.h"
 #include "twin/benches/hob_transmission/estimators/pass_fit.h"
 #include "twin/benches/hob_transmission/estimators/rounding_orders.h"
 #include "twin/core/errors.h"
@@ -146,17 +147,21 @@ void FillDrift(const std::vector<FittedPass>& passes, PositionError& position) {
   position.u_drift_rad_per_turn = std::sqrt(variance) / count;
 }
 
-PositionError MeasurePosition(const std::vector<Pass>& passes, const TransmissionOptions& options) {
+PositionError MeasurePosition(std::vector<Pass> passes, const TransmissionOptions& options) {
   PositionError position;
   position.setup = passes.front().setup;
   position.direction = passes.front().direction;
   position.head_rad = passes.front().head_rad;
   std::vector<FittedPass> fitted;
-  fitted.reserve(passes.size());
-  for (const Pass& pass : passes) fitted.push_back(FitPass(pass, options));
+  std::vector<std::vector<HobOrder>> of_hob;
+  for (Pass& pass : passes) {
+    of_hob.push_back(TakeHobOrders(options, pass));
+    fitted.push_back(FitPass(pass, options));
+  }
   Count(fitted, options.max_order, position);
   if (position.turns == 0) return position;
   position.status = PositionStatus::kOk;
+  position.of_hob = MeanOf(of_hob);
   FillDrift(fitted, position);
   if (position.turns > 1) {
     FillFromSeveralTurns(fitted, options, position);

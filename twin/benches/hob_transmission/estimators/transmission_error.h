@@ -19,6 +19,7 @@ struct TransmissionOptions {
       2.0 / 44.0;  // starts of the hob / teeth of the gear; negative: counted contrary
   EncoderZero zero = EncoderZero::kTableOrigin;
   int max_order = 100;  // per turn of the table; the samples of a turn must be more than twice as many
+  std::vector<int> hob_orders = {};  // of the hob's turn, that are no whole orders of the table's, or higher ones
   double hob_step_rad = 0.0;  // in which the hob's encoder counts, as the table turns meanwhile; 0: none
   /// A turn is left out if gaps make an order's variance larger than this many times that of regular samples.
   double max_inflation = 4.0;

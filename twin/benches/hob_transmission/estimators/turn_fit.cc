@@ -97,4 +97,20 @@ TurnFit FitTurn(const Eigen::VectorXd& angle_rad, const Eigen::VectorXd& value_r
   return fit;
 }
 
+Eigen::MatrixXd BesideOrders(const Eigen::VectorXd& angle_rad, const Eigen::MatrixXd& columns, int max_order) {
+  if (angle_rad.size() <= 2 * max_order + 1) return {};
+  const Sums sums = SumUp(angle_rad, columns, max_order);
+  const Eigen::LLT<Eigen::MatrixXcd> cholesky(NormalMatrix(sums.moment));
+  if (cholesky.info() != Eigen::Success) return {};
+  const Eigen::MatrixXcd z = cholesky.solve(BothSigns(sums.right));
+  Eigen::MatrixXd beside = columns;
+  for (Eigen::Index i = 0; i < angle_rad.size(); ++i) {
+    const Complex step = std::polar(1.0, angle_rad[i]);
+    Complex power = 1.0;
+    for (int k = 0; k <= max_order; ++k, power *= step)
+      beside.row(i) -= (k == 0 ? 1.0 : 2.0) * (z.row(max_order + k) * power).real();
+  }
+  return beside;
+}
+
 }  // namespace twinbench::separate::hob

@@ -36,4 +36,7 @@ struct TurnFit {
 TurnFit FitTurn(const Eigen::VectorXd& angle_rad, const Eigen::VectorXd& value_rad, double middle_rad,
                 int direction, int max_order);
 
+/// What orders 0 .. max_order leave of each column, by least squares; no columns if the samples do not determine them.
+Eigen::MatrixXd BesideOrders(const Eigen::VectorXd& angle_rad, const Eigen::MatrixXd& columns, int max_order);
+
 }  // namespace twinbench::separate::hob

@@ -49,6 +49,7 @@ void Append(const HobSample& s, double value_rad, EncoderZero zero, Pass& pass) 
   pass.head_rad = s.head_rad;
   pass.th_rad.push_back(s.table_encoder_rad + (zero == EncoderZero::kReferenceMark ? s.head_rad : 0.0));
   pass.value_rad.push_back(value_rad);
+  pass.hob_rad.push_back(s.hob_encoder_rad);
 }
 
 void CheckHeads(const std::vector<Pass>& passes) {

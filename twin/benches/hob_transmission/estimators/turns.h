@@ -15,6 +15,7 @@ struct Pass {
   double head_rad = kNaN;
   std::vector<double> th_rad;
   std::vector<double> value_rad;
+  std::vector<double> hob_rad;
 };
 
 /// One turn of a pass, counted from the pass's first sample; the last one may be a part of a turn.
