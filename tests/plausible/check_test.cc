@@ -74,6 +74,31 @@ TEST(Plausible, SaysWhatIsWrongWithReadings) {
   EXPECT_KEPT(Lines(Readings(2)));
 }
 
+/// Angles of two shafts that are geared 90 to 1, some rows lost.
+/// @param way_deg   Of the faster one, from row to row.
+/// @param step_deg  In which it is counted.
+std::vector<Reading> Geared(double way_deg, double step_deg) {
+  std::vector<Reading> readings;
+  for (int i = 0; i < 400; ++i) {
+    if (i % 5 == 3 || i % 7 == 2) continue;
+    Reading r;
+    r.reading = r.position = i;
+    r.time = Time(FromSeconds(i));
+    r.direction = 1;
+    r.head_rad = 0.0;
+    r.reference_rad = std::round(i * way_deg / step_deg) * step_deg * units::deg;
+    r.measured_rad = i * way_deg / 90.0 * units::deg + 10.0 * units::arcsec * std::sin(17.0 * i);
+    readings.push_back(r);
+  }
+  return readings;
+}
+
+TEST(Plausible, DoesNotTakeTheDistanceOfRowsForAResolution) {
+  const Scenario train = ParseScenario("bench = \"hob_transmission\"\n", "test", "");
+  EXPECT_THAT(Lines(Geared(45.0, 45.0), train), Not(HasSubstr("comes in steps")));
+  EXPECT_THAT(Lines(Geared(5.0, 45.0), train), HasSubstr("hob_encoder_deg comes in steps of 45"));
+}
+
 /// Four detector channels about a volt.
 std::vector<Reading> Voltages() {
   std::vector<Reading> readings;

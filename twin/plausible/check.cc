@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -108,11 +109,39 @@ bool AreChosenStops(const Channel& channel) {
   return 10 * even > 9 * std::ssize(way);
 }
 
+/// Another channel goes the same way from reading to reading, to a small part of the step and hardly ever none: the step is
+/// the distance of the places that were read, some of them left out.
+bool GoesAsFarAs(const Channel& other, const Channel& channel, double step) {
+  constexpr double kOfStep = 0.1;  // of the way; rounding to steps leaves 0.4
+  std::vector<double> way, others;
+  std::size_t at = 0;
+  const Reading* before = nullptr;
+  double value = 0.0, others_value = 0.0;
+  for (std::size_t i = 0; i < channel.size(); ++i) {
+    while (at < other.size() && other.reading[at]->reading < channel.reading[i]->reading) ++at;
+    if (at == other.size() || other.reading[at] != channel.reading[i]) continue;
+    if (before != nullptr && before->pass == channel.reading[i]->pass && before->setup == channel.reading[i]->setup) {
+      way.push_back(channel.value[i] - value);
+      others.push_back(other.value[at] - others_value);
+    }
+    before = channel.reading[i], value = channel.value[i], others_value = other.value[at];
+  }
+  const auto stands = std::ranges::count(way, 0.0);
+  if (way.size() < kFewestToJudge || 10 * stands > std::ssize(way)) return false;
+  const auto as_vector = [](const std::vector<double>& x) { return Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)); };
+  const double ratio = as_vector(way).dot(as_vector(others)) / as_vector(others).squaredNorm();
+  const auto near = (as_vector(way) - ratio * as_vector(others)).cwiseAbs().array() < kOfStep * step;
+  return 10 * near.count() > 9 * std::ssize(way);
+}
+
 /// Steps that are larger than what scatters: the scatter is theirs.
-void CheckSteps(const Channel& channel, const std::vector<double>& beside, std::vector<Finding>& findings) {
+void CheckSteps(const Channel& channel, const std::vector<Channel>& channels, const std::vector<double>& beside,
+                std::vector<Finding>& findings) {
   if (channel.value.size() < kFewestToJudge || channel.column->role != ColumnRole::kShown) return;
   const double step = StepOf(channel);
   if (!(step > 2.0 * RobustNoiseOnCourse(beside)) || AreChosenStops(channel)) return;
+  const auto is_its_way = [&](const Channel& other) { return other.column != channel.column && GoesAsFarAs(other, channel, step); };
+  if (std::ranges::any_of(channels, is_its_way)) return;
   Reading reading;
   channel.column->number(reading) = step;
   const double shown = ParseNumber(channel.column->print(reading)).value_or(kNaN);
@@ -143,7 +172,7 @@ std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario&
     Expected claim = found == expected.end() || scenario.noise_free ? Expected{} : *found;
     claim.may_lag = bench.compared && channel.column->name == bench.compared->shown;
     CheckAlive(channel, !scenario.noise_free && (others_move || claim.noise > 0.0), bench, claim, findings);
-    CheckSteps(channel, Beside(channel, readings, bench), findings);
+    CheckSteps(channel, channels, Beside(channel, readings, bench), findings);
     if (!claim.column.empty() && Moves(channel)) CheckAgainst(claim, channel, findings);
   }
   CheckLabels(readings, bench, findings);
