@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/hob_transmission/estimators/sample.h"
 #include "twin/core/units.h"
 
 namespace twinbench::separate::hob {
