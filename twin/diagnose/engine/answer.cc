@@ -91,7 +91,8 @@ bool CanExplain(const Family& family, int grid_point, const Eigen::VectorXd& sig
 }
 
 /// Causes that explain the same of the whole run as one that won: their signatures are one on this design, and what
-/// was thought of them before is no reason to choose, unless it was that they cannot be so.
+/// was thought of them before is no reason to choose, unless it was that they cannot be so. Bent waves were levelled: what
+/// keeps one of them back is that it may have any order.
 std::vector<CauseKey> DoublesOf(const Cause& cause, const Term& term, const SearchResult& found,
                                 const std::vector<Family>& families) {
   constexpr double kSame = 1e-6;  // of what it explains: rounding; likeness alone is for the evidence to judge
@@ -101,6 +102,7 @@ std::vector<CauseKey> DoublesOf(const Cause& cause, const Term& term, const Sear
     const Family& f = families[static_cast<std::size_t>(k)];
     const CauseKey key = KeyOf(f);
     if (f.kind != Kind::kNamed || key == CauseKey{cause.effect, cause.where}) continue;
+    if (found.rest_of_bend > 0.0 && f.IsWholeOrder()) continue;
     const bool same = std::abs(found.alone.explained(k, 0) - explained) <= kSame * explained;
     if (!same || std::ranges::count(doubles, key) > 0) continue;
     if (CanExplain(f, found.alone.grid_point(k, 0), term.columns * term.amplitudes)) doubles.push_back(key);
@@ -122,6 +124,14 @@ void AddDoubles(const Term& term, const SearchResult& found, const std::vector<F
     causes.push_back(CauseOf(term, families, {key, 1.0}));
     causes.back().probability = share;
   }
+}
+
+/// Of waves that were levelled rounding says which is the most probable: the one that was taken has the sizes.
+void PutTakenFirst(const CauseKey& taken, std::vector<Cause>& causes) {
+  constexpr double kAsProbable = 0.999;
+  const auto found = std::ranges::find_if(causes, [&](const Cause& c) { return CauseKey{c.effect, c.where} == taken; });
+  if (found == causes.end() || found->probability < kAsProbable * causes.front().probability) return;
+  std::rotate(causes.begin(), found, found + 1);
 }
 
 /// How much of what each cause explains the others explain alone.
@@ -174,6 +184,7 @@ Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Fami
     answer.unknown -= probability * ListedShareOf(families, key);
   for (const Share& share : Alike(CredibleSet(posterior), term)) answer.causes.push_back(CauseOf(term, families, share));
   if (!answer.causes.empty() && found.terms.size() == 1) AddDoubles(term, found, families, answer.causes);
+  if (found.rest_of_bend > 0.0) PutTakenFirst(KeyOf(families[static_cast<std::size_t>(term.family)]), answer.causes);
   AddRivals(found, families, answer.causes);
   return answer;
 }
