@@ -104,6 +104,7 @@ void MarkPieces(const SearchResult& found, Answered& answered) {
 
 /// A wave beside a larger one that its bend may leave is no cause.
 void LeaveOutBends(const SearchResult& found, const std::vector<Family>& families, Answered& answered) {
+  if (!(found.rest_of_bend > 0.0)) return;
   double most = 0.0;
   const auto is_wave = [&](std::size_t k) {
     return families[static_cast<std::size_t>(found.terms[k].family)].IsWholeOrder();

@@ -57,8 +57,9 @@ void LevelOneWave(const SearchProblem& problem, const Deflation& others, const P
   if (first < 0) return;
   const std::vector<int> same = SameAs(first, problem, others, data, shapes, evidence);
   const auto explained = [&evidence](int k) { return evidence.explained(k, 0); };
-  const double power = data.power[0], most = std::ranges::max(same | std::views::transform(explained));
-  const double half = 0.5 * problem.projector.DegreesOfFreedom();
+  const double most = std::ranges::max(same | std::views::transform(explained));
+  const double pseudo = PseudoDegrees(problem.run), power = pseudo + data.power[0];  // as in the evidence
+  const double half = 0.5 * (pseudo + problem.projector.DegreesOfFreedom() - others.Rank());
   double named = kNever;  // log odds
   for (const int k : same) {
     if (!problem.IsNamed(k)) continue;
