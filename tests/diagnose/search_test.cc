@@ -103,6 +103,30 @@ TEST(Search, FindsNothingInNoise) {
   EXPECT_LE(found, 5);
 }
 
+/// A slow cosine of the run, so many times.
+Eigen::VectorXd Cosine(const LinearRun& run, int times) {
+  return (units::kPi * times * Drift(run)).array().cos();
+}
+
+TEST(Search, FindsCausesThatAreThereTogetherBesideWhatImitatesTheirSum) {
+  SearchCase c(4);
+  c.families.clear();
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(c.run.Rows());
+  for (int k = 1; k <= 5; ++k) {
+    c.families.push_back(Fixed("cause " + std::to_string(k), Cosine(c.run, k), units::um));
+    sum += (2.0 + k) * Cosine(c.run, k);
+  }
+  // It explains nearly all of it at the first step, and leaves no room for the five.
+  c.families.push_back(Fixed("imitator", sum + 0.5 * Cosine(c.run, 6), units::um));
+  c.run.residual += 1.0 * units::um * sum;
+  const SearchResult found = c.Find(3.0);
+  ASSERT_EQ(found.terms.size(), 5U);
+  for (const Term& term : found.terms) {
+    ASSERT_LT(term.family, 5);
+    EXPECT_NEAR(term.amplitudes[0], (3.0 + term.family) * units::um, 4.0 * std::sqrt(term.cov(0, 0)));
+  }
+}
+
 /// One place of the answer that a wave of this order fills for sure.
 Term SureOrder(double order) {
   Term term;

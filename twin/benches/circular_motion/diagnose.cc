@@ -136,16 +136,14 @@ std::set<int> TakingUpPlay(const std::vector<Reading>& readings, const Scenario&
 
 /// Of the radius alone: what turns the circle is not free, for it is not seen. Waves of order 1 are the centre, of order 2
 /// squareness and scales, of order 3 straightness.
-diagnose::TwinComparison OfRadiiAlone(diagnose::TwinComparison comparison, const Scenario& scenario, const std::vector<Reading>& readings) {
+diagnose::TwinComparison OfRadiiAlone(diagnose::TwinComparison comparison, const std::vector<Reading>& readings) {
   comparison.format = &OfRadii();
   comparison.angles.front().lowest_order = 4;
   comparison.follow = [whole = comparison.follow](const Scenario& believed, const std::vector<Reading>& record) {
     return std::make_unique<FollowRadii>(whole(believed, record));
   };
   comparison.free_points = {"offset_x", "offset_y", "length"};
-  comparison.shown = [left_out = TakingUpPlay(readings, scenario)](const Reading& r) {
-    return left_out.contains(r.reading) ? Eigen::VectorXd::Constant(1, kNaN) : Eigen::VectorXd(Shown_m(r).head(1));
-  };
+  comparison.shown = [whole = comparison.shown](const Reading& r) { return Eigen::VectorXd(whole(r).head(1)); };
   comparison.noise_of = [](const Scenario& stated, const Reading& r) { return Eigen::VectorXd(Noise_m(stated, r).head(1)); };
   comparison.tones.clear();
   if (HasClock(readings)) comparison.tones = {{"", Eigen::VectorXd::Ones(1)}};
@@ -153,7 +151,11 @@ diagnose::TwinComparison OfRadiiAlone(diagnose::TwinComparison comparison, const
 }
 
 diagnose::TwinComparison Comparison(const Scenario& scenario, const std::vector<Reading>& readings) {
-  return HasAngles(readings) ? Comparison(scenario) : OfRadiiAlone(Comparison(scenario), scenario, readings);
+  diagnose::TwinComparison comparison = Comparison(scenario);
+  comparison.shown = [left_out = TakingUpPlay(readings, scenario)](const Reading& r) {
+    return left_out.contains(r.reading) ? Eigen::VectorXd::Constant(2, kNaN) : Shown_m(r);
+  };
+  return HasAngles(readings) ? comparison : OfRadiiAlone(std::move(comparison), readings);
 }
 
 /// As drives lag by their own readings.

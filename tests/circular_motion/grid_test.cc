@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/thresholds.h"
+#include "twin/benches/circular_motion/bench.h"
+#include "twin/benches/circular_motion/columns.h"
+#include "twin/core/stream.h"
+
+// A grid plate on a circle. Its readings are written here from what each error does to the path.
+namespace twinbench::benches::circular {
+namespace {
+
+using units::deg, units::mm, units::um, units::arcsec;
+
+constexpr double kRadius_m = 80.0 * mm;
+
+/// Squareness turns Y towards -X; each axis stays half its backlash behind the way it goes, but for the stretch in which that is taken up.
+struct Plane {
+  double squareness_rad, scale_x, scale_y, backlash_x_m, backlash_y_m;
+};
+
+double Behind_m(double width_m, double from_turn_rad, int direction) {
+  const double along_rad = std::fmod(direction * from_turn_rad + 4.0 * std::numbers::pi, 2.0 * std::numbers::pi);
+  const double sense = along_rad < std::numbers::pi ? 1.0 : -1.0;  // behind its largest value an axis goes down
+  const double since_m = kRadius_m * (1.0 - std::cos(std::fmod(along_rad, std::numbers::pi)));
+  return sense * (std::min(since_m, width_m) - 0.5 * width_m);
+}
+
+std::vector<Reading> Readings(const Plane& plane, double noise_m, double first_deg) {
+  Stream stream(7, "grid");
+  std::vector<Reading> readings;
+  for (const int direction : {1, -1}) {
+    for (int k = 0; k < 360; ++k) {
+      const double a = (first_deg + direction * k) * deg, x_m = kRadius_m * std::cos(a), y_m = kRadius_m * std::sin(a);
+      Reading& r = readings.emplace_back();
+      r.reading = static_cast<int>(readings.size()) - 1;
+      r.time = Time(FromSeconds(0.5 * r.reading));
+      r.pass = direction > 0 ? 0 : 1;
+      r.direction = direction;
+      r.position = k;
+      kCommandedX_m(r) = x_m;
+      kCommandedY_m(r) = y_m;
+      kFeed_m_s(r) = 1000.0 * mm / 60.0;
+      kGridX_m(r) = x_m * (1.0 + plane.scale_x) - plane.squareness_rad * y_m + Behind_m(plane.backlash_x_m, a, direction) + noise_m * stream.Normal();
+      kGridY_m(r) = y_m * (1.0 + plane.scale_y) + Behind_m(plane.backlash_y_m, a - 90.0 * deg, direction) + noise_m * stream.Normal();
+    }
+  }
+  return readings;
+}
+
+const diagnose::Cause* Named(const diagnose::Diagnosis& d, const std::string& effect, const std::string& where) {
+  for (const diagnose::Cause& cause : d.causes)
+    if (cause.effect == effect && cause.where == where) return &cause;
+  return nullptr;
+}
+
+TEST(GridPlate, HasItsSquarenessScalesAndBacklashesNamedTogether) {
+  const Scenario scenario =
+      ParseScenario("bench = \"circular_motion\"\n[machine]\nlag_x_s = 0.0\nlag_y_s = 0.0\nspan_mm = 80.0\n[circular_procedure]\n"
+                    "setups = [{instrument = \"grid\", radius_mm = 80.0}]\n",
+                    "grid", ".", {});
+  const Plane plane{12.0 * arcsec, 20e-6, -25e-6, 4.0 * um, 6.0 * um};
+  const diagnose::Diagnosis d = Diagnose(Readings(plane, 0.05 * um, 5.7), scenario, test::QuickOptions(100)).diagnosis;
+  for (const auto& [effect, where, size] :
+       {std::tuple{"squareness", "", plane.squareness_rad}, {"scale", "x", plane.scale_x}, {"scale", "y", plane.scale_y},
+        {"backlash", "x", plane.backlash_x_m}, {"backlash", "y", plane.backlash_y_m}}) {
+    const diagnose::Cause* const cause = Named(d, effect, where);
+    ASSERT_TRUE(cause) << effect << " " << where;
+    EXPECT_NEAR(cause->parameters[0].value, size, 4.0 * cause->parameters[0].u) << effect << " " << where;
+  }
+  EXPECT_FALSE(Named(d, "outliers", "")) << "a reading on the way through a reversal is no outlier";
+  EXPECT_FALSE(HasUnmodelled(d));
+}
+
+}  // namespace
+}  // namespace twinbench::benches::circular
