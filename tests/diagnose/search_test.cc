@@ -118,6 +118,7 @@ TEST(Search, FindsCausesThatAreThereTogetherBesideWhatImitatesTheirSum) {
   }
   // It explains nearly all of it at the first step, and leaves no room for the five.
   c.families.push_back(Fixed("imitator", sum + 0.5 * Cosine(c.run, 6), units::um));
+  c.families.back().kind = Kind::kUnknown;
   c.run.residual += 1.0 * units::um * sum;
   const SearchResult found = c.Find(3.0);
   ASSERT_EQ(found.terms.size(), 5U);

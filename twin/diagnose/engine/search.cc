@@ -247,13 +247,14 @@ bool NeedsNoUnknown(const SearchProblem& problem, const std::vector<Term>& cause
 /// stands beside that. Causes without a shape need no steps: all are fitted together, those are dropped that are not needed, and what is the
 /// more probable of all of it stays.
 void TryTogether(SearchProblem problem, SearchResult& result) {
-  const bool is_full = std::ssize(result.terms) >= problem.extent.most_causes;
+  const int most = problem.extent.most_causes;
+  const bool is_full = most > 1 && std::ssize(result.terms) >= most;  // where one is wanted, one is all there is
   if (!is_full && !HasAny(problem, result.terms, IsUnknown)) return;
   SearchResult together;
   together.terms = WithoutShapes(problem);
   DropTheNeedless(problem, together.terms);
   if (together.terms.size() < 2) return;
-  problem.extent.most_causes = std::max(problem.extent.most_causes, static_cast<int>(std::ssize(together.terms)) + 1);
+  problem.extent.most_causes = std::max(most, static_cast<int>(std::ssize(together.terms)) + 1);
   Revise(Without(problem, IsUnknown), together);
   const std::size_t causes = together.terms.size();
   Forward(problem, together);
