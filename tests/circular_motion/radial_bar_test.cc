@@ -7,6 +7,7 @@
 #include "twin/benches/circular_motion/bench.h"
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/core/stream.h"
+#include "twin/report/sound.h"
 
 // A bar without an encoder. Its readings are written here from what each error does to the path.
 namespace twinbench::benches::circular {
@@ -188,6 +189,50 @@ TEST(RadialBar, IsDiagnosedByItsRadiusAlone) {
   ASSERT_FALSE(d.causes.empty());
   EXPECT_EQ(d.causes[0].effect, "squareness");
   EXPECT_NEAR(d.causes[0].parameters[0].value / arcsec, 3.0, 4.0 * d.causes[0].parameters[0].u / arcsec);
+}
+
+TEST(RadialBar, OfLobesThatNoErrorMakesHasItsCircularDeviationsAndNoErrorThatIsNotThere) {
+  std::vector<Reading> readings = Readings({}, 0.1 * um);
+  for (Reading& r : readings) kBar_m(r) += 3.0 * um * std::cos(5.0 * std::atan2(kCommandedY_m(r), kCommandedX_m(r)) + 0.4);
+  const report::Evaluation e = Evaluate(Usual(), readings, Estimator::kRigorous);
+  for (const report::Misfit& misfit : e.misfits) EXPECT_LT(misfit.per_u, report::kMostMisfit);
+  const CircleAnalysis a = Analyse(Usual(), readings, Estimator::kRigorous);
+  EXPECT_NEAR(a.deviations[0].G_b.value_m / um, 6.0, 0.8) << "noise enlarges it by some four of its deviations at either end";
+  for (const ErrorValue& error : ErrorsOf(a.fit)) {
+    if (error.unit != "deg" && std::isfinite(error.u)) {
+      EXPECT_LT(std::abs(error.value), 3.0 * error.u) << error.key;
+    }
+  }
+}
+
+TEST(CircularDeviations, OfAnArcHaveTheMeanOfTheCircleThatTheirRadiiAreAbout) {
+  // Of cos 2a on an arc of 200 deg about 0: centre (x, 0) and radius by their two normal equations.
+  const double half = 100.0 * deg;
+  double c1 = 0.0, c2 = 0.0, r0 = 0.0, r1 = 0.0, n = 0.0;
+  CirclePath there{0, 0, 1, true, kRadius_m, 0.01, {}, false}, back{0, 1, -1, true, kRadius_m, 0.01, {}, false};
+  for (double a = -half; a <= half + 1e-9; a += deg) {
+    const double radial = std::cos(2.0 * a);
+    n += 1.0, c1 += std::cos(a), c2 += std::pow(std::cos(a), 2), r0 += radial, r1 += radial * std::cos(a);
+    for (CirclePath* path : {&there, &back}) {
+      PathPoint& point = path->points.emplace_back();
+      point.commanded_rad = a;
+      point.d_m = radial * um * Eigen::Vector2d(std::cos(a), std::sin(a));
+    }
+  }
+  const double mean_um = (c2 * r0 - c1 * r1) / (n * c2 - c1 * c1);
+  const Iso230_4 d = CircularDeviations({there, back}, {})[0];
+  EXPECT_NEAR(d.D.value_m / um, mean_um, 1e-9);
+  EXPECT_LT(d.Fmin_b.value_m, d.D.value_m);
+  EXPECT_GT(d.Fmax_b.value_m, d.D.value_m);
+}
+
+TEST(RadialBar, FarOffItsCentreHasNoLagOfBothAxesNamed) {
+  Machine machine;
+  machine.backlash_x_m = 40.0 * um;
+  machine.centre_x_m = 800.0 * um;
+  machine.centre_y_m = -500.0 * um;
+  const diagnose::Diagnosis d = Diagnose(Readings(machine, 0.3 * um), Usual(), test::QuickOptions(100)).diagnosis;
+  for (const diagnose::Cause& cause : d.causes) EXPECT_NE(cause.effect, "servo_lag");
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ BenchFormat MadeOfRadii() {
   BenchFormat f = Format();
   f.channels = f.points = {f.channels.front()};
   std::erase_if(f.effects, [](const EffectEntry& e) {
-    return e.name == "ball_form" || e.name == "bar_gain" || e.name == "bar_nonlinearity";
+    return e.name == "ball_form" || e.name == "bar_gain" || e.name == "bar_nonlinearity" || e.name == "servo_lag";
   });
   constexpr double kLongestSpike_s = 1.0;  // one as long as the way to the next reversal would be backlash and more
   for (EffectEntry& e : f.effects) {
@@ -57,7 +57,7 @@ std::vector<std::string> LeftOpen(const std::vector<Reading>& readings) {
 }
 
 /// The bench where its readings show the radius alone. Gain and balls are the instrument's, which users have certified, and
-/// no shape of their own.
+/// no shape of their own; lag of both axes alike turns the circle, and what little a radius has of it by its square is anything small.
 const BenchFormat& OfRadii() {
   static const BenchFormat format = MadeOfRadii();
   return format;

@@ -12,6 +12,7 @@
 #include "twin/core/reading_clock.h"
 #include "twin/report/json_units.h"
 #include "twin/report/polar_text.h"
+#include "twin/report/sound.h"
 #include "twin/report/uncertainty_parts.h"
 
 namespace twinbench::benches::circular {
@@ -270,7 +271,10 @@ std::string ErrorsText(const CircleAnalysis& a) {
     text += std::isfinite(e.u) ? fmt::format("{:<34} {:14.6g} ± {:.2g} {}\n", e.key, e.value, e.u, e.unit) : "";
   for (const std::string& words : a.fit.not_separable) text += "not separable: " + words + "\n";
   if (!a.lag_kind.empty()) text += "lag: " + LagInWords(a.lag_kind) + "\n";
-  return text + fmt::format("residual, in stated uncertainties: {:.3f} rms\n", a.fit.chi);
+  text += fmt::format("residual, in stated uncertainties: {:.3f} rms\n", a.fit.chi);
+  if (a.fit.chi > report::kMostMisfit)
+    text += "the errors above do not describe the readings: their uncertainties are those of what is left, taken as noise that goes on from reading to reading; `diagnose` says what it is\n";
+  return text;
 }
 
 std::string DeviationsText(const CircleAnalysis& a) {
@@ -323,6 +327,14 @@ std::string OtherWays(const std::vector<Reading>& readings) {
   return text.empty() ? "" : " (places go the other way round than the rows say: " + text + ")";
 }
 
+/// G, F, D and H are of the radii as they were read, and errors widen their uncertainty by what they leave: of radii alone that is no reason to
+/// have nothing. Where rows contradict their clock, or an angle does what is shown, it is.
+report::Misfit MisfitOf(const CircleAnalysis& a, const std::string& other_ways) {
+  const std::string of = "the joint fit of the circles" + other_ways;
+  const bool is_radius = std::ranges::none_of(a.points, &CirclePoint::has_angle);
+  return is_radius && other_ways.empty() ? report::WidenedMisfit(of, a.fit.chi) : report::Misfit{of, a.fit.chi};
+}
+
 }  // namespace
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
@@ -347,7 +359,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   evaluation.summary += RankedText(ranked) + DeviationsText(a);
   if (a.IsFitted()) evaluation.summary += ErrorsText(a);
   evaluation.tables = {{"polar.txt", PolarsOf(a)}};
-  if (a.IsFitted() && a.fit.dof > 0) evaluation.misfits = {{"the joint fit of the circles" + OtherWays(readings), a.fit.chi}};
+  if (a.IsFitted() && a.fit.dof > 0) evaluation.misfits = {MisfitOf(a, OtherWays(readings))};
   if (a.IsFitted()) evaluation.joints = [fit = a.fit] { return std::vector<uncertainty::Joint>{JointOf(fit)}; };
   evaluation.score = [a](const json& truth) { return ScoreOf(a, truth); };
   return evaluation;

@@ -1,5 +1,6 @@
 #include "twin/benches/circular_motion/estimators/iso230_4.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -86,10 +87,16 @@ Extremes ExtremesOf(const VectorXd& values) {
   return at;
 }
 
+/// What centre and radius of a circle make of each.
+Eigen::MatrixX3d CircleOf(const Radii& radii) {
+  Eigen::MatrixX3d circle(radii.Count(), 3);
+  circle << radii.angle_rad.array().cos(), radii.angle_rad.array().sin(), VectorXd::Ones(radii.Count());
+  return circle;
+}
+
 /// The radii about their least-squares centre, and so what they lean on.
 Radii AboutOwnCentre(Radii radii) {
-  Eigen::MatrixXd circle(radii.Count(), 3);
-  circle << radii.angle_rad.array().cos(), radii.angle_rad.array().sin(), VectorXd::Ones(radii.Count());
+  const Eigen::MatrixX3d circle = CircleOf(radii);
   radii.deviation_m -= circle.leftCols(2) * SolveLeastSquares(circle, radii.deviation_m).topRows(2);
   if (radii.slope.cols() > 0) radii.slope -= circle.leftCols(2) * SolveLeastSquares(circle, radii.slope).topRows(2);
   return radii;
@@ -151,9 +158,11 @@ Figures FiguresOf(const Radii& radii, const SharedUncertainty& shared) {
           Weighted(about, Only(about, at.smallest), shared)};
 }
 
+/// Of the least-squares circle, less the commanded radius: on a whole circle the mean of all radii, which on an arc goes with its centre.
 Iso230_4Value MeanOf(const Radii& radii, const SharedUncertainty& shared) {
   if (radii.Count() == 0) return {};
-  return Weighted(radii, VectorXd::Constant(radii.Count(), 1.0 / static_cast<double>(radii.Count())), shared);
+  const Eigen::MatrixX3d circle = CircleOf(radii);
+  return Weighted(radii, circle * (circle.transpose() * circle).ldlt().solve(Eigen::Vector3d::UnitZ()), shared);
 }
 
 /// The readings of a pass by their angle within a turn.

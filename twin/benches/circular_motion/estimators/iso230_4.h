@@ -23,7 +23,7 @@ struct Iso230_4 {
   Iso230_4Value G_mz_ccw, G_mz_cw, G_mz_b;  // from the centre that makes it smallest: the minimum zone
   Iso230_4Value Fmax_ccw, Fmin_ccw;         // radial deviation from the least-squares centre: radius less the commanded one
   Iso230_4Value Fmax_cw, Fmin_cw, Fmax_b, Fmin_b;
-  Iso230_4Value D;  // mean radial deviation of both paths
+  Iso230_4Value D;  // mean radial deviation of both paths: of their least-squares circle
   Iso230_4Value H;  // largest difference between the directions at one angle, linearly between the readings
 };
 

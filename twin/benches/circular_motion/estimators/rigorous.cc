@@ -224,6 +224,49 @@ void SetResiduals(const std::vector<CirclePoint>& points, const CircleConstants&
   if (of_grid > 0) fit.rms_grid_m = std::sqrt(grid / of_grid);
 }
 
+/// What is left along each pass, in stated uncertainties: a channel after the other.
+std::vector<VectorXd> LeftAlongPasses(const std::vector<CirclePoint>& points, const CircleFit& fit, const CircleConstants& known) {
+  std::vector<VectorXd> left;
+  for (std::size_t first = 0, end = 0; first < points.size(); first = end) {
+    while (end < points.size() && points[end].setup == points[first].setup && points[end].pass == points[first].pass) ++end;
+    Eigen::MatrixX2d of_pass(static_cast<Index>(end - first), 2);
+    for (std::size_t i = first; i < end; ++i) {
+      const CirclePoint& p = points[i];
+      of_pass.row(static_cast<Index>(i - first)) =
+          p.Weights().cwiseProduct(p.Values_m() - Shown_m(p, fit.errors, fit.MountingOf(p.setup), known));
+    }
+    left.emplace_back(of_pass.col(0));
+    if (points[first].has_angle) left.emplace_back(of_pass.col(1));
+  }
+  return left;
+}
+
+/// How many neighbours say one thing: what is left because an error is none of the unknowns goes on from reading to reading, and n of them
+/// are no n independent ones. Until it no longer does (initial positive sequence).
+double MemoryOf(const std::vector<VectorXd>& left) {
+  constexpr Index kLeastPairs = 8;
+  double squares = 0.0, memory = 1.0;
+  for (const VectorXd& r : left) squares += r.squaredNorm();
+  for (Index apart = 1; squares > 0.0; ++apart) {
+    double products = 0.0;
+    Index pairs = 0;
+    for (const VectorXd& r : left) {
+      const Index count = r.size() - apart;
+      if (count <= 0) continue;
+      products += r.head(count).dot(r.tail(count));
+      pairs += count;
+    }
+    if (pairs < kLeastPairs || products <= 0.0) break;
+    memory += 2.0 * products / squares;
+  }
+  return memory;
+}
+
+/// Of all variances: what is left beyond the stated noise, as much as its readings are independent.
+double WideningOf(const std::vector<CirclePoint>& points, const CircleFit& fit, const CircleConstants& known) {
+  return fit.chi > 1.0 ? 1.0 + (fit.chi * fit.chi - 1.0) * MemoryOf(LeftAlongPasses(points, fit, known)) : 1.0;
+}
+
 }  // namespace
 
 double SharedUncertainty::Variance(const VectorXd& slope) const {
@@ -273,7 +316,7 @@ CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstan
   fit.dof = values - unknowns + solved.hidden.cols() + equations.empty;
   fit.chi = std::sqrt(equations.chi2 / static_cast<double>(fit.dof));
   const MatrixXd unscale = equations.scale.cwiseInverse().asDiagonal();
-  const double widening = std::pow(std::max(1.0, fit.chi), 2);
+  const double widening = WideningOf(points, fit, known);
   const MatrixXd from_right = unscale * solved.inverse;
   fit.shared = {widening * from_right * unscale,
                 unscale * solved.hidden,

@@ -54,7 +54,7 @@ struct CircleFit {
 /// Gauss-Newton. Directions that the readings do not show stay where they are (the shortest solution) and are
 /// named. Thermal unknowns are left out unless the temperature changed by 0.2 K.
 ///
-/// Uncertainty: stated noise, larger if more is left over. Not included: calibration of the grid; an error of
+/// Uncertainty: stated noise, larger if more is left over, and by how far that goes on from reading to reading. Not included: calibration of the grid; an error of
 /// machine or instruments that is none of the unknowns; what is not separable.
 /// @throws InputError if there are fewer values than unknowns.
 CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstants& known);
