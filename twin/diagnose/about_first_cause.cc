@@ -118,6 +118,18 @@ Tried FirstCause(const Searched& searched, const std::vector<Reading>& readings,
   return best;
 }
 
+/// The causes without a shape beside the first: a product of two of them is as large as the square of one.
+std::vector<const Term*> BesideTheFirst(const Searched& searched, const TwinComparison& comparison) {
+  std::vector<const Term*> beside;
+  for (std::size_t k = 1; k < searched.found().terms.size(); ++k) {
+    const Term& term = searched.found().terms[k];
+    const Family& family = searched.FamilyOf(term);
+    if (family.kind != Kind::kNamed || family.at || family.grid != 1 || (comparison.may_bend && !comparison.may_bend(family.effect))) continue;
+    if (CanBeTried(EffectOf(family, term, comparison.format->effects), comparison.format->effects)) beside.push_back(&term);
+  }
+  return beside;
+}
+
 }  // namespace
 
 bool MayBeCurved(const Searched& searched, const std::vector<Reading>& readings, const TwinComparison& comparison) {
@@ -130,18 +142,21 @@ bool MayBeCurved(const Searched& searched, const std::vector<Reading>& readings,
 
 std::unique_ptr<Searched> AboutFirstCause(const Searched& before, const std::vector<Reading>& readings,
                                           const DiagnoseOptions& options, const TwinComparison& comparison) {
-  const Term& first = before.found().terms.front();
+  const std::vector<Term>& terms = before.found().terms;
   const Tried cause = FirstCause(before, readings, comparison);
   Scenario believed = before.scenario;
   believed.effects.push_back(cause.effect);
+  const std::vector<const Term*> beside = BesideTheFirst(before, comparison);
+  for (const Term* term : beside) believed.effects.push_back(EffectOf(before.FamilyOf(*term), *term, comparison.format->effects));
   auto after =
       std::make_unique<Searched>(readings, believed, options, comparison, Compare(readings, believed, comparison));
   if (after->candidates.families.size() != before.candidates.families.size() ||
       after->compared.run.Rows() != before.compared.run.Rows())
     return nullptr;
-  const Family& same = after->FamilyOf(first);
-  const Eigen::MatrixXd columns = same.at ? same.at(cause.shape) : same.ColumnsAt(first.grid_point);
+  const Family& same = after->FamilyOf(terms.front());
+  const Eigen::MatrixXd columns = same.at ? same.at(cause.shape) : same.ColumnsAt(terms.front().grid_point);
   after->compared.run.residual += columns * cause.amplitudes;
+  for (const Term* term : beside) after->compared.run.residual += after->FamilyOf(*term).ColumnsAt(0) * term->amplitudes;
   AnalysisOptions how = HowToAnalyse(after->compared.run, options, comparison);
   how.null = &before.analysis.null;
   after->analysis = Analyse(after->compared.run, after->candidates.families, how);

@@ -256,9 +256,7 @@ void TryTogether(SearchProblem problem, SearchResult& result) {
   if (together.terms.size() < 2) return;
   problem.extent.most_causes = std::max(most, static_cast<int>(std::ssize(together.terms)) + 1);
   Revise(Without(problem, IsUnknown), together);
-  const std::size_t causes = together.terms.size();
-  Forward(problem, together);
-  if (together.terms.size() > causes) Settle(problem, together);
+  Forward(problem, together);  // not settled again: what lies off a cause's tangent, as a shape without a name, would take its place
   together.joint_evidence = EvidenceOf(problem, together.terms);
   if (together.joint_evidence <= EvidenceOf(problem, result.terms) && !NeedsNoUnknown(problem, together.terms, result.terms)) return;
   together.first_statistic = result.first_statistic;
