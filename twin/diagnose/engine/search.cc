@@ -245,8 +245,10 @@ bool NeedsNoUnknown(const SearchProblem& problem, const std::vector<Term>& cause
 
 /// Where several causes are there at once, what explains most of all of them at the first step may be none of them, and what is taken next
 /// stands beside that. Causes without a shape need no steps: all are fitted together, those are dropped that are not needed, and what is the
-/// more probable of all of it stays.
+/// more probable of all of it stays. Of several channels: a cause shows on them together, what has no name on each by itself; on one channel
+/// nothing but its size would speak for the cause.
 void TryTogether(SearchProblem problem, SearchResult& result) {
+  if (problem.run.Channels() < 2) return;
   const int most = problem.extent.most_causes;
   const bool is_full = most > 1 && std::ssize(result.terms) >= most;  // where one is wanted, one is all there is
   if (!is_full && !HasAny(problem, result.terms, IsUnknown)) return;
