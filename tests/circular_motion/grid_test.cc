@@ -74,5 +74,29 @@ TEST(GridPlate, HasItsSquarenessScalesAndBacklashesNamedTogether) {
   EXPECT_FALSE(HasUnmodelled(d));
 }
 
+TEST(GridPlate, HasTheScaleOfAnAxisBesideLagsThatAreNotAlike) {
+  const Scenario scenario =
+      ParseScenario("bench = \"circular_motion\"\n[machine]\nlag_x_s = 0.0\nlag_y_s = 0.0\nspan_mm = 80.0\n[circular_procedure]\n"
+                    "setups = [{instrument = \"grid\", radius_mm = 80.0}]\n",
+                    "grid", ".", {});
+  // Of first order: along each axis 1 / (1 + lag s) at the circle's rate.
+  constexpr double kLagX_s = 3.0e-3, kLagY_s = 3.6e-3, kScaleX = 20e-6, kFeed = 15.0 * units::mm * 1000.0 / 60.0;
+  std::vector<Reading> readings = Readings({}, 0.05 * um, 5.7);
+  for (Reading& r : readings) {
+    const double a = std::atan2(kCommandedY_m(r), kCommandedX_m(r)), rate = r.direction * kFeed / kRadius_m;
+    const auto lagging_m = [&](double from_rad, double lag_s) {
+      return kRadius_m / std::hypot(1.0, rate * lag_s) * std::cos(from_rad - std::atan(rate * lag_s));
+    };
+    kFeed_m_s(r) = kFeed;
+    kGridX_m(r) += (1.0 + kScaleX) * lagging_m(a, kLagX_s) - kCommandedX_m(r);
+    kGridY_m(r) += lagging_m(a - 90.0 * deg, kLagY_s) - kCommandedY_m(r);
+  }
+  const diagnose::Diagnosis d = Diagnose(readings, scenario, test::QuickOptions(100)).diagnosis;
+  const diagnose::Cause* const scale = Named(d, "scale", "x");
+  ASSERT_TRUE(scale);
+  EXPECT_NEAR(scale->parameters[0].value, kScaleX, 4.0 * scale->parameters[0].u);
+  EXPECT_FALSE(HasUnmodelled(d));
+}
+
 }  // namespace
 }  // namespace twinbench::benches::circular
