@@ -9,7 +9,7 @@
 #include "twin/core/stream.h"
 
 // A grid plate on a circle. Its readings are written here from what each error does to the path.
-namespace twinbench::benches::circular {
+namespace twinbench::benches::circular::on_grid {
 namespace {
 
 using units::deg, units::mm, units::um, units::arcsec;
@@ -99,4 +99,4 @@ TEST(GridPlate, HasTheScaleOfAnAxisBesideLagsThatAreNotAlike) {
 }
 
 }  // namespace
-}  // namespace twinbench::benches::circular
+}  // namespace twinbench::benches::circular::on_grid
