@@ -47,7 +47,7 @@ struct SearchCase {
     noise = WhiteNoise(run);
     projector = std::make_unique<Projector>(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
     const Scanner scanner(run, noise, *projector, families);
-    return Search(run, noise, *projector, scanner, LogPriors(families), threshold, {most_causes});
+    return Search(run, noise, *projector, scanner, LogPriors(families), threshold, {.most_causes = most_causes, .together = true});
   }
   LinearRun run;
   NoiseModel noise;

@@ -121,6 +121,7 @@ Tried FirstCause(const Searched& searched, const std::vector<Reading>& readings,
 /// The causes without a shape beside the first: a product of two of them is as large as the square of one.
 std::vector<const Term*> BesideTheFirst(const Searched& searched, const TwinComparison& comparison) {
   std::vector<const Term*> beside;
+  if (!comparison.together) return beside;
   for (std::size_t k = 1; k < searched.found().terms.size(); ++k) {
     const Term& term = searched.found().terms[k];
     const Family& family = searched.FamilyOf(term);

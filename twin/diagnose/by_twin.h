@@ -197,6 +197,7 @@ struct TwinComparison {
   int most_causes = 4;
   std::function<bool(const std::string& effect)> may_bend = {};  // so that the twin is asked about it again; empty: any
   BentWaves bent = {};
+  bool together = false;  // see SearchExtent; and the search goes on about all causes without a shape that were found
   bool bends = false;  // the first cause is searched about itself wherever it is off its tangent by more than noise
   std::function<std::string(const std::string& effect, const std::string& rival)> next_measurement = {};
   std::function<std::string(const std::string& effect)> shown_by = {};  // what would show it; empty: nothing simple

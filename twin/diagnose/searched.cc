@@ -28,6 +28,7 @@ AnalysisOptions HowToAnalyse(const LinearRun& run, const DiagnoseOptions& option
   AnalysisOptions how = AnalysisOptionsOf(options);
   how.most_causes = comparison.most_causes;
   how.bent = comparison.bent;
+  how.together = comparison.together;
   if (comparison.sampled) how.null_runs = NullRuns(run, options.null_runs);
   return how;
 }

@@ -99,6 +99,7 @@ diagnose::TwinComparison Comparison(const Scenario& scenario) {
   diagnose::TwinComparison comparison;
   comparison.format = &Format();
   comparison.follow = FollowOften();
+  comparison.together = true;
   comparison.unit = "um";
   comparison.to_SI = units::um;
   comparison.free_points = {"offset_x", "offset_y", "rotation", "length"};

@@ -139,7 +139,7 @@ Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, cons
       analysis.power = Project(*analysis.projector, {}, white).power[0];
     }
     analysis.found = Search(run, analysis.noise, *analysis.projector, *analysis.scanner, log_priors, analysis.threshold,
-                            {options.most_causes, options.most_orders, options.largest_only, options.bent});
+                            {options.most_causes, options.most_orders, options.largest_only, options.bent, options.together});
     const NoiseView view = LookAtNoise(run, analysis);
     const NoiseCause* repair = repairs < tuning::kMostRepairs ? NextRepair(analysis, view) : nullptr;
     // What else is there yet looks like noise of another kind.

@@ -19,6 +19,7 @@ struct AnalysisOptions {
   bool largest_only = false;              // the first large cause with a name, to be asked about: see Search
   int most_orders = 0;                    // see SearchExtent
   BentWaves bent = {};                    // likewise
+  bool together = false;                  // likewise
 };
 
 /// A run searched with a noise model that its own residuals do not refute.

@@ -76,7 +76,7 @@ SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Project
     Settle(problem, result);
     TryFirst(problem, [](const Family& f) { return f.takes_any_course; }, tuning::kMostBeforeCourses, result);
     TryFirst(problem, IsUnknown, extent.most_causes, result);
-    TryTogether(problem, result);
+    if (extent.together) TryTogether(problem, result);
   }
   MeasureShares(problem, result.terms);
   EstimateTerms(run, noise, projector, scanner, problem.white, result.terms);

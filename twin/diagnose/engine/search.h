@@ -47,6 +47,7 @@ struct SearchExtent {
   /// selected again.
   bool largest_only = false;
   BentWaves bent = {};
+  bool together = false;  // causes without a shape are tried together as well: see together.h
 };
 
 /// Finds simultaneous causes: scan, take the most probable, refine its shape, scan what

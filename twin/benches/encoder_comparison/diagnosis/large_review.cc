@@ -118,16 +118,23 @@ bool LargeSearch::IsChance(const Term& term, const Eigen::VectorXd& left) const 
 }
 
 /// What stood for something that was found later is not kept, nor what the memory of the rest makes by chance: the
-/// weakest first, for what it kept from being found may be what made others look weak.
+/// weakest first, for what it kept from being found may be what made others look weak. The rest is searched again when all are
+/// strong beside what it was.
 void LargeSearch::DropNeedless() {
-  while (!large_.causes.empty()) {
-    const std::vector<double> strength = Strengths();
-    const auto weakest = std::ranges::min_element(strength);
-    if (*weakest > tuning::kHeadline) return;
-    std::vector<LargeCause> kept;
-    for (std::size_t k = 0; k < strength.size(); ++k) {
-      if (strength[k] > *weakest) kept.push_back(large_.causes[k]);  // those that are none at all go together
+  for (;;) {
+    std::vector<LargeCause> kept = large_.causes;
+    while (!kept.empty()) {
+      const std::vector<double> strength = Strengths(kept);
+      const double weakest = std::ranges::min(strength);
+      if (weakest > tuning::kHeadline) break;
+      std::vector<LargeCause> stronger;
+      for (std::size_t k = 0; k < strength.size(); ++k) {
+        if (strength[k] > weakest) stronger.push_back(kept[k]);  // those that are none at all go together
+      }
+      kept = std::move(stronger);
+      if (!kept.empty()) TakeOver(fit_->Ask(kept), kept);
     }
+    if (kept.size() == large_.causes.size()) return;
     if (kept.empty()) return SearchPlain();
     if (!TakeInstead(std::move(kept))) return;
   }
@@ -135,19 +142,19 @@ void LargeSearch::DropNeedless() {
 
 /// Of each large cause, how many of its uncertainties it is away from nothing, with the memory of the rest; 0 of what
 /// is less than the others are as exact as their formula.
-std::vector<double> LargeSearch::Strengths() const {
-  const AskedAgain beside = fit_->Ask(large_.causes, LeftByTerms());
+std::vector<double> LargeSearch::Strengths(const std::vector<LargeCause>& causes) const {
+  const AskedAgain beside = fit_->Ask(causes, LeftByTerms());
   const Eigen::VectorXd left = fit_->WhiteOf(beside.left);
   const double memory = fit_->Memory(beside.left), least = LeastExplained();
   // Beside the rest a fit may end where the twin shows nothing.
   const bool is_possible = fit_->Shown(beside.effects).allFinite();
-  const std::vector<EffectSettings> effects = is_possible ? beside.effects : EffectsOf(large_.causes);
+  const std::vector<EffectSettings> effects = is_possible ? beside.effects : EffectsOf(causes);
   std::vector<double> strengths;
-  for (std::size_t k = 0; k < large_.causes.size(); ++k) {
+  for (std::size_t k = 0; k < causes.size(); ++k) {
     const Eigen::VectorXd own =
         fit_->WhiteOf(fit_->Shown(effects) - fit_->Shown(EffectsWithout(k, effects)));
     const double most = std::max(memory, MemoryAlong(own, left));
-    strengths.push_back(own.squaredNorm() > least ? Deviations(large_.causes[k].effect) / std::sqrt(most) : 0.0);
+    strengths.push_back(own.squaredNorm() > least ? Deviations(causes[k].effect) / std::sqrt(most) : 0.0);
   }
   return strengths;
 }

@@ -58,7 +58,7 @@ class LargeSearch {
   bool IsChance(const Term& term, const Eigen::VectorXd& left) const;
   SecondOrder Bent() const;
   void DropNeedless();
-  std::vector<double> Strengths() const;
+  std::vector<double> Strengths(const std::vector<LargeCause>& causes) const;
   void SearchPlain();
   void EndTies();
   void JudgeUnsure();
