@@ -15,7 +15,7 @@ namespace twinbench::diagnose {
 namespace {
 
 constexpr double kChanceOfScatter = 1e-3;  // of a scatter that looks like it, each way in which it may look so
-constexpr std::size_t kFewest = 3;         // readings
+constexpr std::size_t kFewestReadings = 3;         // readings
 constexpr double kNarrow = 0.02;           // of the range of a value, or of a turn
 
 /// P(at least `count`) of a Poisson number.
@@ -64,7 +64,7 @@ double CommonPlace(const std::set<int>& far, const Eigen::VectorXd& value, bool 
     if (std::ssize(far) > 2 * together || share >= 1.0) continue;
     const double chance =
         static_cast<double>(far.size()) * BinomialTail(static_cast<int>(together) - 1, others, share);
-    if (together >= static_cast<std::ptrdiff_t>(kFewest) && chance < kChanceOfScatter) return from;
+    if (together >= static_cast<std::ptrdiff_t>(kFewestReadings) && chance < kChanceOfScatter) return from;
   }
   return kNaN;
 }
@@ -89,7 +89,7 @@ Eigen::VectorXd ShownShares(const LinearRun& run, int channel) {
 std::string RecurrenceOf(const std::vector<int>& rows, const LinearRun& run) {
   std::set<int> far;
   for (const int row : rows) far.insert(run.ReadingOf(row));
-  if (far.size() < kFewest) return "";
+  if (far.size() < kFewestReadings) return "";
   if (StandInARow(far, run.schedule)) return "far values that stand in a row, function of time";
   const auto at_angle = [&](const Eigen::VectorXd& angle_rad) {
     const Eigen::VectorXd turns = TurnsOf(angle_rad);
@@ -107,7 +107,7 @@ std::string RecurrenceOf(const std::vector<int>& rows, const LinearRun& run) {
       if (run.ChannelOf(row) == c) own.insert(run.ReadingOf(row));
     }
     const Eigen::VectorXd shares = ShownShares(run, c);
-    if (own.size() < kFewest || shares.size() == 0 || !std::isfinite(CommonPlace(own, shares, false))) continue;
+    if (own.size() < kFewestReadings || shares.size() == 0 || !std::isfinite(CommonPlace(own, shares, false))) continue;
     return fmt::format("far values that come back where {} shows the same, function of what it shows",
                        run.channels[At(c)]);
   }
