@@ -69,7 +69,8 @@ std::vector<CirclePath> RigorousPaths(const std::vector<CirclePoint>& points, co
                      {p.u_radial_m, p.u_tangential_m},
                      p.of_machine,
                      p.of_steps,
-                     SlopeOfDeviation(p, fit, known)};
+                     SlopeOfDeviation(p, fit, known),
+                     p.radial_m};
   });
 }
 

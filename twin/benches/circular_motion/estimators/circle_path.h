@@ -14,6 +14,7 @@ struct PathPoint {
   Eigen::Vector2d u_own_m{kNaN, kNaN};  // standard uncertainty of radius and tangent that is this reading's own
   Eigen::Vector2d of_machine{0.0, 0.0}, of_steps{0.0, 0.0};  // shares of its squares (CirclePoint)
   Eigen::Matrix2Xd slope = {};          // d_m by the unknowns of the fit; empty: none were fitted
+  double shown_m = kNaN;                // radial deviation as the instrument showed it
 
   double Radial_m() const { return std::cos(commanded_rad) * d_m.x() + std::sin(commanded_rad) * d_m.y(); }
   double Tangential_m() const { return std::cos(commanded_rad) * d_m.y() - std::sin(commanded_rad) * d_m.x(); }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "twin/benches/circular_motion/estimators/path_noise.h"
+#include "twin/core/distributions.h"
 #include "twin/core/linear_algebra.h"
 
 namespace twinbench::separate::circular {
@@ -16,6 +18,7 @@ using Eigen::Index, Eigen::VectorXd;
 struct Radii {
   VectorXd deviation_m, u_own_m, of_machine, of_steps, angle_rad;  // of_: shares of the square of u_own_m
   Eigen::MatrixXd slope;  // rows x unknowns
+  std::vector<Index> rounded_with;  // first of the readings in a row that show the same value: their rounding errors are one
 
   Index Count() const { return deviation_m.size(); }
   PartedVariance Own(Index i) const {
@@ -40,6 +43,7 @@ Radii RadiiOf(const std::vector<const CirclePath*>& paths) {
   radii.of_machine.resize(count);
   radii.of_steps.resize(count);
   radii.angle_rad.resize(count);
+  radii.rounded_with.resize(points.size());
   radii.slope.resize(count, points.empty() ? 0 : points.front()->slope.cols());
   for (Index i = 0; i < count; ++i) {
     const PathPoint& point = *points[static_cast<std::size_t>(i)];
@@ -50,6 +54,8 @@ Radii RadiiOf(const std::vector<const CirclePath*>& paths) {
     radii.of_machine[i] = point.of_machine.x();
     radii.of_steps[i] = point.of_steps.x();
     radii.angle_rad[i] = point.commanded_rad;
+    const bool same = i > 0 && point.shown_m == points[static_cast<std::size_t>(i - 1)]->shown_m;
+    radii.rounded_with[static_cast<std::size_t>(i)] = same ? radii.rounded_with[static_cast<std::size_t>(i - 1)] : i;
     if (radii.slope.cols() > 0) radii.slope.row(i) = c * point.slope.row(0) + s * point.slope.row(1);
   }
   return radii;
@@ -59,6 +65,33 @@ Iso230_4Value With(double value_m, const PartedVariance& variance) {
   return {value_m, std::sqrt(variance.all), variance.of_steps / variance.all, variance.of_machine / variance.all};
 }
 
+/// Variance of a sum of radii with these weights by what is their own.
+PartedVariance OwnOf(const Radii& radii, const VectorXd& weight) {
+  PartedVariance variance;
+  VectorXd of_steps_m = VectorXd::Zero(radii.Count());
+  for (Index i = 0; i < radii.Count(); ++i) {
+    const PartedVariance own = radii.Own(i);
+    variance = variance + PartedVariance{own.all - own.of_steps, 0.0, own.of_machine} * (weight[i] * weight[i]);
+    of_steps_m[radii.rounded_with[static_cast<std::size_t>(i)]] += weight[i] * std::sqrt(own.of_steps);
+  }
+  const double steps = of_steps_m.squaredNorm();
+  return variance + PartedVariance{steps, steps, 0.0};
+}
+
+/// Noise makes an extreme larger, the more readings there are that may be it.
+/// @param values_m  Among which it is one.
+double BiasOfExtreme_m(const VectorXd& values_m, double extreme_m, double sigma_m) {
+  constexpr double kNear = 2.0;  // standard deviations
+  const auto near = static_cast<double>(((values_m.array() - extreme_m).abs() <= kNear * sigma_m).count());
+  // Largest of so many normal deviates (Blom, Statistical Estimates and Transformed Beta-Variables, 1958).
+  return sigma_m * NormalExceededWith(0.625 / (near + 0.25));
+}
+
+/// @param bias_m  Shared out as the variance is.
+PartedVariance WithBias(const PartedVariance& own, double bias_m) {
+  return own.all > 0.0 ? own * (1.0 + bias_m * bias_m / own.all) : own;
+}
+
 /// A sum of radii with these weights.
 Iso230_4Value Weighted(const Radii& radii, const VectorXd& weight, const SharedUncertainty& shared) {
   const double value_m = weight.dot(radii.deviation_m);
@@ -66,15 +99,18 @@ Iso230_4Value Weighted(const Radii& radii, const VectorXd& weight, const SharedU
   const VectorXd slope = radii.slope.transpose() * weight;
   PartedVariance variance = shared.Parted(slope);
   variance.all = shared.Variance(slope);
-  for (Index i = 0; i < radii.Count(); ++i) {
-    const double square = weight[i] * weight[i];
-    variance = variance + radii.Own(i) * square;
-  }
-  return With(value_m, variance);
+  return With(value_m, variance + OwnOf(radii, weight));
 }
 
-VectorXd Only(const Radii& radii, Index i) {
-  return VectorXd::Unit(radii.Count(), i);
+/// The radius that is the largest or the smallest of all.
+Iso230_4Value ExtremeOf(const Radii& radii, Index at, const SharedUncertainty& shared) {
+  const double value_m = radii.deviation_m[at];
+  if (!shared.IsKnown()) return {value_m};
+  const VectorXd slope = radii.slope.row(at);
+  PartedVariance variance = shared.Parted(slope);
+  variance.all = shared.Variance(slope);
+  const double bias_m = BiasOfExtreme_m(radii.deviation_m, value_m, radii.u_own_m[at]);
+  return With(value_m, variance + WithBias(radii.Own(at), bias_m));
 }
 
 struct Extremes {
@@ -106,8 +142,11 @@ Radii AboutOwnCentre(Radii radii) {
 /// many readings.
 Iso230_4Value RangeOf(const Radii& about, const SharedUncertainty& shared) {
   const Extremes at = ExtremesOf(about.deviation_m);
-  const double value_m = about.deviation_m[at.largest] - about.deviation_m[at.smallest];
-  return shared.IsKnown() ? With(value_m, about.Own(at.largest) + about.Own(at.smallest)) : Iso230_4Value{value_m};
+  const double largest_m = about.deviation_m[at.largest], smallest_m = about.deviation_m[at.smallest], value_m = largest_m - smallest_m;
+  if (!shared.IsKnown()) return {value_m};
+  const double bias_m = BiasOfExtreme_m(about.deviation_m, largest_m, about.u_own_m[at.largest]) +
+                        BiasOfExtreme_m(about.deviation_m, smallest_m, about.u_own_m[at.smallest]);
+  return With(value_m, WithBias(about.Own(at.largest) + about.Own(at.smallest), bias_m));
 }
 
 /// Where a convex function of one number is smallest within +- half, by golden sections.
@@ -154,8 +193,8 @@ Figures FiguresOf(const Radii& radii, const SharedUncertainty& shared) {
   if (radii.Count() == 0) return {};
   const Radii about = AboutOwnCentre(radii);
   const Extremes at = ExtremesOf(about.deviation_m);
-  return {RangeOf(about, shared), RangeOf(AboutMinimumZone(about), shared), Weighted(about, Only(about, at.largest), shared),
-          Weighted(about, Only(about, at.smallest), shared)};
+  return {RangeOf(about, shared), RangeOf(AboutMinimumZone(about), shared), ExtremeOf(about, at.largest, shared),
+          ExtremeOf(about, at.smallest, shared)};
 }
 
 /// Of the least-squares circle, less the commanded radius: on a whole circle the mean of all radii, which on an arc goes with its centre.
@@ -197,15 +236,23 @@ std::optional<Between> BetweenAt(const std::vector<std::pair<double, Index>>& or
 /// What the readings of one pass differ by from the other pass, between whose readings it is taken linearly.
 void RaiseHysteresis(const Radii& at, const Radii& other, const SharedUncertainty& shared, Iso230_4Value& largest) {
   const auto order = ByAngle(other);
+  VectorXd all_m = VectorXd::Constant(at.Count(), kNaN);
+  PartedVariance of_largest;
+  bool is_larger = false;
   for (const auto& [angle_rad, i] : ByAngle(at)) {
     const auto between = BetweenAt(order, angle_rad);
     if (!between) continue;
     const auto& [j, k, share] = *between;
     const double apart_m = std::abs(at.deviation_m[i] - (1.0 - share) * other.deviation_m[j] - share * other.deviation_m[k]);
+    all_m[i] = apart_m;
     if (apart_m <= largest.value_m) continue;
-    const PartedVariance own = at.Own(i) + other.Own(j) * std::pow(1.0 - share, 2) + other.Own(k) * std::pow(share, 2);
-    largest = shared.IsKnown() ? With(apart_m, own) : Iso230_4Value{apart_m};
+    largest.value_m = apart_m;
+    is_larger = true;
+    of_largest = at.Own(i) + other.Own(j) * std::pow(1.0 - share, 2) + other.Own(k) * std::pow(share, 2);
   }
+  if (!is_larger || !shared.IsKnown()) return;
+  const double bias_m = BiasOfExtreme_m(all_m, largest.value_m, std::sqrt(of_largest.all));
+  largest = With(largest.value_m, WithBias(of_largest, bias_m));
 }
 
 /// Of any two passes of opposite directions.
@@ -277,7 +324,8 @@ double CircularDeviation_m(const std::vector<CirclePath>& paths) {
   return radii.Count() == 0 ? kNaN : RangeOf(AboutOwnCentre(radii), {}).value_m;
 }
 
-std::vector<Iso230_4> CircularDeviations(const std::vector<CirclePath>& paths, const SharedUncertainty& shared) {
+std::vector<Iso230_4> CircularDeviations(const std::vector<CirclePath>& stated, const SharedUncertainty& shared) {
+  const std::vector<CirclePath> paths = shared.IsKnown() ? WithNoiseAsRead(stated) : stated;
   std::vector<std::vector<const CirclePath*>> groups;
   for (const CirclePath& path : paths) {
     const auto group = std::ranges::find_if(groups, [&](const auto& g) {

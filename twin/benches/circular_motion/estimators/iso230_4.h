@@ -32,8 +32,8 @@ std::vector<std::pair<std::string, Iso230_4Value>> NamedValues(const Iso230_4& d
 
 /// One entry a set-up and feed, in the order of the paths.
 ///
-/// Uncertainty: of the radius at the readings that are the extremes. Not included: noise makes extremes larger, by
-/// some two of its standard deviations at either end.
+/// Uncertainty: of the radius at the readings that are the extremes, by the noise that the readings show, and what noise makes extremes larger
+/// by. The values are those of the readings as they are.
 /// @param shared  Unknowns behind the paths; empty: no uncertainty is stated.
 std::vector<Iso230_4> CircularDeviations(const std::vector<CirclePath>& paths, const SharedUncertainty& shared);
 
