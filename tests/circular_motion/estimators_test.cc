@@ -198,7 +198,7 @@ CirclePath Circle(int direction, double beyond_um = 0.0) {
     PathPoint& point = path.points.emplace_back();
     point.commanded_rad = units::turn * i / kPoints;
     const Eigen::Vector2d outwards(std::cos(point.commanded_rad), std::sin(point.commanded_rad));
-    const double radial_m = um * (i == kHighest ? 5.0 + beyond_um : i == kLowest ? -7.0 : 0.0);
+    const double radial_m = um * (i == kHighest ? 9.0 + beyond_um : i == kLowest ? -9.0 : 0.0);
     point.d_m = radial_m * outwards;
     point.slope = outwards;
     point.u_own_m = um * Eigen::Vector2d::Constant(i == kHighest ? 0.3 : 0.4);

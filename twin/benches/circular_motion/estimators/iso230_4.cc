@@ -6,60 +6,13 @@
 #include <optional>
 
 #include "twin/benches/circular_motion/estimators/path_noise.h"
+#include "twin/benches/circular_motion/estimators/radii.h"
 #include "twin/core/distributions.h"
-#include "twin/core/linear_algebra.h"
 
 namespace twinbench::separate::circular {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
-
-/// Radii about the commanded centre, less the nominal one, of one or two paths; and what they lean on.
-struct Radii {
-  VectorXd deviation_m, u_own_m, of_machine, of_steps, angle_rad;  // of_: shares of the square of u_own_m
-  Eigen::MatrixXd slope;  // rows x unknowns
-  std::vector<Index> rounded_with;  // first of the readings in a row that show the same value: their rounding errors are one
-
-  Index Count() const { return deviation_m.size(); }
-  PartedVariance Own(Index i) const {
-    const double all = u_own_m[i] * u_own_m[i];
-    return {all, of_steps[i] * all, of_machine[i] * all};
-  }
-};
-
-Radii RadiiOf(const std::vector<const CirclePath*>& paths) {
-  std::vector<const PathPoint*> points;
-  Radii radii;
-  std::vector<double> nominal_m;
-  for (const CirclePath* path : paths) {
-    for (const PathPoint& point : path->points) {
-      points.push_back(&point);
-      nominal_m.push_back(path->radius_m);
-    }
-  }
-  const Index count = std::ssize(points);
-  radii.deviation_m.resize(count);
-  radii.u_own_m.resize(count);
-  radii.of_machine.resize(count);
-  radii.of_steps.resize(count);
-  radii.angle_rad.resize(count);
-  radii.rounded_with.resize(points.size());
-  radii.slope.resize(count, points.empty() ? 0 : points.front()->slope.cols());
-  for (Index i = 0; i < count; ++i) {
-    const PathPoint& point = *points[static_cast<std::size_t>(i)];
-    const double radius_m = nominal_m[static_cast<std::size_t>(i)];
-    const double c = std::cos(point.commanded_rad), s = std::sin(point.commanded_rad);
-    radii.deviation_m[i] = std::hypot(radius_m * c + point.d_m.x(), radius_m * s + point.d_m.y()) - radius_m;
-    radii.u_own_m[i] = point.u_own_m.x();
-    radii.of_machine[i] = point.of_machine.x();
-    radii.of_steps[i] = point.of_steps.x();
-    radii.angle_rad[i] = point.commanded_rad;
-    const bool same = i > 0 && point.shown_m == points[static_cast<std::size_t>(i - 1)]->shown_m;
-    radii.rounded_with[static_cast<std::size_t>(i)] = same ? radii.rounded_with[static_cast<std::size_t>(i - 1)] : i;
-    if (radii.slope.cols() > 0) radii.slope.row(i) = c * point.slope.row(0) + s * point.slope.row(1);
-  }
-  return radii;
-}
 
 Iso230_4Value With(double value_m, const PartedVariance& variance) {
   return {value_m, std::sqrt(variance.all), variance.of_steps / variance.all, variance.of_machine / variance.all};
@@ -121,21 +74,6 @@ Extremes ExtremesOf(const VectorXd& values) {
   values.minCoeff(&at.smallest);
   values.maxCoeff(&at.largest);
   return at;
-}
-
-/// What centre and radius of a circle make of each.
-Eigen::MatrixX3d CircleOf(const Radii& radii) {
-  Eigen::MatrixX3d circle(radii.Count(), 3);
-  circle << radii.angle_rad.array().cos(), radii.angle_rad.array().sin(), VectorXd::Ones(radii.Count());
-  return circle;
-}
-
-/// The radii about their least-squares centre, and so what they lean on.
-Radii AboutOwnCentre(Radii radii) {
-  const Eigen::MatrixX3d circle = CircleOf(radii);
-  radii.deviation_m -= circle.leftCols(2) * SolveLeastSquares(circle, radii.deviation_m).topRows(2);
-  if (radii.slope.cols() > 0) radii.slope -= circle.leftCols(2) * SolveLeastSquares(circle, radii.slope).topRows(2);
-  return radii;
 }
 
 /// What the centre takes out of a difference of two radii is left out of its uncertainty: the centre is that of
@@ -201,16 +139,14 @@ Figures FiguresOf(const Radii& radii, const SharedUncertainty& shared) {
 Iso230_4Value MeanOf(const Radii& radii, const SharedUncertainty& shared) {
   if (radii.Count() == 0) return {};
   const Eigen::MatrixX3d circle = CircleOf(radii);
-  return Weighted(radii, circle * (circle.transpose() * circle).ldlt().solve(Eigen::Vector3d::UnitZ()), shared);
+  const Eigen::MatrixX3d weighted = radii.stands_for.asDiagonal() * circle;
+  return Weighted(radii, weighted * (circle.transpose() * weighted).ldlt().solve(Eigen::Vector3d::UnitZ()), shared);
 }
 
 /// The readings of a pass by their angle within a turn.
 std::vector<std::pair<double, Index>> ByAngle(const Radii& radii) {
   std::vector<std::pair<double, Index>> order;
-  for (Index i = 0; i < radii.Count(); ++i) {
-    const double turned_rad = std::fmod(radii.angle_rad[i], units::turn);
-    order.emplace_back(turned_rad < 0.0 ? turned_rad + units::turn : turned_rad, i);
-  }
+  for (Index i = 0; i < radii.Count(); ++i) order.emplace_back(WithinTurn_rad(radii.angle_rad[i]), i);
   std::ranges::sort(order);
   return order;
 }
