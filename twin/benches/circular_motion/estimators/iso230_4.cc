@@ -138,9 +138,9 @@ Figures FiguresOf(const Radii& radii, const SharedUncertainty& shared) {
 /// Of the least-squares circle, less the commanded radius: on a whole circle the mean of all radii, which on an arc goes with its centre.
 Iso230_4Value MeanOf(const Radii& radii, const SharedUncertainty& shared) {
   if (radii.Count() == 0) return {};
-  const Eigen::MatrixX3d circle = CircleOf(radii);
-  const Eigen::MatrixX3d weighted = radii.stands_for.asDiagonal() * circle;
-  return Weighted(radii, weighted * (circle.transpose() * weighted).ldlt().solve(Eigen::Vector3d::UnitZ()), shared);
+  const Eigen::MatrixXd circle = CircleOf(radii);
+  const Eigen::MatrixXd weighted = radii.stands_for.asDiagonal() * circle;
+  return Weighted(radii, weighted * (circle.transpose() * weighted).ldlt().solve(VectorXd::Unit(circle.cols(), 2)), shared);
 }
 
 /// The readings of a pass by their angle within a turn.

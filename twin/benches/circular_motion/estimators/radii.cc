@@ -80,14 +80,18 @@ double WithinTurn_rad(double angle_rad) {
   return turned_rad < 0.0 ? turned_rad + units::turn : turned_rad;
 }
 
-Eigen::MatrixX3d CircleOf(const Radii& radii) {
-  Eigen::MatrixX3d circle(radii.Count(), 3);
-  circle << radii.angle_rad.array().cos(), radii.angle_rad.array().sin(), VectorXd::Ones(radii.Count());
+Eigen::MatrixXd CircleOf(const Radii& radii) {
+  constexpr int kHighest = 3;
+  const int highest = radii.HasGap() ? kHighest : 1;
+  Eigen::MatrixXd circle(radii.Count(), 2 * highest + 1);
+  circle.leftCols(3) << radii.angle_rad.array().cos(), radii.angle_rad.array().sin(), VectorXd::Ones(radii.Count());
+  for (int order = 2; order <= highest; ++order)
+    circle.middleCols(2 * order - 1, 2) << (order * radii.angle_rad).array().cos(), (order * radii.angle_rad).array().sin();
   return circle;
 }
 
 Radii AboutOwnCentre(Radii radii) {
-  const Eigen::MatrixX3d circle = CircleOf(radii);
+  const Eigen::MatrixXd circle = CircleOf(radii);
   const Eigen::DiagonalMatrix<double, Eigen::Dynamic> weight(radii.stands_for.cwiseSqrt());
   const Eigen::MatrixXd weighted = weight * circle;
   radii.deviation_m -= circle.leftCols(2) * SolveLeastSquares(weighted, weight * radii.deviation_m).topRows(2);

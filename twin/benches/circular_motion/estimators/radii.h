@@ -13,6 +13,7 @@ struct Radii {
   Eigen::VectorXd stands_for;  // in the least-squares circle: as many readings; 1 each where they leave no gap
   std::vector<Eigen::Index> rounded_with;  // first of the readings in a row that show the same value: their rounding errors are one
 
+  bool HasGap() const { return (stands_for.array() != 1.0).any(); }
   Eigen::Index Count() const { return deviation_m.size(); }
   PartedVariance Own(Eigen::Index i) const {
     const double all = u_own_m[i] * u_own_m[i];
@@ -25,8 +26,9 @@ Radii RadiiOf(const std::vector<const CirclePath*>& paths);
 /// From 0 to a turn.
 double WithinTurn_rad(double angle_rad);
 
-/// What centre and radius of a circle make of each.
-Eigen::MatrixX3d CircleOf(const Radii& radii);
+/// What centre and radius of a circle make of each; where there is a gap, behind them what the lobes of orders 2 and 3 do, which on the rest
+/// of the turn would go into the centre.
+Eigen::MatrixXd CircleOf(const Radii& radii);
 
 /// The radii about their least-squares centre, and so what they lean on.
 Radii AboutOwnCentre(Radii radii);
