@@ -242,6 +242,15 @@ TEST(CircularDeviations, OfATurnThatIsNotQuiteClosedAreThoseOfTheTurn) {
   }
 }
 
+TEST(CircularDeviations, OfATurnOfWhichAPartWasReadTwiceAreThoseOfTheTurn) {
+  const auto lobes = [](double a) { return 20.0 * um * std::cos(2.0 * a + 0.7); };
+  CirclePath path = PathOf(1, 0.0, lobes);
+  const CirclePath again = PathOf(1, 0.5, lobes);
+  path.points.insert(path.points.end(), again.points.begin(), again.points.begin() + 90);
+  const Iso230_4 d = CircularDeviations({path}, {})[0];
+  EXPECT_NEAR(d.G_ccw.value_m / um, 40.0, 0.02);
+}
+
 TEST(RadialBar, FarOffItsCentreHasNoLagOfBothAxesNamed) {
   Machine machine;
   machine.backlash_x_m = 40.0 * um;

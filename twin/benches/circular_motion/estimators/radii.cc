@@ -11,26 +11,31 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-/// How many readings each of a path stands for by the angle up to half-way to its neighbours. Of a turn that is not quite closed, ends
-/// pull the centre otherwise; an arc has no other side, and one without gaps needs none.
+/// How many readings each of a path stands for by the angle up to half-way to its neighbours. Of a turn that is not quite closed, or of which
+/// a part was read more often than the rest, the centre is pulled otherwise; an arc has no other side, and an even turn needs none.
 VectorXd StandsFor(const CirclePath& path) {
-  constexpr double kClosed_rad = 5.0 * units::deg, kArc_rad = 30.0 * units::deg;
+  constexpr double kEven_rad = 1.0 * units::deg, kArc_rad = 30.0 * units::deg;
   const Index count = std::ssize(path.points);
   std::vector<std::pair<double, Index>> order;
   for (Index i = 0; i < count; ++i) order.emplace_back(WithinTurn_rad(path.points[static_cast<std::size_t>(i)].commanded_rad), i);
   std::ranges::sort(order);
   VectorXd angle_rad = VectorXd::Zero(count);
-  double widest_rad = 0.0;
+  double widest_rad = 0.0, least_ahead_rad = 0.0, most_ahead_rad = 0.0;  // ahead: of where as many even readings would be
+  const double even_rad = units::turn / static_cast<double>(std::max<Index>(count, 1));
   for (std::size_t k = 0; k < order.size(); ++k) {
     const bool closes = k + 1 == order.size();
     const auto& [next_rad, next] = order[closes ? 0 : k + 1];
     const double gap_rad = next_rad - order[k].first + (closes ? units::turn : 0.0);
+    const double ahead_rad = order[k].first - order[0].first - static_cast<double>(k) * even_rad;
     widest_rad = std::max(widest_rad, gap_rad);
+    least_ahead_rad = std::min(least_ahead_rad, ahead_rad);
+    most_ahead_rad = std::max(most_ahead_rad, ahead_rad);
     angle_rad[order[k].second] += 0.5 * gap_rad;
     angle_rad[next] += 0.5 * gap_rad;
   }
-  if (widest_rad < kClosed_rad || widest_rad > kArc_rad) return VectorXd::Ones(count);
-  return angle_rad * (static_cast<double>(count) / units::turn);
+  const bool is_even = most_ahead_rad - least_ahead_rad < kEven_rad;
+  if (is_even || widest_rad > kArc_rad) return VectorXd::Ones(count);
+  return angle_rad / even_rad;
 }
 
 }  // namespace
@@ -82,7 +87,7 @@ double WithinTurn_rad(double angle_rad) {
 
 Eigen::MatrixXd CircleOf(const Radii& radii) {
   constexpr int kHighest = 3;
-  const int highest = radii.HasGap() ? kHighest : 1;
+  const int highest = radii.IsUneven() ? kHighest : 1;
   Eigen::MatrixXd circle(radii.Count(), 2 * highest + 1);
   circle.leftCols(3) << radii.angle_rad.array().cos(), radii.angle_rad.array().sin(), VectorXd::Ones(radii.Count());
   for (int order = 2; order <= highest; ++order)
