@@ -151,6 +151,17 @@ TEST_F(Importing, TakesPlacesOnACircleWithTimesForALogOfAController) {
   EXPECT_THAT(Take(text).story, HasSubstr("taken as --map xy_log"));
 }
 
+TEST_F(Importing, SaysThatRestsOfALogAreLeftOut) {
+  std::string text = "time [s],set x [mm],set y [mm],act x [mm],act y [mm]\n";
+  for (int k = 0; k < 440; ++k) {
+    const double a = 0.02 * std::clamp(k - 20, 0, 400);
+    text += fmt::format("{:.2f},{:.6f},{:.6f},{:.6f},{:.6f}\n", 0.01 * k, 50.0 * std::cos(a), 50.0 * std::sin(a), 50.001 * std::cos(a), 50.0 * std::sin(a));
+  }
+  const std::string story = Take(text).story;
+  EXPECT_THAT(story, HasSubstr("rows at rest, on the way to and from the circle"));
+  EXPECT_THAT(story, Not(HasSubstr("without a time or a value")));
+}
+
 TEST(UnitsOverATime, AreUnitsInNamesAndInBrackets) {
   ASSERT_TRUE(UnitAtEnd("feed_mm_min"));
   EXPECT_EQ(UnitAtEnd("feed_mm_min")->name, "mm_min");

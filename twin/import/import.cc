@@ -111,7 +111,7 @@ Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
   Maker maker(bench, map, joined.linear);
   const std::size_t most = MostReadings(bench, map) / joined.sessions.size();
   for (const Session& session : joined.sessions) {
-    const Session whole = WithoutGaps(WholeRows(session, bench, maker.tally.left_out), bench, map, joined, maker.tally.left_out);
+    const Session whole = WithoutGaps(WholeRows(session, bench, map, maker.tally.left_out), bench, map, joined, maker.tally.left_out);
     maker.Take(whole, std::max<std::size_t>(most, kFewest), imported);
   }
   const std::size_t fewest = bench.compared ? kFewestCompared : kFewest;

@@ -72,6 +72,7 @@ struct ColumnKeys {
 void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
   Table top(keys, "");
   top.Text("title", &map.title, {}, "what the map is for, one line");
+  top.Text("leaves_out", &map.leaves_out, {}, "rows of which only(a, b) in its columns makes no value, as messages call them");
   top.Text("bench", &map.bench, BenchNames(), "whose readings they are; left out: found by the columns");
   Table file(keys, "file");
   file.Text("kind", &map.file.kind, {"auto", "table", "changes", "scope", "array", "cycles", "records"},

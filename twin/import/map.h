@@ -59,6 +59,7 @@ struct Map {
   std::string guess_begins;           // a file that begins so is of this kind; empty: none
   std::string guess_clock = "any";    // any | none
   std::string guess_only;             // formula of quantities sought that gives a number of such a file; empty: any
+  std::string leaves_out;             // rows that only(a, b) in its columns leaves out, in words
   std::vector<std::string> set;       // keys of the scenario, as in --set; {name}: what was found of a quantity that is sought
 };
 

@@ -9,15 +9,17 @@ namespace {
 
 class Rows {
  public:
-  Rows(const Session& session, const BenchFormat& bench) : session_(session), bench_(bench) {}
+  Rows(const Session& session, const BenchFormat& bench, const Map& map) : session_(session), bench_(bench), map_(map) {}
 
   Session Whole(std::vector<LeftOut>& left_out) const {
     std::vector<std::size_t> kept;
-    std::size_t without = 0, back = 0;
+    std::size_t without = 0, unwanted = 0, back = 0;
     double last_s = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < session_.Rows(); ++i) {
-      if (!HasAll(i)) {
+      if (!HasAll(i, false)) {
         ++without;
+      } else if (!HasAll(i, true)) {
+        ++unwanted;
       } else if (!(session_.time_s[i] > last_s || (session_.time_s[i] == last_s && !session_.has_clock))) {
         ++back;
       } else {
@@ -25,22 +27,30 @@ class Rows {
         last_s = session_.time_s[i];
       }
     }
+    if (unwanted > 0) left_out.push_back({unwanted, map_.leaves_out});
     if (without > 0) left_out.push_back({without, "rows without a time or a value that is needed"});
     if (back > 0) left_out.push_back({back, "rows whose time does not go on"});
     return Chosen(session_, kept);
   }
 
  private:
-  bool HasAll(std::size_t i) const {
+  /// @param wanted  Also what the map has no value of on purpose.
+  bool HasAll(std::size_t i, bool wanted) const {
     if (!std::isfinite(session_.time_s[i])) return false;
     return std::ranges::all_of(session_.value, [&](const auto& entry) {
       const ReadingColumn* column = ColumnOf(bench_, entry.first);
-      return !column || !column->MustBeThere() || std::isfinite(entry.second[i]);
+      return !column || !column->MustBeThere() || std::isfinite(entry.second[i]) || (!wanted && LeavesOut(entry.first));
     });
+  }
+
+  bool LeavesOut(const std::string& name) const {
+    const auto mapped = std::ranges::find(map_.columns, name, &MappedColumn::column);
+    return !map_.leaves_out.empty() && mapped != map_.columns.end() && mapped->expression.find("only(") != std::string::npos;
   }
 
   const Session& session_;
   const BenchFormat& bench_;
+  const Map& map_;
 };
 
 }  // namespace
@@ -59,8 +69,8 @@ Session Chosen(const Session& session, const std::vector<std::size_t>& rows) {
   return chosen;
 }
 
-Session WholeRows(const Session& session, const BenchFormat& bench, std::vector<LeftOut>& left_out) {
-  return Rows(session, bench).Whole(left_out);
+Session WholeRows(const Session& session, const BenchFormat& bench, const Map& map, std::vector<LeftOut>& left_out) {
+  return Rows(session, bench, map).Whole(left_out);
 }
 
 }  // namespace twinbench::imports
