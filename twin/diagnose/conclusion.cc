@@ -17,6 +17,7 @@
 #include "twin/diagnose/isolability.h"
 #include "twin/diagnose/recurrence.h"
 #include "twin/diagnose/redundancy.h"
+#include "twin/diagnose/still_far.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
@@ -92,16 +93,20 @@ void TellOutliers(const NoiseCause& repair, const LinearRun& run, std::vector<Ca
   diagnosis.alarm_p = std::min(diagnosis.alarm_p, std::exp(-repair.log_bayes));
 }
 
-/// Without far values that are on their way where a cause jumps.
+/// Without far values that are on their way where a cause jumps, and those that are beside far ones.
 std::vector<NoiseCause> RepairsOf(const LinearRun& run, const Analysis& analysis) {
   std::vector<NoiseCause> repairs = analysis.repairs;
   const auto are_outliers = [](const NoiseCause& repair) { return repair.kind == NoiseCause::Kind::kOutliers; };
-  if (std::ranges::none_of(repairs, are_outliers) || analysis.found.terms.empty()) return repairs;
+  if (std::ranges::none_of(repairs, are_outliers)) return repairs;
   const Eigen::VectorXd left = FitAll(run, analysis.noise, AcceptedOf(analysis)).after;
   Eigen::VectorXd found = Eigen::VectorXd::Zero(run.Rows());
   for (const Term& term : analysis.found.terms) found += term.columns * term.amplitudes;
-  for (NoiseCause& repair : repairs)
-    if (are_outliers(repair)) repair.outliers = AwayFromJumps(repair.outliers, run, found, left);
+  for (NoiseCause& repair : repairs) {
+    if (!are_outliers(repair)) continue;
+    const std::vector<int> away = AwayFromJumps(repair.outliers, run, found, left);
+    repair.outliers = StillFar(away, run, left);
+    if (repair.outliers.size() < away.size()) repair.outlier_size = SizeOfFar(repair.outliers, run, left);
+  }
   std::erase_if(repairs, [&](const NoiseCause& repair) { return are_outliers(repair) && repair.outliers.empty(); });
   return repairs;
 }
@@ -174,7 +179,7 @@ std::vector<Cause> UnsizedOf(const Analysis& analysis, const std::vector<Cause>&
 
 /// What the rows that recur show, for a scenario that repeats it at these readings.
 void AcceptRecurrent(const Analysis& analysis, DiagnosisRun& result) {
-  for (const NoiseCause& repair : analysis.repairs) {
+  for (const NoiseCause& repair : RepairsOf(result.run, analysis)) {
     if (repair.kind != NoiseCause::Kind::kOutliers || RecurrenceOf(repair.outliers, result.run).empty()) continue;
     const Eigen::VectorXd left = FitAll(result.run, result.noise, result.accepted).after;
     Accepted far;
