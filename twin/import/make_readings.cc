@@ -8,6 +8,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/reading_clock.h"
 #include "twin/core/units.h"
+#include "twin/import/held_command.h"
 #include "twin/import/pushed.h"
 #include "twin/import/said.h"
 #include "twin/import/whole_rows.h"
