@@ -104,7 +104,7 @@ std::vector<NoiseCause> RepairsOf(const LinearRun& run, const Analysis& analysis
   for (NoiseCause& repair : repairs) {
     if (!are_outliers(repair)) continue;
     const std::vector<int> away = AwayFromJumps(repair.outliers, run, found, left);
-    repair.outliers = StillFar(away, run, left);
+    repair.outliers = RecurrenceOf(away, run).empty() ? StillFar(away, run, left) : away;
     if (repair.outliers.size() < away.size()) repair.outlier_size = SizeOfFar(repair.outliers, run, left);
   }
   std::erase_if(repairs, [&](const NoiseCause& repair) { return are_outliers(repair) && repair.outliers.empty(); });
@@ -179,7 +179,7 @@ std::vector<Cause> UnsizedOf(const Analysis& analysis, const std::vector<Cause>&
 
 /// What the rows that recur show, for a scenario that repeats it at these readings.
 void AcceptRecurrent(const Analysis& analysis, DiagnosisRun& result) {
-  for (const NoiseCause& repair : RepairsOf(result.run, analysis)) {
+  for (const NoiseCause& repair : analysis.repairs) {
     if (repair.kind != NoiseCause::Kind::kOutliers || RecurrenceOf(repair.outliers, result.run).empty()) continue;
     const Eigen::VectorXd left = FitAll(result.run, result.noise, result.accepted).after;
     Accepted far;
