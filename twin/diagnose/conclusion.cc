@@ -97,7 +97,7 @@ void TellOutliers(const NoiseCause& repair, const LinearRun& run, std::vector<Ca
 std::vector<NoiseCause> RepairsOf(const LinearRun& run, const Analysis& analysis) {
   std::vector<NoiseCause> repairs = analysis.repairs;
   const auto are_outliers = [](const NoiseCause& repair) { return repair.kind == NoiseCause::Kind::kOutliers; };
-  if (std::ranges::none_of(repairs, are_outliers)) return repairs;
+  if (std::ranges::none_of(repairs, are_outliers) || analysis.found.terms.empty()) return repairs;
   const Eigen::VectorXd left = FitAll(run, analysis.noise, AcceptedOf(analysis)).after;
   Eigen::VectorXd found = Eigen::VectorXd::Zero(run.Rows());
   for (const Term& term : analysis.found.terms) found += term.columns * term.amplitudes;
