@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -11,7 +10,6 @@
 #include "twin/diagnose/disagreement.h"
 #include "twin/diagnose/json.h"
 #include "twin/diagnose/recurrence.h"
-#include "twin/diagnose/still_far.h"
 #include "twin/diagnose/words.h"
 
 namespace twinbench::diagnose {
@@ -107,25 +105,6 @@ TEST(Recurrence, OfScatteredValuesIsHardlyEverSeen) {
     seen += RecurrenceOf(rows, run).empty() ? 0 : 1;
   }
   EXPECT_LE(seen, kTrials / 250);
-}
-
-TEST(StillFar, AreOneReadingAndSeveralInARowButNotTheNeighboursOfOne) {
-  LinearRun run = EightTurns();
-  run.sigma = Eigen::VectorXd::Constant(kEightTurns, 0.5);
-  std::mt19937_64 random(6);
-  std::normal_distribution<> normal;
-  Eigen::VectorXd left(kEightTurns);
-  for (double& value : left) value = std::clamp(normal(random), -2.0, 2.0);
-  left[123] = 60.0;
-  EXPECT_EQ(StillFar({0, 122, 123, 124}, run, left), (std::vector{123}));
-  EXPECT_NEAR(SizeOfFar({123}, run, left), 120.0, 1e-9);
-  left.segment(200, 6).setConstant(-40.0);
-  EXPECT_EQ(StillFar({199, 200, 201, 202, 203, 204, 205}, run, left), (std::vector{200, 201, 202, 203, 204, 205}));
-  // Beside noise that wanders far, one that is off by ten of its steps.
-  double at = 0.0;
-  for (double& value : left) value = at += std::clamp(normal(random), -2.0, 2.0);
-  left[300] += 10.0;
-  EXPECT_EQ(StillFar({300}, run, left), (std::vector{300}));
 }
 
 TEST(Recurrence, InARowAtOneAngleOrAtOneShownValueIsSaidButNotOfTwoValues) {

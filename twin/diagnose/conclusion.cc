@@ -17,7 +17,6 @@
 #include "twin/diagnose/isolability.h"
 #include "twin/diagnose/recurrence.h"
 #include "twin/diagnose/redundancy.h"
-#include "twin/diagnose/still_far.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
@@ -93,7 +92,7 @@ void TellOutliers(const NoiseCause& repair, const LinearRun& run, std::vector<Ca
   diagnosis.alarm_p = std::min(diagnosis.alarm_p, std::exp(-repair.log_bayes));
 }
 
-/// Without far values that are on their way where a cause jumps, and those that are beside far ones.
+/// Without far values that are on their way where a cause jumps.
 std::vector<NoiseCause> RepairsOf(const LinearRun& run, const Analysis& analysis) {
   std::vector<NoiseCause> repairs = analysis.repairs;
   const auto are_outliers = [](const NoiseCause& repair) { return repair.kind == NoiseCause::Kind::kOutliers; };
@@ -101,12 +100,8 @@ std::vector<NoiseCause> RepairsOf(const LinearRun& run, const Analysis& analysis
   const Eigen::VectorXd left = FitAll(run, analysis.noise, AcceptedOf(analysis)).after;
   Eigen::VectorXd found = Eigen::VectorXd::Zero(run.Rows());
   for (const Term& term : analysis.found.terms) found += term.columns * term.amplitudes;
-  for (NoiseCause& repair : repairs) {
-    if (!are_outliers(repair)) continue;
-    const std::vector<int> away = AwayFromJumps(repair.outliers, run, found, left);
-    repair.outliers = RecurrenceOf(away, run).empty() ? StillFar(away, run, left) : away;
-    if (repair.outliers.size() < away.size()) repair.outlier_size = SizeOfFar(repair.outliers, run, left);
-  }
+  for (NoiseCause& repair : repairs)
+    if (are_outliers(repair)) repair.outliers = AwayFromJumps(repair.outliers, run, found, left);
   std::erase_if(repairs, [&](const NoiseCause& repair) { return are_outliers(repair) && repair.outliers.empty(); });
   return repairs;
 }

@@ -15,7 +15,7 @@ namespace twinbench::diagnose {
 namespace {
 
 constexpr double kChanceOfScatter = 1e-3;  // of a scatter that looks like it, each way in which it may look so
-constexpr std::size_t kFewestReadings = 3;         // readings
+constexpr std::size_t kFewestReadings = 3;
 constexpr double kNarrow = 0.02;           // of the range of a value, or of a turn
 
 /// P(at least `count`) of a Poisson number.
