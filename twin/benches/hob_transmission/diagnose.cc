@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
 
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/hob_transmission/orders_of_tones.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/factory.h"
-#include "twin/core/distributions.h"
 #include "twin/core/errors.h"
 #include "twin/core/reading_clock.h"
-#include "twin/core/rounding.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/by_twin.h"
 #include "twin/diagnose/tuning.h"
@@ -47,24 +44,6 @@ Eigen::VectorXd OfEach(const std::vector<Reading>& readings, const AngleOf& rad)
 /// Stops of the interferometer are no samples of a turn.
 bool IsSample(const Reading& r) {
   return r.velocity_rad_s != 0.0 && std::isfinite(r.measured_rad) && std::isfinite(r.reference_rad);
-}
-
-/// Of the angles that were read, as an error of the table: the larger step of the two. Rows at even distances say nothing of it, for
-/// these are no steps.
-double Rounding_rad(const std::vector<Reading>& readings, double hob_order) {
-  constexpr double kOfRows = 0.25;
-  double largest_rad = 0.0;
-  for (const auto& [angle, times] : {std::pair{&Reading::measured_rad, 1.0}, std::pair{&Reading::reference_rad, hob_order}}) {
-    std::vector<Reading> samples;
-    std::ranges::copy_if(readings, std::back_inserter(samples), IsSample);
-    const Eigen::VectorXd shown_rad = OfEach(samples, [angle = angle](const Reading& r) { return r.*angle; });
-    const Eigen::Index rows = shown_rad.size() - 1;
-    if (rows < 1) continue;
-    const Eigen::VectorXd ways_rad = (shown_rad.tail(rows) - shown_rad.head(rows)).cwiseAbs();
-    const double step_rad = CommonStep(shown_rad);
-    if (step_rad < kOfRows * Median({ways_rad.begin(), ways_rad.end()})) largest_rad = std::max(largest_rad, step_rad / times);
-  }
-  return largest_rad;
 }
 
 /// Whether the interferometer saw the table in motion, often enough to be worth a channel.
@@ -269,7 +248,6 @@ TwinComparison Comparison(const std::vector<Reading>& readings, const Scenario& 
   comparison.most_causes = 6;
   if (!HasClock(readings)) comparison.unrecorded = {"latency"};
   comparison.bends = true;
-  comparison.rounding = Rounding_rad(readings, train.HobOrder());
   comparison.bent = BentWavesOf(readings, angles, train.Ratio());
   comparison.next_measurement = NextMeasurement;
   return comparison;
