@@ -6,6 +6,7 @@
 
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/hob_transmission/orders_of_tones.h"
+#include "twin/benches/hob_transmission/rounded_orders.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/factory.h"
 #include "twin/core/errors.h"
@@ -267,6 +268,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
                                 const diagnose::DiagnoseOptions& options) {
   RequireHeads(readings);
   diagnose::DiagnosisRun result = diagnose::DiagnoseByTwin(readings, scenario, options, Comparison(readings, scenario));
+  DoubtOrdersOfRounding(readings, result.run, HobOf(scenario).transmission.HobOrder(), result.diagnosis);
   if (!HasClock(readings)) return result;
   std::vector<Reading> samples;
   std::ranges::copy_if(readings, std::back_inserter(samples), IsSample);
