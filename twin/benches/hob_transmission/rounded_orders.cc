@@ -41,13 +41,14 @@ void DoubtOrdersOfRounding(const std::vector<Reading>& readings, const diagnose:
   bool is_any = false;
   for (diagnose::Cause& cause : diagnosis.causes) {
     const auto amplitude = std::ranges::find(cause.parameters, "amplitude", &diagnose::ParameterEstimate::name);
-    if (cause.effect != "periodic" || amplitude == cause.parameters.end()) continue;
+    const bool is_wave = cause.effect == "periodic" || cause.effect == "tone";
+    if (!is_wave || amplitude == cause.parameters.end()) continue;
     if (!(std::abs(amplitude->value) < largest_rad * (cause.where == "hob" ? hob_order : 1.0))) continue;
     cause.probability = std::min(cause.probability, kEven);
     is_any = true;
   }
   if (is_any)
-    diagnosis.notes.push_back("a periodic error that is no larger than what rounding to counts leaves may be nothing else: finer counts, or rows at uneven angles, show it");
+    diagnosis.notes.push_back("a wave that is no larger than what rounding to counts leaves may be nothing else: finer counts, or rows at uneven angles, show it");
 }
 
 }  // namespace twinbench::benches::hob
