@@ -108,6 +108,12 @@ RoundingInMean RoundingOf(double step, double noise, double count) {
   return {repeated, repeated + (of_one - repeated) / count};
 }
 
+double LargestByRounding(double step, double scatter) {
+  if (!(step > 0.0)) return 0.0;
+  const double noise2 = std::max(0.0, scatter * scatter - step * step / 12.0) / (step * step);
+  return step / std::sqrt(12.0) * std::exp(-2.0 * units::kPi * units::kPi * noise2);
+}
+
 double NoiseBehindRounding(double step, double scatter) {
   if (!(step > 0.0)) return scatter;
   const double seen = std::pow(scatter / step, 2);

@@ -24,6 +24,11 @@ struct RoundingInMean {
 /// @param noise  Like `step` in any unit, whose square the result has.
 RoundingInMean RoundingOf(double step, double noise, double count);
 
+/// Root mean square of the largest structure that rounding alone may leave: of all of it without noise, and with noise as
+/// the fundamental of a saw-tooth that is smoothed falls.
+/// @param scatter  Of a reading, with what rounding adds to it; like `step` in any unit, which the result has.
+double LargestByRounding(double step, double scatter);
+
 /// The noise of readings that, rounded, scatter by so much at one place (standard deviation, all places pooled): the
 /// scatter is noise and that part of step^2 / 12 that does not repeat. 0 where rounding hides it.
 double NoiseBehindRounding(double step, double scatter);

@@ -138,15 +138,14 @@ void Add(const Rest& rest, const std::vector<double>& error, const Sides& sides,
   }
 }
 
-/// A device that goes beyond its place and back by much of the way that it came is not pushed: it swings.
-bool IsMuchOfTheWay(const Sides& sides, const Course& course, const std::vector<Rest>& rests) {
-  constexpr double kMuch = 0.25;
+/// From rest to rest; 0: all are at one place.
+double UsualWay(const Course& course, const std::vector<Rest>& rests) {
   std::vector<double> ways;
   for (std::size_t k = 1; k < rests.size(); ++k) {
     const double way = std::abs(course.reference[rests[k].begin] - course.reference[rests[k - 1].begin]);
     if (way > 0.0) ways.push_back(way);
   }
-  return !ways.empty() && sides.Apart() > kMuch * MedianOf(std::move(ways));
+  return MedianOf(std::move(ways));
 }
 
 std::vector<double> ErrorsOf(const Course& course, const std::vector<double>& shown, double turn_rad) {
@@ -163,6 +162,8 @@ std::vector<double> ErrorsOf(const Course& course, const std::vector<double>& sh
 
 Pushed PushedIn(const Course& course, const std::vector<Rest>& rests, const std::vector<double>& shown,
                 double turn_rad) {
+  constexpr double kMuch = 0.25;  // a device that goes beyond its place and back by so much of the way that it came swings
+  const double usual_way = UsualWay(course, rests);
   const std::vector<double> error = ErrorsOf(course, shown, turn_rad);
   std::map<double, Place> places;
   for (const Rest& rest : rests) {
@@ -175,9 +176,8 @@ Pushed PushedIn(const Course& course, const std::vector<Rest>& rests, const std:
     if (!rough) continue;
     const Place arrived = place.Arrived(*rough);
     const std::optional<Sides> sides = SidesOf(arrived);
-    for (const Rest& rest : arrived.rests) {
-      if (sides && !IsMuchOfTheWay(*sides, course, rests)) kept.try_emplace(rest.begin, rest, *sides);
-    }
+    if (!sides || (usual_way > 0.0 && sides->Apart() > kMuch * usual_way)) continue;
+    for (const Rest& rest : arrived.rests) kept.try_emplace(rest.begin, rest, *sides);
   }
   // Who pushes does so in most rests: a few of many that look so are counts of a display.
   constexpr std::size_t kOneOf = 10;

@@ -16,10 +16,8 @@ class Rows {
     std::size_t without = 0, unwanted = 0, back = 0;
     double last_s = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < session_.Rows(); ++i) {
-      if (!HasAll(i, false)) {
-        ++without;
-      } else if (!HasAll(i, true)) {
-        ++unwanted;
+      if (!HasAll(i, true)) {
+        ++(HasAll(i, false) ? unwanted : without);
       } else if (!(session_.time_s[i] > last_s || (session_.time_s[i] == last_s && !session_.has_clock))) {
         ++back;
       } else {

@@ -6,7 +6,6 @@
 
 #include "twin/core/distributions.h"
 #include "twin/core/rounding.h"
-#include "twin/core/units.h"
 
 namespace twinbench::benches::hob {
 namespace {
@@ -24,20 +23,13 @@ double StepOf_rad(const std::vector<Reading>& readings, double Reading::*angle_r
   return step_rad < kOfRows * Median(std::move(ways_rad)) ? step_rad : 0.0;
 }
 
-/// The largest wave that a step may leave beside such a noise (twin/core/rounding.h).
-double LargestWave(double step, double noise) {
-  if (!(step > 0.0)) return 0.0;
-  const double own = std::max(0.0, std::pow(noise / step, 2) - 1.0 / 12.0);
-  return step / std::sqrt(6.0) * std::exp(-2.0 * units::kPi * units::kPi * own);
-}
-
 }  // namespace
 
 void DoubtOrdersOfRounding(const std::vector<Reading>& readings, const diagnose::LinearRun& run, double hob_order,
                            diagnose::Diagnosis& diagnosis) {
   constexpr double kEven = 0.5;  // for it and against it
   const double step_rad = std::max(StepOf_rad(readings, &Reading::measured_rad), StepOf_rad(readings, &Reading::reference_rad) / hob_order);
-  const double largest_rad = LargestWave(step_rad, run.sigma.size() > 0 ? run.sigma.mean() : 0.0);
+  const double largest_rad = std::sqrt(2.0) * LargestByRounding(step_rad, run.sigma.size() > 0 ? run.sigma.mean() : 0.0);
   bool is_any = false;
   for (diagnose::Cause& cause : diagnosis.causes) {
     const auto amplitude = std::ranges::find(cause.parameters, "amplitude", &diagnose::ParameterEstimate::name);

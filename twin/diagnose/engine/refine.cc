@@ -8,6 +8,7 @@
 #include "twin/diagnose/engine/fit_within.h"
 
 namespace twinbench::diagnose {
+
 Range Around(const Shape& shape, double value) {
   double below = shape.lower, above = shape.upper;
   for (const double v : shape.value) {

@@ -58,7 +58,6 @@ void TryFirst(SearchProblem problem, const IsOneOf& is_last, int most, SearchRes
   Settle(problem, first);
   first.first_statistic = result.first_statistic;
   first.alone = result.alone;
-  first.rest_of_bend = result.rest_of_bend;
   result = std::move(first);
 }
 
@@ -70,7 +69,6 @@ SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Project
   const SearchProblem problem{run,        noise,     projector, scanner,
                               log_priors, threshold, extent,    noise.Whiten(run, run.residual)};
   SearchResult result;
-  result.rest_of_bend = extent.bent.rest;
   Forward(problem, result);
   if (!extent.largest_only) {
     Settle(problem, result);
@@ -78,6 +76,7 @@ SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Project
     TryFirst(problem, IsUnknown, extent.most_causes, result);
     if (extent.together) TryTogether(problem, result);
   }
+  result.rest_of_bend = extent.bent.rest;
   MeasureShares(problem, result.terms);
   EstimateTerms(run, noise, projector, scanner, problem.white, result.terms);
   if (!extent.largest_only && HasNamedWave(scanner.Families(), result.terms))

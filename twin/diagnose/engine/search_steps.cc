@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/core/units.h"
+#include "twin/core/rounding.h"
 #include "twin/diagnose/engine/refine.h"
 #include "twin/diagnose/tuning.h"
 
@@ -21,20 +21,17 @@ bool SelectAgain(const SearchProblem& problem, std::vector<Term>& terms, int k) 
   return changed;
 }
 
-/// Rounding to steps leaves an error that repeats with what is rounded, and looks like a cause. Its rms is
-/// step / sqrt(12) without noise, and falls with noise as the fundamental of a sawtooth that is smoothed does.
+/// Rounding to steps leaves an error that repeats with what is rounded, and looks like a cause.
 bool IsRounding(const SearchProblem& problem, const Deflation& others, const Term& term) {
   const double step = problem.run.rounding;
   if (!(step > 0.0)) return false;
   constexpr double kMargin = 1.1;
   // Of the readings that count: where noise moves few of them to the next step, the others show all of the sawtooth.
   const double sigma = 1.0 / std::sqrt(problem.noise.sigma.cwiseAbs2().cwiseInverse().mean());
-  const double noise2 = std::max(0.0, sigma * sigma - step * step / 12.0) / (step * step);
-  const double largest = kMargin * step / std::sqrt(12.0) * std::exp(-2.0 * units::kPi * units::kPi * noise2);
   const Projected data = Project(problem.projector, others, problem.white);
   const double power =
       Explain(problem.noise.Whiten(problem.run, term.columns), problem.projector, others, data.rows.col(0)).power;
-  return sigma * std::sqrt(power / problem.run.Rows()) < largest;
+  return sigma * std::sqrt(power / problem.run.Rows()) < kMargin * LargestByRounding(step, sigma);
 }
 
 bool HasRoom(const SearchProblem& problem, const std::vector<Term>& terms, const Term& more) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/core/distributions.h"
+#include "twin/core/robust_scale.h"
 #include "twin/core/rounding.h"
 
 namespace twinbench::separate::circular {
@@ -30,14 +30,14 @@ double ThirdDifference(const PathPoint* at) {
 
 /// Those of what jumps (a single reading that is far off, a reversal) do not count.
 double ScatterOf_m(const CirclePath& path, double least_m) {
-  constexpr double kMedianOfNormal = 0.6745, kFar = 4.0;
+  constexpr double kFar = 4.0;
   std::vector<double> sizes_m;
   for (std::size_t i = 0; i + kDifferenced <= path.points.size(); ++i) {
     const double size_m = std::abs(ThirdDifference(&path.points[i]));
     if (std::isfinite(size_m)) sizes_m.push_back(size_m);
   }
   if (sizes_m.empty()) return 0.0;
-  const double limit_m = kFar * std::max(Median(sizes_m) / kMedianOfNormal, least_m);
+  const double limit_m = kFar * std::max(RobustDeviation(sizes_m), least_m);
   double squares = 0.0, count = 0.0;
   for (const double size_m : sizes_m) {
     if (size_m > limit_m) continue;

@@ -114,10 +114,9 @@ int TryAll(const Looked& looked, Tried& tried) {
   return highest_order;
 }
 
-/// Of a chain that may not be the only one: whichever it is, errors of the machine are of many values.
-std::vector<FarShift> FarShiftsOf(const Looked& looked, Tried tried, std::vector<ShiftAt>& of) {
+/// Of a chain that may not be the only one, tried with all terms: whichever it is, errors of the machine are of many values.
+std::vector<FarShift> FarShiftsOf(const Looked& looked, const Tried& tried, std::vector<ShiftAt>& of) {
   constexpr double kDigits_um = 0.05;
-  TryAll(looked, tried);
   std::vector<Index> terms = tried.chosen;
   std::ranges::copy(TermsOfKind(tried, TermKind::kDrift), std::back_inserter(terms));
   std::vector<int> kinds, readings;
@@ -135,10 +134,11 @@ std::vector<FarShift> FarShiftsOf(const Looked& looked, Tried tried, std::vector
   return far;
 }
 
-DisplacementFit FitOf(const Looked& looked, Tried& tried) {
+/// @param tried, highest_order  As TryAll has them.
+DisplacementFit FitOf(const Looked& looked, const Tried& tried, int highest_order) {
   const std::vector<ShiftRead>& reads = looked.reads;
   DisplacementFit fit;
-  fit.highest_order = TryAll(looked, tried);
+  fit.highest_order = highest_order;
   fit.chain = tried.chain;
   fit.on_workpiece = looked.on_workpiece;
   fit.from_tool = IsFromTool(looked.settings, tried.chain);
@@ -209,13 +209,20 @@ DisplacementFit FitDisplacements(const DisplacementSettings& settings, const std
   if (values < kFewest)
     throw InputError("readings", fmt::format("{} displacements were read", values),
                      fmt::format("at least {}", kFewest));
+  int highest_order = TryAll(looked, chains.front());
   std::vector<ShiftAt> far;
   const std::vector<FarShift> left_out = FarShiftsOf(looked, chains.front(), far);
   for (const ShiftAt& at : far) reads[at.read].shift_m.setConstant(kNaN);
-  if (!far.empty()) chains = BestChains(looked);
-  DisplacementFit fit = FitOf(looked, chains.front());
+  if (!far.empty()) {
+    chains = BestChains(looked);
+    highest_order = TryAll(looked, chains.front());
+  }
+  DisplacementFit fit = FitOf(looked, chains.front(), highest_order);
   fit.left_out = left_out;
-  for (std::size_t k = 1; k < chains.size(); ++k) CompareWith(FitOf(looked, chains[k]), fit);
+  for (std::size_t k = 1; k < chains.size(); ++k) {
+    highest_order = TryAll(looked, chains[k]);
+    CompareWith(FitOf(looked, chains[k], highest_order), fit);
+  }
   return fit;
 }
 

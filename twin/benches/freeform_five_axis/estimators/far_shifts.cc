@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "twin/core/distributions.h"
+#include "twin/core/robust_scale.h"
 
 namespace twinbench::benches::freeform::estimators {
 namespace {
@@ -36,12 +36,11 @@ Left LeftOf(const MatrixXd& slopes, const VectorXd& shifts_um) {
 
 /// Standard deviation of each kind, by the median: what few far ones do not raise.
 std::map<int, double> ScatterOf(const Left& left, const std::vector<int>& kinds, double least_um) {
-  constexpr double kNormal = 1.4826;
-  std::map<int, std::vector<double>> sizes_um;
+  std::map<int, std::vector<double>> kept_um;
   for (Index i = 0; i < left.own.size(); ++i)
-    if (left.own[i] > kOwnShare) sizes_um[kinds[static_cast<std::size_t>(i)]].push_back(std::abs(left.deviations_um[i]));
+    if (left.own[i] > kOwnShare) kept_um[kinds[static_cast<std::size_t>(i)]].push_back(left.deviations_um[i]);
   std::map<int, double> scatter_um;
-  for (auto& [kind, all_um] : sizes_um) scatter_um[kind] = std::max(kNormal * Median(std::move(all_um)), least_um);
+  for (auto& [kind, all_um] : kept_um) scatter_um[kind] = std::max(RobustDeviation(std::move(all_um)), least_um);
   return scatter_um;
 }
 

@@ -62,12 +62,13 @@ class Squares {
 }  // namespace
 
 double LikelySize(const MatrixXd& free, const MatrixXd& believed, const VectorXd& shifts_um, double least_gain) {
+  const double dof = static_cast<double>(free.rows() - free.cols());
+  if (believed.cols() == 0 || dof < 1.0) return 0.0;
   const auto rest = [inverse = GeneralInverseOf(free), &free](const auto& of) {
     return (of - free * (inverse * of)).eval();
   };
   const MatrixXd own = rest(believed);
-  const double squares_um2 = rest(shifts_um).squaredNorm(), dof = static_cast<double>(free.rows() - free.cols());
-  if (believed.cols() == 0 || dof < 1.0) return 0.0;
+  const double squares_um2 = rest(shifts_um).squaredNorm();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(own.transpose() * own);
   const VectorXd strength = parts.eigenvalues().cwiseMax(0.0);
   const VectorXd shown2 = (parts.eigenvectors().transpose() * (own.transpose() * shifts_um)).cwiseAbs2();

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "twin/core/distributions.h"
+#include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
 
 namespace twinbench::separate::rotary {
@@ -51,15 +51,12 @@ class ProbeCourse {
 
   /// Of all, by the median; no less than a step of what was read.
   double Scatter() const {
-    constexpr double kNormal = 1.4826;
-    std::vector<double> sizes;
     double step = INFINITY;
-    for (long i = 0; i < Size(); ++i) {
-      sizes.push_back(std::abs(Spike(i)));
-      const double change = i > 0 ? std::abs(Value(i) - Value(i - 1)) : 0.0;
+    for (long i = 1; i < Size(); ++i) {
+      const double change = std::abs(Value(i) - Value(i - 1));
       if (change > 0.0) step = std::min(step, change);
     }
-    return std::max(kNormal * Median(std::move(sizes)), step);
+    return std::max(RobustDeviation(spike_), step);
   }
 
   /// Whether another turn shows there what this one does.
