@@ -287,7 +287,7 @@ TEST(Map, NamesTheNearestKeyAndTheReadyMaps) {
 
 TEST(Map, EveryReadyOneCanBeRead) {
   EXPECT_GE(ReadyMaps().size(), 7u);
-  for (const ReadyMap& ready : ReadyMaps()) EXPECT_FALSE(LoadMap(ready.name).title.empty()) << ready.name;
+  for (const Map& ready : ReadyMaps()) EXPECT_FALSE(LoadMap(ready.name).title.empty()) << ready.name;
   EXPECT_THAT(DescribeMaps(), HasSubstr("TwinCAT"));
 }
 

@@ -60,7 +60,8 @@ TEST_F(Importing, TakesThePlaceOfAServoAndNotItsGainsOrTorques) {
 
 TEST_F(Importing, TakesColumnsInOtherLanguagesInAnyOrder) {
   for (const char* names : {"Sollwert [deg];Istwert [deg]", "référence [deg];mesuré [deg]", "目标角度 [deg];实际角度 [deg]",
-                            "consigna [deg];medido [deg]", "goal_position [deg];present_position [deg]"})
+                            "consigna [deg];medido [deg]", "goal_position [deg];present_position [deg]",
+                            "Referência [deg];Saída [deg]", "hedef [deg];ölçülen [deg]", "doel [deg];gemeten [deg]"})
     EXPECT_NEAR(Last_deg(Take(Scaled(names, 5.0, ";"))), 355.0, 1e-6) << names;
   std::string swapped = "Istposition (°);Sollposition (°)\n";
   for (int i = 0; i < 72; ++i) swapped += fmt::format("{};{}\n", 5 * i + 1, 5 * i);
@@ -116,6 +117,38 @@ TEST_F(Importing, TakesCountsByWhatIsStatedOrByThePowerOfTwoAtWhichTheyFollow) {
   EXPECT_LT(Worst_deg(Take(guessed).readings), 360.0 / 65536.0);
   EXPECT_THAT(Take(guessed).story, HasSubstr("65536 counts per turn"));
   EXPECT_KEPT(MessageOf([&] { Take(neither); }));
+}
+
+/// Counts beside the straight line that they should be, both of which go round.
+std::string GoesRoundTwice(double counts, bool whole_line) {
+  std::string text = "target,data\n";
+  for (int i = 0; i < 400; ++i) {
+    const double line = std::fmod(i * counts / 200.0, counts);
+    text += fmt::format("{},{}\n", whole_line ? std::floor(line) : line, std::fmod(std::floor(line + 0.01 * counts * (1.0 + std::sin(units::turn * i / 200.0))), counts));
+  }
+  return text;
+}
+
+TEST_F(Importing, TakesWhatGoesRoundAtAPowerOfTwoForCounts) {
+  for (const double counts : {4096.0, 8192.0, 16384.0, 32768.0}) {
+    for (const bool whole_line : {true, false}) {
+      const Imported taken = Take(GoesRoundTwice(counts, whole_line));
+      EXPECT_THAT(taken.story, HasSubstr(fmt::format("* 360 / {:g}", counts)));
+      EXPECT_NEAR(Worst_deg(taken.readings), 3.6, 0.2) << counts;
+    }
+  }
+}
+
+TEST_F(Importing, TakesListsOfAProgramWhoseNamesAreSaid) {
+  std::string told = "%% a test\nangle_ref = [", right = "angle_R = [", left = "angle_L = [";
+  for (int i = 0; i < 72; ++i) {
+    told += fmt::format("{} ", 5 * i);
+    right += fmt::format("{} ", 5 * i + 0.25);
+    left += fmt::format("{} ", 5 * i - 0.5);
+  }
+  const Imported taken = Take(told + "];\n" + right + "];\n" + left + "];\n", "", {"measured_deg=angle_L"});
+  ASSERT_EQ(taken.readings.size(), 72u);
+  EXPECT_NEAR((taken.readings.back().measured_rad - taken.readings.back().reference_rad) / units::deg, -0.5, 1e-9);
 }
 
 TEST_F(Importing, TakesArraysOfAProgramSideBySide) {

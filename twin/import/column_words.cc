@@ -21,13 +21,16 @@ const std::vector<std::string>& WordsFor(Speaks of) {
       "nom",       "calibrated", "certified", "desired",  "des",      "demand",   "demanded",       "soll",         "sollwert",   "sollposition",
       "sollwinkel", "referenz", "consigne", "consigna", "cible",          "référence",    "referencia", "riferimento",
       "comando",   "zadana",   "эталон",   "задание",  "目标",           "指令",         "参考",       "motor",
-      "poscmd"};
+      "poscmd",    "referência", "desejado", "alvo",    "gewenst",        "doel",         "börvärde",  "hedef",
+      "zadaný",    "目標"};
   static const std::vector<std::string> device = {
       "measured", "meas",     "device",   "dut",      "encoder",     "sensor",    "actual",    "actpos",  "posact",
       "present",  "resolver", "feedback", "fb",       "fbk",         "act",       "dial",      "gauge",   "indicator",
       "messuhr",  "settled",  "reached", "arrived", "counts",  "ticks",  "raw", "position", "ist",      "istwert",  "istposition", "istwinkel", "messwert",  "gemessen", "mesure",
       "mesuré",   "medido",   "medida",   "misurato", "misura",      "zmierzona", "измерено",  "实际",    "测量",
-      "反馈",     "编码器",   "reading",  "angle",    "enc",         "probe",     "pos",       "load"};
+      "反馈",     "编码器",   "reading",  "angle",    "enc",         "probe",     "pos",       "load",
+      "saída",     "saida",    "gemeten",  "ärvärde",     "uppmätt",     "ölçülen",   "zmierzone", "měřeno",    "測定",
+      "output"};
   return of == Speaks::kReference ? reference : device;
 }
 
@@ -104,7 +107,7 @@ int ClearnessBy(const std::string& name, const std::vector<std::string>& words) 
 
 bool IsCalledError(const std::string& name) {
   return HasAny(name, std::array{"error", "err", "errors", "deviation", "dev", "abweichung", "fehler", "residual", "diff",
-                                 "difference", "erreur", "écart", "desviación", "offset", "offsets", "residuum", "residuals"}) ||
+                                 "difference", "erreur", "écart", "desviación", "offset", "offsets", "residuum", "residuals", "erro", "fout", "błąd", "hata"}) ||
          IsCalledCorrection(name);
 }
 
@@ -160,7 +163,7 @@ int DirectionOfWord(std::string_view word) {
 
 bool IsCalledTemperature(const std::string& name) {
   return name.starts_with("T_") || name.starts_with("T ") ||
-         HasAny(name, std::array{"temperature", "temp", "temperatur", "température", "temperatura", "температура"});
+         HasAny(name, std::array{"temperature", "temp", "temperatur", "température", "temperatura", "температура", "sıcaklık", "temperatuur"});
 }
 
 bool IsOtherQuantity(const Column& column) {

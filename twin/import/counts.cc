@@ -138,6 +138,27 @@ const Column* PlainColumn(const MappedColumn& mapped, const std::vector<Recordin
   return nullptr;
 }
 
+double BitsFor(double high) {
+  return std::ceil(std::log2(high + 1.0));
+}
+
+/// What goes round shows nearly all the counts that it has.
+bool GoesRound(double high) {
+  constexpr double kNearlyAll = 0.98;
+  return high > kNearlyAll * std::exp2(BitsFor(high));
+}
+
+/// Encoders of an even number of bits are usual; others are known by going round.
+double PerTurnUpTo(double high) {
+  const double bits = BitsFor(high);
+  return std::exp2(GoesRound(high) ? bits : 2.0 * std::ceil(bits / 2.0));
+}
+
+/// The counts of a device beside what they should be, a straight line: both go round at one power of two.
+bool IsCourseOfCounts(double high, double other_high) {
+  return GoesRound(high) && GoesRound(other_high) && BitsFor(high) == BitsFor(other_high);
+}
+
 /// Of a step test only the size of its errors depends on how many counts make a turn, not where they repeat.
 bool IsStepTestInCounts(const std::string& reference, const std::vector<Recording>& recordings, const Map& map) {
   constexpr std::size_t kFewPlaces = 3;
@@ -175,22 +196,25 @@ void TakeBothForCounts(const std::vector<std::string>& compared, const std::vect
   constexpr double kLeast = 1000.0, kMost = 65536.0;
   const bool is_step_test = IsStepTestInCounts(compared[0], recordings, map);
   std::vector<MappedColumn*> both;
-  double high = 0.0;
+  double high = 0.0, lower = kMost;
+  std::ptrdiff_t whole = 0;
   for (MappedColumn& mapped : map.columns) {
     if (std::ranges::find(compared, mapped.column) == compared.end()) continue;
     const Column* column = PlainColumn(mapped, recordings);
-    if (!column || !AreWhole(*column)) return;
+    if (!column) return;
+    whole += AreWhole(*column) ? 1 : 0;
     const auto [least, most] = std::ranges::minmax(column->value);
     const bool may_be_guessed = is_step_test ? IsCalledCounts(*column) : column->unit.empty() && !IsCalledCounts(*column) && most > kLeast;
     if (!may_be_guessed) return;
     if (!(least >= 0.0) || !(most < kMost)) return;
     high = std::max(high, most);
+    lower = std::min(lower, most);
     both.push_back(&mapped);
   }
-  if (both.size() != 2) return;
-  const double per_turn = std::pow(4.0, std::ceil(std::log(high + 1.0) / std::log(4.0)));
+  if (both.size() != 2 || !(whole == 2 || (whole == 1 && IsCourseOfCounts(high, lower)))) return;
+  const double per_turn = PerTurnUpTo(high);
   std::erase_if(remarks, [](const std::string& remark) { return remark.find("its unit is not said") != std::string::npos; });
-  const char* what = is_step_test ? "nothing says how many counts make a turn" : "whole numbers without a unit";
+  const char* what = is_step_test ? "nothing says how many counts make a turn" : whole == 2 ? "whole numbers without a unit" : "both go round at one power of two";
   for (MappedColumn* mapped : both) {
     remarks.push_back(fmt::format("{} is taken from \"{}\": {}, taken as {:g} counts per turn (--column '{}=[{}] * 360 / N' says another)",
                                   mapped->column, mapped->expression, what, per_turn, mapped->column, mapped->expression));

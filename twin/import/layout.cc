@@ -89,7 +89,7 @@ std::string FindKind(const std::vector<std::string_view>& lines, bool columns_ar
   if (2 * changes > std::ssize(lines)) return "changes";
   if (Has(lines, "ref_pos(i,")) return "cycles";
   if (std::ranges::any_of(lines, OpensArray)) return "array";
-  if (columns_are_open && (IsBareList(lines) || std::ranges::count_if(lines, OpensList) > 1)) return "array";
+  if (std::ranges::count_if(lines, OpensList) > 1 || (columns_are_open && IsBareList(lines))) return "array";
   if (columns_are_open && AreCycles(lines)) return "cycles";
   return "table";
 }

@@ -13,6 +13,7 @@
 #include "twin/core/nearest_key.h"
 #include "twin/core/schema_table.h"
 #include "twin/core/toml_reader.h"
+#include "twin/import/ready_texts.h"
 
 namespace twinbench::imports {
 namespace {
@@ -145,7 +146,7 @@ std::vector<const BenchFormat*> BenchesNamed(const std::string& text, const std:
 
 std::vector<std::string> ReadyNames() {
   std::vector<std::string> names;
-  for (const ReadyMap& ready : ReadyMaps()) names.push_back(ready.name);
+  for (const Map& ready : ReadyMaps()) names.push_back(ready.name);
   return names;
 }
 
@@ -172,10 +173,19 @@ Map ParseMap(const std::string& text, const std::string& name) {
   return map;
 }
 
+const std::vector<Map>& ReadyMaps() {
+  static const std::vector<Map> maps = [] {
+    std::vector<Map> read;
+    for (const ReadyText& ready : ReadyTexts()) read.push_back(ParseMap(ready.text, ready.name));
+    return read;
+  }();
+  return maps;
+}
+
 Map LoadMap(const std::string& name_or_path) {
   if (name_or_path.empty()) return {};
-  const auto ready = std::ranges::find(ReadyMaps(), name_or_path, &ReadyMap::name);
-  if (ready != ReadyMaps().end()) return ParseMap(ready->text, ready->name);
+  const auto ready = std::ranges::find(ReadyMaps(), name_or_path, &Map::name);
+  if (ready != ReadyMaps().end()) return *ready;
   if (!std::ifstream(name_or_path) || std::filesystem::is_directory(name_or_path))
     throw InputError("--map " + name_or_path, "there is no such file, and no ready map of that name",
                      fmt::format("a TOML file or one of {}; the nearest is {}", fmt::join(ReadyNames(), ", "),
@@ -214,8 +224,7 @@ bool SetSought(const std::string& key, const std::string& formula, bool is_of_be
   };
   if (std::ranges::any_of(map.sought, seeks)) return true;
   if (is_of_bench || !map.name.empty() || !map.columns.empty()) return false;
-  for (const ReadyMap& ready : ReadyMaps()) {
-    Map other = ParseMap(ready.text, ready.name);
+  for (Map other : ReadyMaps()) {
     if (!std::ranges::any_of(other.sought, seeks)) continue;
     map = std::move(other);
     return true;
@@ -250,8 +259,7 @@ void SetColumn(const std::string& assignment, Map& map) {
 
 std::string DescribeMaps() {
   std::string text = "A map says what a file does not (docs/import.md). Ready maps:\n\n";
-  for (const ReadyMap& ready : ReadyMaps())
-    text += fmt::format("  {:<18} {}\n", ready.name, ParseMap(ready.text, ready.name).title);
+  for (const Map& ready : ReadyMaps()) text += fmt::format("  {:<18} {}\n", ready.name, ready.title);
   Map map;
   ColumnKeys none({});
   Keys keys;

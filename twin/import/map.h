@@ -78,11 +78,8 @@ void SetColumn(const std::string& assignment, Map& map);
 /// A quantity's name without its unit: "reference" of "reference_deg".
 std::string BaseOf(const std::string& column);
 
-struct ReadyMap {
-  std::string name, text;
-};
-/// Those that come with the program, by name.
-const std::vector<ReadyMap>& ReadyMaps();
+/// Those that come with the program, by name; read once.
+const std::vector<Map>& ReadyMaps();
 
 /// Every key of a map with its meaning, and the ready maps; for `twinbench help map`.
 std::string DescribeMaps();

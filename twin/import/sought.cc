@@ -338,8 +338,7 @@ void DropWithout(const Sought& sought, Map& map) {
 }  // namespace
 
 std::optional<Map> ReadyMapByBegin(const std::string& text) {
-  for (const ReadyMap& ready : ReadyMaps()) {
-    Map map = ParseMap(ready.text, ready.name);
+  for (const Map& map : ReadyMaps()) {
     if (!map.guess_begins.empty() && text.starts_with(map.guess_begins)) return map;
   }
   return std::nullopt;
@@ -347,24 +346,22 @@ std::optional<Map> ReadyMapByBegin(const std::string& text) {
 
 std::optional<Map> ReadyMapOf(const Recording& recording) {
   if (recording.tracks.empty()) return std::nullopt;
-  std::optional<Map> best;
+  const Map* best = nullptr;
   std::size_t most = 0;
-  for (const ReadyMap& ready : ReadyMaps()) {
-    Map map = ParseMap(ready.text, ready.name);
+  for (const Map& map : ReadyMaps()) {
     const std::size_t columns = ColumnsOfKind(recording, map);
     if (columns <= most) continue;
     most = columns;
-    best = std::move(map);
+    best = &map;
   }
-  return best;
+  return best ? std::optional(*best) : std::nullopt;
 }
 
 std::string ReadyMapsByNames(const Recording& recording) {
   std::string maps;
-  for (const ReadyMap& ready : ReadyMaps()) {
-    const Map map = ParseMap(ready.text, ready.name);
+  for (const Map& map : ReadyMaps()) {
     if (!map.guess_by.empty() && ColumnsOfKind(recording, map, true) > 2)
-      maps += fmt::format("; of a {}: --map {}, with units in the names if they are not those of the map", map.title, ready.name);
+      maps += fmt::format("; of a {}: --map {}, with units in the names if they are not those of the map", map.title, map.name);
   }
   return maps;
 }
