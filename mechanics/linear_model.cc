@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mechanics/linear_step.h"
 #include "mechanics/matrices.h"
 
 namespace twinbench::mechanics {
@@ -47,6 +48,12 @@ LinearModel::LinearModel(const StackParameters& parameters) {
   const Eigen::MatrixXd propagator = ExponentialOf(system * p.servo_period_s);
   transition_ = propagator.topLeftCorner<2 * kCoordinates, 2 * kCoordinates>();
   drive_ = propagator.topRightCorner<2 * kCoordinates, kInputs>();
+}
+
+LinearModel::State LinearModel::Step(const State& state, const Input& input) const {
+  State next;
+  LinearStep({transition_.data(), drive_.data(), kInputs}, state.data(), input.data(), next.data());
+  return next;
 }
 
 Eigen::Matrix2d FeedForward(const StackParameters& p) {

@@ -27,7 +27,7 @@ class LinearModel {
   explicit LinearModel(const StackParameters& parameters);
 
   /// State one servo period later, for inputs that are constant meanwhile and a command that rests.
-  State Step(const State& state, const Input& input) const { return transition_ * state + drive_ * input; }
+  State Step(const State& state, const Input& input) const;
 
   /// What the inputs accelerate the coordinates by.
   Vector12 Accelerations(const Input& input) const { return accelerations_ * input; }

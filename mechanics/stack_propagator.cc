@@ -3,49 +3,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "mechanics/linear_step.h"
 #include "mechanics/matrices.h"
 
 namespace twinbench::mechanics {
-namespace {
-
-using EightRows [[gnu::vector_size(64)]] = double;
-
-struct Column {
-  EightRows top, middle, bottom;
-};
-static_assert(sizeof(Column) == sizeof(StackPropagator::State));
-
-[[gnu::always_inline]] inline void Add(const double* rows, double factor, EightRows& sum) {
-  EightRows added;
-  std::memcpy(&added, rows, sizeof(added));
-  sum += added * factor;
-}
-
-/// Written out: in a loop the sums would go through memory.
-[[gnu::always_inline]] inline Column SumOfColumns(const double* columns, const double* factors, int size) {
-  Column sum = {};
-  for (int j = 0; j < size; ++j) {
-    const double* column = columns + 2 * kCoordinates * j;
-    Add(column, factors[j], sum.top);
-    Add(column + 8, factors[j], sum.middle);
-    Add(column + 16, factors[j], sum.bottom);
-  }
-  return sum;
-}
-
-/// A third of a driven stack's time goes here. Column after column on every processor: equal bits.
-[[gnu::target_clones("avx512f", "avx2", "default")]] void StepArrays(const double* transition, const double* from,
-                                                                     const double* drive,
-                                                                     const double* acceleration, double* to) {
-  const Column carried = SumOfColumns(transition, from, 2 * kCoordinates);
-  const Column driven = SumOfColumns(drive, acceleration, kCoordinates);
-  const Column sum{carried.top + driven.top, carried.middle + driven.middle, carried.bottom + driven.bottom};
-  std::memcpy(to, &sum, sizeof(Column));
-}
-
-}  // namespace
 
 StackPropagator::StackPropagator(const StackParameters& parameters) : period_s_(parameters.servo_period_s) {
   const StackParameters p = InPayloadFrame(parameters);
@@ -73,7 +35,7 @@ StackPropagator::StackPropagator(const StackParameters& parameters) : period_s_(
 
 StackPropagator::State StackPropagator::Step(const State& from, const Vector12& acceleration, int parts) const {
   State to;
-  StepArrays(transition(parts).data(), from.data(), drive(parts).data(), acceleration.data(), to.data());
+  LinearStep({transition(parts).data(), drive(parts).data(), kCoordinates}, from.data(), acceleration.data(), to.data());
   return to;
 }
 
