@@ -331,6 +331,20 @@ TEST(Mangled, AComparisonAtOtherAnglesThanPlannedMayHaveAnyNumberOfReadings) {
   EXPECT_THAT(Said(turned(5.0 * units::deg), made_up), Not(HasSubstr("readings that")));
 }
 
+/// Its index errors would be the tilt of the mounting, exit code 0.
+TEST(Mangled, AnAutocollimatorWhoseAxesAreExchangedIsRefusedAndOneOfOtherSignsDoubted) {
+  const Scenario designs[] = {Benches()[1], LoadScenario(test::ScenarioPath("turntable_polygon.toml"))};
+  for (const Scenario& scenario : designs) {
+    const Rows good = test::ReadingsOf(scenario);
+    Rows exchanged = good, reversed = good;
+    for (Reading& r : exchanged) std::swap(r.autocollimator_yaw_rad, r.autocollimator_tilt_rad);
+    for (Reading& r : reversed) r.autocollimator_yaw_rad *= -1.0, r.autocollimator_tilt_rad *= -1.0;
+    EXPECT_EQ(Said(good, scenario), "-");
+    EXPECT_THAT(Said(exchanged, scenario), HasSubstr("cannot be: autocollimator_x_arcsec shows what the scenario says of"));
+    EXPECT_THAT(Said(reversed, scenario), HasSubstr("doubtful: autocollimator_y_arcsec goes the other way"));
+  }
+}
+
 TEST(Mangled, AShaftThatStandsWhileItsEncoderCountsIsRefused) {
   const Scenario scenario = LoadScenario(test::ScenarioPath("encoder_comparison.toml"));
   EXPECT_KEPT(Said(Standing(test::RunBench(scenario).readings), scenario));

@@ -69,12 +69,14 @@ std::vector<Expected> ShownByDevice(const EncoderSettings& s) {
 
 std::vector<Expected> ShownByCollimator(const TurntableSettings& s) {
   const double noise = UnlessCoarse(s.ReadingNoise_rad(), s.HasPolygon() ? s.collimator.deadband_rad : 0.0);
+  // The tilted axis is carried round by the turntable, and its teeth turn the mirror back.
   const auto tilt = [p = s.turntable_procedure](const Reading& r) {
     const bool is_planned = r.setup >= 0 && r.setup < p.SetUps() && r.phase == Phase::kFullCircle;
-    return is_planned ? std::abs(p.Of(p.tilts_rad, r.setup)) / std::sqrt(2.0) : 0.0;
+    return is_planned ? -p.Of(p.tilts_rad, r.setup) * std::sin(r.target_rad + p.Of(p.tilt_azimuths_rad, r.setup)) : kNaN;
   };
   return {{.column = "autocollimator_x_arcsec", .noise = noise, .by_axes = [](const Reading& r) { return r.target_rad; }},
-          {.column = "autocollimator_y_arcsec", .noise = s.ReadingNoise_rad(), .spread = tilt, .by_axes = StandsStill}};
+          {.column = "autocollimator_y_arcsec", .noise = s.ReadingNoise_rad(), .course = tilt, .not_in = "autocollimator_x_arcsec",
+           .by_axes = StandsStill}};
 }
 
 std::vector<Expected> ShownByHob(const HobSettings& s) {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
+#include "twin/plausible/course.h"
 #include "twin/plausible/goes_with.h"
 #include "twin/plausible/repeated_places.h"
 
@@ -43,38 +43,12 @@ double NoiseBound(const Channel& channel, const std::vector<double>& left) {
   return *std::ranges::min_element(bounds);
 }
 
-/// Of the values of a set-up against its mean, over all set-ups; what they should have beside it, over the same.
-struct Spread {
-  double shown = 0.0, expected = 0.0;
-};
-
-Spread SpreadOf(const Channel& channel, const Expected& expected) {
-  std::map<int, std::vector<double>> values;
-  std::map<int, double> wanted;
-  for (std::size_t i = 0; i < channel.size(); ++i) {
-    const Reading& reading = *channel.reading[i];
-    const double want = expected.spread(reading);
-    if (!(want > kMuch * expected.noise)) continue;
-    values[reading.setup].push_back(channel.value[i]);
-    wanted[reading.setup] = want;
-  }
-  Spread spread;
-  for (const auto& [setup, of_setup] : values) {
-    double sum = 0.0, squares = 0.0;
-    for (const double x : of_setup) sum += x;
-    for (const double x : of_setup) squares += std::pow(x - sum / static_cast<double>(of_setup.size()), 2);
-    spread.shown += squares;
-    spread.expected += std::pow(wanted[setup], 2) * static_cast<double>(of_setup.size());
-  }
-  return {std::sqrt(spread.shown), std::sqrt(spread.expected)};
-}
-
 void CheckSize(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
   if (channel.size() < kFewestToJudge) return;
   const std::string& name = channel.column->name;
   const double noise = NoiseBound(channel, LeftOf(channel, expected));
   const bool is_still = expected.noise > 0.0 && noise < expected.noise / kTimes && !(StepOf(channel) > noise);
-  const Spread spread = expected.spread ? SpreadOf(channel, expected) : Spread{};
+  const CourseSpread spread = expected.course ? SpreadAbout(channel, expected) : CourseSpread{};
   const bool is_small = spread.shown<spread.expected / kTimes, is_large = spread.shown> spread.expected * kTimes;
   if (spread.expected > 0.0 && (is_small || is_large))
     findings.push_back(

@@ -12,6 +12,7 @@
 #include "twin/core/units.h"
 #include "twin/plausible/against_expected.h"
 #include "twin/plausible/channel.h"
+#include "twin/plausible/course.h"
 #include "twin/plausible/labels.h"
 
 namespace twinbench::plausible {
@@ -174,6 +175,7 @@ std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario&
     CheckAlive(channel, !scenario.noise_free && (others_move || claim.noise > 0.0), bench, claim, findings);
     CheckSteps(channel, channels, Beside(channel, readings, bench), findings);
     if (!claim.column.empty() && Moves(channel)) CheckAgainst(claim, channel, findings);
+    if (claim.course) CheckCourse(claim, channels, findings);
   }
   CheckLabels(readings, bench, findings);
   CheckPlan(readings, plan, findings);

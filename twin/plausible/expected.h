@@ -16,8 +16,9 @@ struct Expected {
   std::string column;
   double noise = 0.0;  // of one reading, white, standard deviation [SI]; 0: not stated, or less than a step of the instrument
   double step = 0.0;   // least step of the reading [SI]; 0: not known
-  /// Standard deviation of its values within the reading's set-up, made on purpose: a tilt, a sweep [SI]; 0: not known.
-  std::function<double(const Reading&)> spread = {};
+  /// What was made on purpose in it beside what is measured, but for a constant of each set-up: a tilt [SI]; NaN: not known.
+  std::function<double(const Reading&)> course = {};
+  std::string not_in = {};  // the column that shows nothing of that course
   /// What it shows by the angles and places of the reading, but for a constant of each set-up [SI]; NaN: not known.
   std::function<double(const Reading&)> nominal = {};
   /// What it shows by where the axes stand, near a place and but for a constant [SI]: none: no step of an axis proves it.

@@ -1,0 +1,60 @@
+#include "twin/plausible/course.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace twinbench::plausible {
+namespace {
+
+constexpr double kFollows = 0.5;  // of the course, at most, is left where it is shown
+constexpr double kUnlike = 0.7;   // and at least where it is not
+
+const Channel* Named(const std::string& column, const std::vector<Channel>& channels) {
+  const auto found = std::ranges::find(channels, column, [](const Channel& channel) { return channel.column->name; });
+  return found == channels.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+CourseSpread SpreadAbout(const Channel& channel, const Expected& claim) {
+  std::map<int, std::vector<Eigen::Array3d>> setups;  // shown, expected, left
+  for (std::size_t i = 0; i < channel.size(); ++i) {
+    const double course = claim.course(*channel.reading[i]);
+    if (std::isfinite(course))
+      setups[channel.reading[i]->setup].emplace_back(channel.value[i], course, channel.value[i] - course);
+  }
+  Eigen::Array3d all = Eigen::Array3d::Zero();
+  for (const auto& [setup, rows] : setups) {
+    Eigen::Array3d mean = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
+    const double count = static_cast<double>(rows.size());
+    for (const Eigen::Array3d& row : rows) mean += row / count;
+    for (const Eigen::Array3d& row : rows) squares += (row - mean).square();
+    if (std::sqrt(squares[1] / count) > kMuch * claim.noise) all += squares;
+  }
+  return {std::sqrt(all[0]), std::sqrt(all[1]), std::sqrt(all[2])};
+}
+
+void CheckCourse(const Expected& claim, const std::vector<Channel>& channels, std::vector<Finding>& findings) {
+  const Channel* own = Named(claim.column, channels);
+  if (own == nullptr || own->size() < kFewestToJudge) return;
+  const CourseSpread here = SpreadAbout(*own, claim);
+  if (!(here.expected > 0.0) || here.left < kUnlike * here.expected) return;
+  const Channel* other = Named(claim.not_in, channels);
+  if (other != nullptr && SpreadAbout(*other, claim).left < kFollows * here.expected) {
+    findings.push_back({true, fmt::format("{} shows what the scenario says of {}, which does not: are the two exchanged?",
+                                          claim.not_in, claim.column)});
+    return;
+  }
+  Expected reversed = claim;
+  reversed.course = [&claim](const Reading& reading) { return -claim.course(reading); };
+  if (SpreadAbout(*own, reversed).left < kFollows * here.expected)
+    findings.push_back({false, fmt::format("{} goes the other way than the scenario says: is a sign another, or what was "
+                                           "mounted turned by half a turn?",
+                                           claim.column)});
+}
+
+}  // namespace twinbench::plausible
