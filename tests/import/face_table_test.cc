@@ -4,6 +4,7 @@
 #include "tests/import/importing.h"
 #include "twin/benches/evaluated.h"
 #include "twin/benches/registry.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/stream.h"
 #include "twin/separate/index_errors.h"
 
@@ -206,6 +207,26 @@ TEST_F(FaceTable, ReadOnceHasErrorsWithoutAnUncertainty) {
   const auto& turntable = evaluated.results.at("separation").at("turntable");
   EXPECT_FALSE(turntable.contains("u_ez_arcsec"));
   EXPECT_NEAR(turntable.at("ez_arcsec").at(2).get<double>(), 3.0, 0.01);
+}
+
+/// The noise that the made scenario states is that of its repeats, which one disturbed reading does not widen; without any nothing is known.
+TEST_F(FaceTable, StatesTheNoiseOfItsRepeats) {
+  for (const int runs : {1, 4}) {
+    Stream noise(5, "autocollimator.noise");
+    std::string text = "position (deg),reading (arcsec),certified (arcsec),direction,run\n";
+    for (int run = 1; run <= runs; ++run)
+      for (const int way : {1, -1})
+        for (int k = 0; k < 24; ++k) {
+          const double angle_deg = 15.0 * (way > 0 ? k : 23 - k), disturbed = run == 2 && way > 0 && k == 7 ? 40.0 : 0.0;
+          const double shown_arcsec = Table_arcsec(angle_deg, way) + 0.5 * noise.Normal() + disturbed;
+          text += fmt::format("{:g},{:.2f},0.10,{},{}\n", angle_deg, shown_arcsec, way > 0 ? "up" : "down", run);
+        }
+    const Imported taken = Take(text);
+    const Scenario made = ParseScenario("bench = \"" + taken.bench + "\"\n", "faces.csv", "", taken.set);
+    const double stated_arcsec = TurntableOf(made).autocollimator.noise_rad / units::arcsec;
+    EXPECT_NEAR(stated_arcsec, runs > 1 ? 0.5 : 0.02, runs > 1 ? 0.08 : 1e-9);
+    EXPECT_EQ(taken.story.find("the noise of the autocollimator is not known") != std::string::npos, runs == 1) << taken.story;
+  }
 }
 
 /// Somebody leant on the stone: of four readings of a place one is far off. Readings in steps of an arcsec that differ by one are not.

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "twin/core/errors.h"
+#include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
 #include "twin/import/commanded_circle.h"
 #include "twin/import/common.h"
@@ -142,6 +143,27 @@ std::vector<double> Places(std::vector<double> x, const std::string&) {
   return x;
 }
 
+/// Of values of one group less their mean, pooled; a single value that is far off does not widen it, unless more than half
+/// are alike to the last digit. 0 where no group has two.
+std::vector<double> Scatter(const std::vector<double>& x, const std::vector<double>& group, const std::string&) {
+  std::map<double, std::vector<double>> groups;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (std::isfinite(x[i]) && std::isfinite(group[i])) groups[group[i]].push_back(x[i]);
+  std::vector<double> left;
+  double freedom = 0.0, squares = 0.0;
+  for (const auto& [number, values] : groups) {
+    if (values.size() < 2) continue;
+    const double count = static_cast<double>(values.size());
+    double mean = 0.0;
+    for (const double value : values) mean += value / count;
+    for (const double value : values) left.push_back(value - mean), squares += (value - mean) * (value - mean);
+    freedom += count - 1.0;
+  }
+  if (left.empty()) return {0.0};
+  const double robust = RobustDeviation(left) * std::sqrt(static_cast<double>(left.size()) / freedom);
+  return {robust > 0.0 ? robust : std::sqrt(squares / freedom)};
+}
+
 template <class Function>
 struct NamedFunction {
   std::string_view name;
@@ -177,7 +199,7 @@ OfColumn ColumnFunction(std::string_view name) {
 
 OfColumns ColumnsFunction(std::string_view name) {
   static constexpr auto kFunctions =
-      std::to_array<NamedFunction<OfColumns>>({{"ratio", Ratio}, {"whole_turns", WholeTurns}, {"beside", Beside}, {"stated_ratio", StatedRatio}, {"unsteady", Unsteady}, {"circle_middle", CircleMiddle}, {"circle_radius", CircleRadius}});
+      std::to_array<NamedFunction<OfColumns>>({{"ratio", Ratio}, {"whole_turns", WholeTurns}, {"beside", Beside}, {"stated_ratio", StatedRatio}, {"unsteady", Unsteady}, {"circle_middle", CircleMiddle}, {"circle_radius", CircleRadius}, {"scatter", Scatter}});
   return FindIn(kFunctions, name);
 }
 

@@ -21,7 +21,8 @@
 /// of; places(x), the number of each angle in deg as they lie round the circle; unwrapped(x) of an angle in deg
 /// that starts again at a turn, within_turn(x) of one that goes on; ratio(a, b), how far a goes with b; whole_turns(a, b), the
 /// smallest number of turns of a that is a whole number of turns of b; stated_ratio(a, b), a or its inverse, as the ratio b
-/// has it; beside(a, b), a less b where they go together one to one, else a.
+/// has it; beside(a, b), a less b where they go together one to one, else a; scatter(x, group), the standard deviation of x among rows
+/// of the same group, 0 where none has two.
 ///
 /// Written here because no such library is among the packages that the program needs, and columns of a million rows
 /// are to go through it as a whole.
