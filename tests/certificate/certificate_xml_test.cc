@@ -155,6 +155,26 @@ TEST(CertificateXml, NamesWhatIsNotCertified) {
   EXPECT_EQ(TextAt(document, "//dcc:statement[3]/dcc:declaration/dcc:content"), "no detector reads it");
 }
 
+/// What the program says is English, whatever the laboratory writes in.
+TEST(CertificateXml, LabelsOnlyTheLaboratorysTextsWithItsLanguage) {
+  CertificateContent content = Content();
+  content.laboratory.language = "de";
+  const pugi::xml_document document = Parsed(CertificateXml(content));
+  for (const char* xpath : {"//dcc:item/dcc:name", "//dcc:customer/dcc:name", "//dcc:statement[1]/dcc:declaration"})
+    EXPECT_EQ(TextAt(document, (std::string(xpath) + "/dcc:content[@lang='de']").c_str()), TextAt(document, (std::string(xpath) + "/dcc:content").c_str()));
+  for (const char* xpath : {"//dcc:statement[2]/dcc:declaration", "//dcc:result[1]/dcc:name", "//dcc:usedMethod/dcc:description"})
+    EXPECT_FALSE(document.select_node((std::string(xpath) + "/dcc:content[@lang='de']").c_str())) << xpath;
+  EXPECT_EQ(document.select_nodes("//dcc:usedLangCodeISO639_1").size(), 2U);
+  EXPECT_EQ(TextAt(document, "//dcc:mandatoryLangCodeISO639_1"), "en");
+}
+
+TEST(CertificateXml, SaysThatTheResultsRelateToTheItemOnlyWhereThereIsOne) {
+  CertificateContent content = Content();
+  EXPECT_NE(CertificateXml(content).find("The results relate only to the item"), std::string::npos);
+  content.simulated = true;
+  EXPECT_EQ(CertificateXml(content).find("The results relate only to the item"), std::string::npos);
+}
+
 TEST(CertificateXml, IsWellFormedForXmllint) {
   const std::string path = testing::TempDir() + "certificate_well_formed.xml";
   std::ofstream(path) << CertificateXml(Content());

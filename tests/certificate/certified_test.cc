@@ -128,6 +128,13 @@ TEST(Certified, SaysWhoseErrorMotionItIsAndThatTheTableStood) {
   EXPECT_NE(one->note.find("not in full after ISO 230-7: the axis stood"), std::string::npos);
 }
 
+/// ISO 230-4 asks for radius and feed beside every value.
+TEST(Certified, SaysOfWhichRadiusAndFeedACircleIs) {
+  const Certified certified = Take("circular_motion", json::parse(R"({"iso230_4": [{"setup": 1, "radius_mm": 156.278, "feed_mm_min": 1000.0,
+    "D_um": 0.5, "u_D_um": 0.1}]})"));
+  EXPECT_TRUE(Find(certified, "circular deviations, mounting 1, radius [mm] 156.278, feed [mm/min] 1000, D"));
+}
+
 TEST(Certified, RefusesABenchOfWhoseResultsNothingIsSaid) {
   EXPECT_THROW(CertifiedPartsOf("own", "run"), InputError);
 }
@@ -168,6 +175,7 @@ TEST(Laboratory, SaysWhereADayACountryATemperatureOrAKeyIsNone) {
   const std::pair<const char*, const char*> cases[] = {
       {"begin = \"2026-02-28\"", "begin = \"2026-02-29\""}, {"end = \"2026-02-28\"", "end = \"28.2.2026\""},
       {"end = \"2026-02-28\"", "end = \"2026-02-27\""},     {"country = \"DE\"", "country = \"Germany\""},
+      {"issued = \"\"", "issued = \"2026-02-27\""},         {"# temperature_degC = 20.0", "temperature_degC = 500.0"},
       {"# temperature_degC", "temperature_degC"},           {"serial =", "seriel ="}};
   for (const auto& [from, to] : cases) {
     EXPECT_EQ(Complaint(With(from, to)).rfind("laboratory.toml:", 0), 0u) << to;

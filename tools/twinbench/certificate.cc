@@ -42,7 +42,10 @@ Temperature TemperatureOf(const std::vector<Reading>& readings, const Laboratory
   }
   if (count == 0)
     throw InputError(laboratory_file, "there is no temperature, and the readings have none", "conditions.temperature_degC and its uncertainty");
-  return {sum / count, 0.0, fmt::format("mean of {} readings, {:.3f} to {:.3f} degC; no uncertainty is stated", count, lowest, highest)};
+  const double expanded_degC = std::isfinite(laboratory.expanded_temperature_degC) ? laboratory.expanded_temperature_degC : 0.0;
+  return {sum / count, expanded_degC,
+          fmt::format("mean of {} readings, {:.3f} to {:.3f} degC{}", count, lowest, highest,
+                      expanded_degC > 0.0 ? "; uncertainty as the laboratory states it" : "; no uncertainty is stated")};
 }
 
 /// The twin by itself, and the twin shown as a bench, which says that it is one.
@@ -98,7 +101,7 @@ void Write(const std::string& path, const std::string& text, const std::string& 
 }
 
 nlohmann::json ToldJson(const CertificateContent& content) {
-  nlohmann::json json = {{"simulated", content.simulated}, {"certified", nlohmann::json::array()}, {"left_out", nlohmann::json::array()}};
+  nlohmann::json json = {{"simulated", content.simulated}, {"certified", nlohmann::json::array()}, {"left_out", nlohmann::json::array()}, {"issued", content.laboratory.issued}};
   for (const CertifiedQuantity& one : content.certified.quantities)
     json["certified"].push_back({{"title", one.title}, {"norm", one.norm}, {"values", one.values.size()}, {"unit", one.unit}, {"note", one.note}});
   for (const LeftOut& one : content.certified.left_out) json["left_out"].push_back({{"what", one.what}, {"why", one.why}});
@@ -131,8 +134,9 @@ void MakeCertificate(const CertificateOptions& options, JsonAnswer& answer) {
     throw InputError(options.output, "the certificate does not satisfy " + options.schema + "/dcc.xsd; nothing was written", "what xmllint says above");
   const std::size_t left_out = made.json.at("left_out").size();
   Write(options.output, made.text,
-        fmt::format("{} results certified{}{}", made.json.at("certified").size(), left_out ? fmt::format(", {} left out and named", left_out) : "",
-                    made.json.at("simulated").get<bool>() ? "; SIMULATED, which it says" : ""));
+        fmt::format("{} results certified{}{}{}", made.json.at("certified").size(), left_out ? fmt::format(", {} left out and named", left_out) : "",
+                    made.json.at("simulated").get<bool>() ? "; SIMULATED, which it says" : "",
+                    made.json.at("issued") == "" ? "; no day of issue, which ISO/IEC 17025 asks for: certificate.issued" : ""));
   made.json["certificate"] = options.output;
   answer.Write(made.json);
 }

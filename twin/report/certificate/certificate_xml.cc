@@ -17,7 +17,12 @@ using pugi::xml_node;
 constexpr const char* kSimulated =
     "SIMULATED: the readings are those of a simulation. No item was calibrated, and the values are not traceable to any standard.";
 
-/// Elements of one certificate; texts are of one language.
+/// ISO/IEC 17025:2017, 7.8.2.1 l.
+constexpr const char* kOfTheItem = "The results relate only to the item that was calibrated, at the time and under the conditions stated.";
+
+constexpr const char* kLanguage = "en";  // of all texts but the laboratory's own
+
+/// Elements of one certificate.
 class Writer {
  public:
   explicit Writer(const CertificateContent& content) : content_(content), lab_(content.laboratory) {}
@@ -44,14 +49,18 @@ class Writer {
   static void Put(xml_node parent, const char* name, const std::string& text) {
     if (const std::string clean = XmlText(text); !clean.empty()) parent.append_child(name).text().set(clean.c_str());
   }
-  /// A text that may stand in several languages; this one has it in one.
-  void AddContent(xml_node node, const std::string& text) const {
+  /// A text that may stand in several languages; each here stands in one.
+  static void AddContent(xml_node node, const std::string& text, const std::string& language = kLanguage) {
     xml_node content = node.append_child("dcc:content");
-    content.append_attribute("lang").set_value(lab_.language.c_str());
+    content.append_attribute("lang").set_value(language.c_str());
     content.text().set(XmlText(text).c_str());
   }
-  void AddText(xml_node parent, const char* name, const std::string& text) const {
+  static void AddText(xml_node parent, const char* name, const std::string& text) {
     if (!XmlText(text).empty()) AddContent(parent.append_child(name), text);
+  }
+  /// In the words of the laboratory's file.
+  void AddOwn(xml_node parent, const char* name, const std::string& text) const {
+    if (!XmlText(text).empty()) AddContent(parent.append_child(name), text, lab_.language);
   }
 
   // Who and what ------------------------------------------------------------------------------------------------------
@@ -83,8 +92,9 @@ class Writer {
 
   void AddCoreData(xml_node node) const {
     Put(node, "dcc:countryCodeISO3166_1", lab_.country);
-    Put(node, "dcc:usedLangCodeISO639_1", lab_.language);
-    Put(node, "dcc:mandatoryLangCodeISO639_1", lab_.language);
+    Put(node, "dcc:usedLangCodeISO639_1", kLanguage);
+    if (lab_.language != kLanguage) Put(node, "dcc:usedLangCodeISO639_1", lab_.language);
+    Put(node, "dcc:mandatoryLangCodeISO639_1", kLanguage);
     Put(node, "dcc:uniqueIdentifier", lab_.identifier);
     Put(node, "dcc:beginPerformanceDate", lab_.begin);
     Put(node, "dcc:endPerformanceDate", lab_.end);
@@ -93,9 +103,9 @@ class Writer {
   }
 
   void AddItem(xml_node node) const {
-    AddText(node, "dcc:name", Marked(lab_.item));
-    AddText(node, "dcc:description", lab_.description);
-    if (!lab_.manufacturer.empty()) AddText(node.append_child("dcc:manufacturer"), "dcc:name", lab_.manufacturer);
+    AddOwn(node, "dcc:name", Marked(lab_.item));
+    AddOwn(node, "dcc:description", lab_.description);
+    if (!lab_.manufacturer.empty()) AddOwn(node.append_child("dcc:manufacturer"), "dcc:name", lab_.manufacturer);
     Put(node, "dcc:model", lab_.model);
     xml_node identification = node.append_child("dcc:identifications").append_child("dcc:identification");
     Put(identification, "dcc:issuer", "manufacturer");
@@ -103,7 +113,7 @@ class Writer {
   }
 
   void AddContact(xml_node node, const Contact& contact) const {
-    AddText(node, "dcc:name", contact.name);
+    AddOwn(node, "dcc:name", contact.name);
     Put(node, "dcc:eMail", contact.email);
     xml_node location = node.append_child("dcc:location");
     Put(location, "dcc:city", contact.city);
@@ -114,25 +124,32 @@ class Writer {
   }
 
   void AddPerson(xml_node node) const {
-    AddText(node.append_child("dcc:person"), "dcc:name", lab_.person);
+    AddOwn(node.append_child("dcc:person"), "dcc:name", lab_.person);
     Put(node, "dcc:role", lab_.role);
     Put(node, "dcc:mainSigner", "true");
   }
 
-  void AddStatement(xml_node statements, const std::string& name, const std::string& declaration, const char* traceable = "") const {
+  static void AddStatement(xml_node statements, const std::string& name, const std::string& declaration) {
     xml_node node = statements.append_child("dcc:statement");
     AddText(node, "dcc:name", name);
-    Put(node, "dcc:traceable", traceable);
     AddText(node, "dcc:declaration", declaration);
   }
 
+  void AddTraceability(xml_node node) const {
+    AddText(node, "dcc:name", "traceability");
+    Put(node, "dcc:traceable", content_.simulated ? "false" : "true");
+    if (content_.simulated) return AddText(node, "dcc:declaration", kSimulated);
+    AddOwn(node, "dcc:declaration", lab_.traceability);
+  }
+
   void AddStatements(xml_node node) const {
-    AddStatement(node, "traceability", content_.simulated ? kSimulated : lab_.traceability, content_.simulated ? "false" : "true");
+    AddTraceability(node.append_child("dcc:statement"));
     AddStatement(node, "uncertainty",
                  "The uncertainties are expanded ones: standard uncertainties after JCGM 100:2008 (GUM) times the coverage factor stated beside them, for "
                  "a coverage probability of 95 %.");
     if (!content_.diagnosis.empty()) AddStatement(node, "diagnosis of the readings", content_.diagnosis);
     for (const auto& [what, why] : content_.certified.left_out) AddStatement(node, "not certified: " + what, why.empty() ? "not separable" : why);
+    if (!content_.simulated) AddStatement(node, "scope of the results", kOfTheItem);
   }
 
   // Results ------------------------------------------------------------------------------------------------------------
@@ -141,7 +158,7 @@ class Writer {
 
   void AddMeasurementResult(xml_node node) const {
     AddText(node, "dcc:name", content_.simulated ? "SIMULATED calibration, no real item" : "Calibration");
-    AddText(node, "dcc:description", content_.scenario_title);
+    AddOwn(node, "dcc:description", content_.scenario_title);
     AddMethods(node.append_child("dcc:usedMethods"));
     AddSoftware(node.append_child("dcc:usedSoftware").append_child("dcc:software"), content_.recorded_by,
                 "recorded the readings from: " + content_.readings_from);

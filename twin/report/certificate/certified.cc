@@ -89,7 +89,7 @@ class Taker {
       if (const std::string value = report::TextAt(object, key); !value.empty()) words += ", " + value;
     }
     for (const auto& [key, spoken] : std::initializer_list<std::pair<const char*, const char*>>{
-             {"setup", "mounting"}, {"direction", "direction"}, {"feed_mm_min", "feed [mm/min]"}, {"head_deg", "head [deg]"}}) {
+             {"setup", "mounting"}, {"direction", "direction"}, {"radius_mm", "radius [mm]"}, {"feed_mm_min", "feed [mm/min]"}, {"head_deg", "head [deg]"}}) {
       if (const double value = NumberAt(object, key); std::isfinite(value)) words += fmt::format(", {} {}", spoken, value);
     }
     return words;

@@ -26,10 +26,10 @@ class LaboratoryKeys {
     Table("certificate");
     Needed("identifier", l.identifier, "unique identifier of this certificate");
     Needed("country", l.country, "country of issue, two capital letters of ISO 3166-1");
-    May("language", l.language, "language of the texts, two letters of ISO 639-1");
+    May("language", l.language, "language of your texts, two letters of ISO 639-1; all others are English");
     Needed("begin", l.begin, "first day of the calibration, YYYY-MM-DD");
     Needed("end", l.end, "last day of the calibration, YYYY-MM-DD");
-    May("issued", l.issued, "day of issue, YYYY-MM-DD");
+    May("issued", l.issued, "day of issue, YYYY-MM-DD; ISO/IEC 17025 asks for it");
     May("location", l.location, "where it was carried out", {"laboratory", "customer", "laboratoryBranch", "customerBranch", "other"});
     Add("simulated", &l.simulated, "true: the readings are a simulation's; a run of the twin is known to be one without", false);
     AddContact("laboratory", l.laboratory, "calibration laboratory");
@@ -46,8 +46,9 @@ class LaboratoryKeys {
     May("description", l.description, "more about it");
     Table("conditions");
     Add("temperature", &l.temperature_degC, "temperature during the calibration; left out: that of the readings", false, {"degC", 1.0});
+    keys_.back().key.bounds = {-50.0, 100.0};
     Add("expanded_uncertainty", &l.expanded_temperature_degC, "of the temperature, for about 95 %", false, {"degC", 1.0});
-    keys_.back().key.bounds = {0.0, std::numeric_limits<double>::infinity(), true};
+    keys_.back().key.bounds = {0.0, 50.0, true};
     Table("traceability");
     May("statement", l.traceability, "to which standards the results are traceable; needed unless simulated");
   }
@@ -128,6 +129,9 @@ void CheckDates(const Laboratory& l, const KeyPlaces& places, const std::string&
   // Days written like this are ordered as texts are.
   if (l.end < l.begin)
     throw InputError(PlaceOf(places, "certificate.end", name), "the calibration ends before it begins", "certificate.end from " + l.begin + " on");
+  if (!l.issued.empty() && l.issued < l.end)
+    throw InputError(PlaceOf(places, "certificate.issued", name), "the certificate is issued before the calibration ends",
+                     "certificate.issued from " + l.end + " on");
 }
 
 void CheckCodes(const Laboratory& l, const KeyPlaces& places, const std::string& name) {
