@@ -4,7 +4,7 @@
 
 #include "tests/diagnose/encoder_record.h"
 #include "tests/support/night.h"
-#include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
+#include "twin/diagnose/part_of_readings.h"
 
 // One machine read in several ways: what is wrong with it does not hang on how often, or where, it was read.
 namespace twinbench::diagnose {
@@ -94,8 +94,8 @@ TEST(DiagnoseSampling, APartOfTheReadingsHasNeighboursAndTurningPoints) {
   const auto none = [](double, int, double) { return 0.0; };
   const std::vector<Reading> few = ReadAs({"few", 4000}, none).readings,
                              many = ReadAs({"many", 20000}, none).readings;
-  EXPECT_EQ(encoder::PartOf(few).size(), few.size());
-  const std::vector<Reading> part = encoder::PartOf(many);
+  EXPECT_EQ(PartOf(few).size(), few.size());
+  const std::vector<Reading> part = PartOf(many);
   EXPECT_NEAR(static_cast<double>(part.size()), 4000.0, 4 * 16.0);  // a group more or less in each pass
   std::size_t neighbours = 0, turns = 0;
   for (std::size_t i = 0; i < part.size(); ++i) {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -11,6 +13,7 @@
 #include "twin/benches/circular_motion/twin/factory.h"
 #include "twin/core/errors.h"
 #include "twin/core/reading_clock.h"
+#include "twin/diagnose/part_of_readings.h"
 #include "twin/diagnose/products.h"
 
 namespace twinbench::benches::circular {
@@ -177,22 +180,48 @@ Scenario WithKindOfLag(Scenario scenario, const std::vector<Reading>& readings, 
   return scenario;
 }
 
+constexpr std::size_t kManyReadings = 4500;
+
+/// Reading numbers at which an axis turns round.
+std::vector<double> ReversalsIn(const std::vector<Reading>& with_angles) {
+  const auto quadrant = [](const Reading& r) { return std::floor(r.target_rad / (0.5 * units::kPi)); };
+  std::vector<double> numbers;
+  for (std::size_t i = 1; i < with_angles.size(); ++i) {
+    const Reading &before = with_angles[i - 1], &r = with_angles[i];
+    if (before.setup == r.setup && before.pass == r.pass && quadrant(before) != quadrant(r)) numbers.push_back(r.reading);
+  }
+  return numbers;
+}
+
+/// Of a controller's log of many readings those that a search needs: what axes do where they turn round is over in a few of them.
+std::vector<Reading> LookedAt(std::vector<Reading> with_angles) {
+  constexpr std::size_t kEnough = 1000, kAbout = 8;
+  if (with_angles.size() <= kManyReadings) return with_angles;
+  std::vector<double> reversals = ReversalsIn(with_angles);
+  for (; 2 * kAbout * reversals.size() > kEnough; reversals.resize((reversals.size() + 1) / 2))
+    for (std::size_t i = 1; 2 * i < reversals.size(); ++i) reversals[i] = reversals[2 * i];
+  return diagnose::PartOf(with_angles, {std::move(reversals), kEnough, kAbout});
+}
+
 }  // namespace
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  const std::vector<Reading> with_angles = WithAngles(readings);
+  const std::vector<Reading> looked_at = LookedAt(WithAngles(readings));
   std::vector<std::string> notes;
-  const Scenario believed = WithKindOfLag(scenario, readings, notes);
-  diagnose::DiagnosisRun found = diagnose::DiagnoseByTwin(with_angles, believed, options, Comparison(believed, with_angles));
+  const Scenario believed = WithKindOfLag(scenario, looked_at, notes);
+  diagnose::DiagnosisRun found = diagnose::DiagnoseByTwin(looked_at, believed, options, Comparison(believed, looked_at));
   std::ranges::move(notes, std::back_inserter(found.diagnosis.notes));
-  if (!HasAngles(with_angles)) std::ranges::move(LeftOpen(readings), std::back_inserter(found.diagnosis.notes));
+  if (!HasAngles(looked_at)) std::ranges::move(LeftOpen(looked_at), std::back_inserter(found.diagnosis.notes));
+  if (looked_at.size() < readings.size())
+    found.diagnosis.notes.push_back(fmt::format("{} of {} readings were looked at, in groups of neighbours and where axes turn round",
+                                                looked_at.size(), readings.size()));
   return found;
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
-  const std::vector<Reading> with_angles = WithAngles(readings);
-  return diagnose::CompareWithTwin(with_angles, scenario, Comparison(scenario, with_angles));
+  const std::vector<Reading> looked_at = LookedAt(WithAngles(readings));
+  return diagnose::CompareWithTwin(looked_at, scenario, Comparison(scenario, looked_at));
 }
 
 }  // namespace twinbench::benches::circular

@@ -8,6 +8,7 @@
 #include "twin/benches/circular_motion/analysis.h"
 #include "twin/benches/circular_motion/bench.h"
 #include "twin/benches/circular_motion/columns.h"
+#include "twin/benches/circular_motion/estimators/far_radii.h"
 #include "twin/benches/circular_motion/ranked.h"
 #include "twin/core/reading_clock.h"
 #include "twin/report/json_units.h"
@@ -314,9 +315,10 @@ std::string PolarsOf(const CircleAnalysis& a) {
 
 /// Passes whose places go the other way round than their rows say, by the clock: " (pass 1 says cw, and ...)"; empty: none.
 std::string OtherWays(const std::vector<Reading>& readings) {
+  if (!HasClock(readings)) return "";
   std::string text;
   std::map<std::pair<int, int>, double> along_rad;
-  for (std::size_t i = 1; HasClock(readings) && i < readings.size(); ++i) {
+  for (std::size_t i = 1; i < readings.size(); ++i) {
     const Reading &before = readings[i - 1], &r = readings[i];
     if (before.setup != r.setup || before.pass != r.pass) continue;
     const double step_rad = std::remainder(WithAngle(nullptr, r).target_rad - WithAngle(nullptr, before).target_rad, units::turn);
@@ -325,6 +327,22 @@ std::string OtherWays(const std::vector<Reading>& readings) {
   for (const auto& [pass, rad] : along_rad)
     if (rad < -0.5 * units::turn) text += fmt::format("{}mounting {}, pass {}", text.empty() ? "" : "; ", pass.first, pass.second);
   return text.empty() ? "" : " (places go the other way round than the rows say: " + text + ")";
+}
+
+json FarJson(const std::vector<FarRadius>& far) {
+  json all = json::array();
+  for (const FarRadius& one : far)
+    all.push_back({{"reading", one.reading}, {"angle_deg", one.target_rad / units::deg}, {"off_um", In(um, one.off_m)}, {"times_scatter", one.times}});
+  return all;
+}
+
+std::string FarText(const std::vector<FarRadius>& far) {
+  std::string text;
+  for (const FarRadius& one : far)
+    text += fmt::format("doubtful: the radius of reading {} ({:.6g} deg) lies {:.3g} µm from the curve through its neighbours, {:.2g} times the scatter "
+                        "of the others, and no other turn does: left out\n",
+                        one.reading, one.target_rad / units::deg, one.off_m / um, one.times);
+  return text;
 }
 
 /// G, F, D and H are of the radii as they were read, and errors widen their uncertainty by what they leave: of radii alone that is no reason to
@@ -337,12 +355,14 @@ report::Misfit MisfitOf(const CircleAnalysis& a, const std::string& other_ways) 
 
 }  // namespace
 
-report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& all_readings, Estimator estimator) {
+  std::vector<Reading> readings = WithAngles(all_readings);
+  const std::vector<FarRadius> far = TakeOutFar(readings);
   const CircleAnalysis a = Analyse(scenario, readings, estimator);
   report::Evaluation evaluation;
   evaluation.separation = SeparationJson(a);
   evaluation.results = {{"readings", a.points.size()},
-                        {"left_out", readings.size() - a.points.size()},
+                        {"left_out", all_readings.size() - a.points.size()},
                         {"estimator", EstimatorName(estimator)},
                         {"setups", evaluation.separation["setups"]},
                         {"errors", evaluation.separation["errors"]},
@@ -353,7 +373,8 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   for (const RadialPart& part : RadialPartsOf(a)) evaluation.results["radial_parts"].push_back({{"errors", part.keys}, {"rms_um", In(um, part.rms_m)}});
   const std::vector<RankedError> ranked = RankedErrors(a);
   if (!ranked.empty()) evaluation.results["ranked"] = RankedJson(ranked);
-  evaluation.summary = fmt::format("{} of {} readings have a radius\n", a.points.size(), readings.size());
+  if (!far.empty()) evaluation.results["far"] = FarJson(far);
+  evaluation.summary = fmt::format("{} of {} readings have a radius\n", a.points.size() + far.size(), all_readings.size()) + FarText(far);
   if (!a.method_bias.empty()) evaluation.results["method_bias"] = BiasJson(a.method_bias);
   evaluation.summary += BiasText(a);
   evaluation.summary += RankedText(ranked) + DeviationsText(a);

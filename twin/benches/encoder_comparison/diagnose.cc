@@ -13,7 +13,6 @@
 #include "twin/benches/encoder_comparison/diagnosis/glitches.h"
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
-#include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
 #include "twin/benches/encoder_comparison/diagnosis/pieces_of_curve.h"
 #include "twin/benches/encoder_comparison/diagnosis/speed_limit.h"
 #include "twin/benches/encoder_comparison/diagnosis/steady_reference.h"
@@ -23,6 +22,7 @@
 #include "twin/benches/encoder_comparison/twin/factory.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/extend.h"
+#include "twin/diagnose/part_of_readings.h"
 
 namespace twinbench::benches::encoder {
 namespace {
@@ -112,12 +112,12 @@ diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
   const std::vector<Reading> all = AnglesOf(recorded, scenario);
-  std::vector<Reading> looked_at = diagnose::encoder::PartOf(all);
+  std::vector<Reading> looked_at = diagnose::PartOf(all);
   diagnose::DiagnosisRun result = DiagnoseAll(looked_at, scenario, options);
   if (looked_at.size() == all.size()) return result;
   const std::vector<double> events = EventsOf(result.diagnosis);
   if (!events.empty()) {
-    looked_at = diagnose::encoder::PartOf(all, events);
+    looked_at = diagnose::PartOf(all, {events});
     result = DiagnoseAll(looked_at, scenario, options);
   }
   result.diagnosis.notes.push_back(fmt::format("{} of {} readings were looked at, in groups of neighbours{}",
@@ -128,7 +128,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
-  return diagnose::encoder::BuildRun(diagnose::encoder::PartOf(AnglesOf(readings, scenario)), scenario, FollowRecord).run;
+  return diagnose::encoder::BuildRun(diagnose::PartOf(AnglesOf(readings, scenario)), scenario, FollowRecord).run;
 }
 
 }  // namespace twinbench::benches::encoder

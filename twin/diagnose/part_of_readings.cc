@@ -1,13 +1,12 @@
-#include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
+#include "twin/diagnose/part_of_readings.h"
 
-#include <algorithm>
-#include <cmath>
 #include <random>
+#include <set>
 
-namespace twinbench::diagnose::encoder {
+namespace twinbench::diagnose {
 namespace {
 
-constexpr std::size_t kEnoughReadings = 4000, kInARow = 16;
+constexpr std::size_t kInARow = 16;
 
 bool BeginsPass(const std::vector<Reading>& readings, std::size_t i) {
   return i == 0 || readings[i].pass != readings[i - 1].pass || readings[i].setup != readings[i - 1].setup;
@@ -20,12 +19,14 @@ std::size_t TakenOf(std::size_t block, std::size_t every) {
 
 }  // namespace
 
-std::vector<Reading> PartOf(const std::vector<Reading>& readings, const std::vector<double>& events) {
-  const std::size_t every = (readings.size() + kEnoughReadings / 2) / kEnoughReadings;
+std::vector<Reading> PartOf(const std::vector<Reading>& readings, const PartWanted& wanted) {
+  const std::size_t every = (readings.size() + wanted.enough / 2) / wanted.enough;
   if (every < 2) return readings;
-  const auto about_group = static_cast<double>(2 * every * kInARow);
+  const auto about = static_cast<double>(wanted.about > 0 ? wanted.about : 2 * every * kInARow);
+  const std::set<double> events(wanted.events.begin(), wanted.events.end());
   const auto is_about = [&](const Reading& r) {
-    return std::ranges::any_of(events, [&](double event) { return std::abs(r.reading - event) <= about_group; });
+    const auto next = events.lower_bound(r.reading - about);
+    return next != events.end() && *next <= r.reading + about;
   };
   std::vector<Reading> part;
   std::size_t in_pass = 0;
@@ -39,4 +40,4 @@ std::vector<Reading> PartOf(const std::vector<Reading>& readings, const std::vec
   return part;
 }
 
-}  // namespace twinbench::diagnose::encoder
+}  // namespace twinbench::diagnose
