@@ -71,7 +71,7 @@ TEST(Disagreement, IsToldWhereItIsLargeAndCannotBeTrustedWhereNothingExplainsIt)
                      open = DisagreementOf(Off(1e-3, false));
   EXPECT_TRUE(small.is_plausible && explained.is_plausible && !open.is_plausible);
   EXPECT_EQ(small.line, "");
-  EXPECT_THAT(explained.line, HasSubstr("times their noise"));
+  EXPECT_THAT(explained.line, HasSubstr("times their noise; once all that was found is taken into account, by no more than their noise"));
   EXPECT_THAT(open.line, HasSubstr("are they of this bench"));
 }
 

@@ -141,6 +141,16 @@ TEST_F(SpindleProbe, IsGuessedByItsProbes) {
   EXPECT_TRUE(std::isnan(In(taken.readings[100], "probe_axial_um")));
 }
 
+/// A number that only tells a spindle's record from that of a screw is nobody's column.
+TEST_F(SpindleProbe, LooksAtWhatTheFileHas) {
+  std::string text = "angle_deg,probe_x_um\n";
+  for (int k = 0; k < 144; ++k) text += fmt::format("{},{:.4f}\n", 5 * k, 0.01 * (k % 72));
+  const Seen seen = Look({File("raw.csv", text)}, {});
+  EXPECT_THAT(seen.text, HasSubstr("spindle_probe"));
+  EXPECT_THAT(seen.text, HasSubstr("probe_1_um"));
+  EXPECT_THAT(seen.text, Not(HasSubstr("alone")));
+}
+
 /// Such readings are whole although no voltage is there, in a file as well, whose columns are those that were read.
 TEST_F(SpindleProbe, StaysWholeInAFile) {
   std::string text = "Winkel [°];Taster X [mm];Taster Y [mm];axial [nm]\n";

@@ -31,9 +31,8 @@ Disagreement DisagreementOf(const DiagnosisRun& found) {
   if (disagreement.before < kMany) return disagreement;
   disagreement.is_plausible = disagreement.after < kMany || disagreement.after < kUnexplained * disagreement.before;
   disagreement.line = fmt::format(
-      "the readings differ from the scenario by {:.0f} times their noise, and by {:.0f} times "
-      "with all that was found",
-      disagreement.before, disagreement.after);
+      "the readings differ from the scenario by {:.0f} times their noise; once all that was found is taken into account, by {}",
+      disagreement.before, disagreement.after < 1.0 ? "no more than their noise" : fmt::format("{:.0f} times their noise", disagreement.after));
   if (!disagreement.is_plausible)
     disagreement.line += ": are they of this bench, this scenario and in these units?";
   return disagreement;

@@ -28,7 +28,7 @@ Eigen::VectorXd RemovedByFile(const std::vector<Reading>& readings, const Scenar
                               const AgainstScenario& against, const DiagnosisRun& found) {
   const LinearRun extended = against(readings, ReadBack(scenario, found), model);
   if (extended.Rows() != found.run.Rows())
-    throw InputError("extended.toml", "it shows other readings than the scenario", "the same ones");
+    throw InputError("extended.toml", "with these causes other readings can be compared than without them", "the same ones");
   return found.run.residual - LeftInFrame(extended, found.run, found.noise);
 }
 
@@ -118,7 +118,7 @@ void JudgeByFile(const std::vector<Reading>& readings, const Scenario& scenario,
     lost.Tell(result, removed, d.notes);
   } catch (const InputError& refusal) {
     d.gain = MeasureGain(result.run, result.noise, result.accepted, ShownByFit(result.run, result.accepted));
-    d.notes.push_back(fmt::format("the held-out improvement is that of the fit, for the written scenario cannot be followed: {}",
+    d.notes.push_back(fmt::format("the held-out improvement is that of the fit; the scenario with these causes was not tried on the readings: {}",
                                   refusal.what()));
   }
   Bound(d.gain);

@@ -335,6 +335,20 @@ void DropWithout(const Sought& sought, Map& map) {
   });
 }
 
+/// What was made only to tell of which kind a file is.
+void DropOfKind(const Map& map, Track& track) {
+  if (map.guess_only.empty()) return;
+  const auto is_in = [](const std::string& name, const std::string& formula, const std::string& where) {
+    const std::vector<std::string> names = Expression(formula, where).Names();
+    return std::ranges::count(names, name) > 0;
+  };
+  for (const Sought& sought : map.sought) {
+    const bool is_needed = !sought.words.empty() || !is_in(sought.name, map.guess_only, "only") ||
+                           std::ranges::any_of(map.columns, [&](const MappedColumn& c) { return is_in(sought.name, c.expression, c.where); });
+    if (!is_needed) std::erase_if(track.columns, [&sought](const Column& c) { return c.name == sought.name; });
+  }
+}
+
 }  // namespace
 
 std::optional<Map> ReadyMapByBegin(const std::string& text) {
@@ -387,6 +401,7 @@ void TakeSought(Map& map, Recording& recording) {
       for (std::string& key : map.set) FillInKey(seeker, sought, key);
     }
     seeker.Finish();
+    DropOfKind(map, track);
     PlaceClampings(map, recording, track);
   }
 }

@@ -64,7 +64,8 @@ std::string Warnings(const DiagnosisPage& page) {
     text += Sentence("! ", diagnose::GainInWords(d.gain, page.found.run));
   for (const std::string& note : d.notes) text += Sentence("! ", note);
   if (d.left_out > 0)
-    text += Sentence("! ", fmt::format("{} without usable values left out", d.left_out == 1 ? "1 reading" : fmt::format("{} readings", d.left_out)));
+    text += Sentence("! ", fmt::format("{} left out of the search, without a value that can be compared",
+                                     d.left_out == 1 ? "1 reading" : fmt::format("{} readings", d.left_out)));
   if (d.verdict == Verdict::kNone) text += TestsStandingOut(page.residual_tests);
   return text;
 }

@@ -195,7 +195,7 @@ std::vector<double> ReversalsIn(const std::vector<Reading>& with_angles) {
 
 /// Of a controller's log of many readings those that a search needs: what axes do where they turn round is over in a few of them.
 std::vector<Reading> LookedAt(std::vector<Reading> with_angles) {
-  constexpr std::size_t kEnough = 1000, kAbout = 8;
+  constexpr std::size_t kEnough = 1500, kAbout = 8;
   if (with_angles.size() <= kManyReadings) return with_angles;
   std::vector<double> reversals = ReversalsIn(with_angles);
   for (; 2 * kAbout * reversals.size() > kEnough; reversals.resize((reversals.size() + 1) / 2))
