@@ -83,10 +83,31 @@ void Bound(Gain& gain) {
     *value = std::clamp(*value, -1.0, 1.0);
 }
 
+bool IsUnnamed(const Accepted& accepted) {
+  return accepted.family.kind == Kind::kUnknown;
+}
+
+/// Shapes without a name may spoil what the causes predict: then they go, and stay no more than a proposal.
+/// @return whether the causes alone predict readings that they were not fitted to.
+bool DoNamedPredict(DiagnosisRun& result) {
+  std::vector<Accepted> named = result.accepted;
+  if (std::erase_if(named, IsUnnamed) == 0 || named.empty()) return false;
+  Gain gain = MeasureGain(result.run, result.noise, named, ShownByFit(result.run, named));
+  if (gain.folds == 0 || !gain.positive) return false;
+  result.accepted = std::move(named);
+  Diagnosis& d = result.diagnosis;
+  Bound(gain);
+  d.gain = gain;
+  d.unknown.probability = std::min(d.unknown.probability, tuning::kNotProven);
+  d.notes.push_back("what has no name does not predict passes that it was not fitted to, and is not written");
+  return true;
+}
+
 /// A cause goes into the model only if it predicts readings that it was not fitted to.
-void ProposeOnly(Diagnosis& d) {
+void ProposeOnly(DiagnosisRun& result) {
+  Diagnosis& d = result.diagnosis;
   const bool named = d.verdict == Verdict::kNamed || d.verdict == Verdict::kTie;
-  if (!named || d.gain.folds == 0 || d.gain.positive) return;
+  if (!named || d.gain.folds == 0 || d.gain.positive || DoNamedPredict(result)) return;
   for (Cause& cause : d.causes) cause.probability = std::min(cause.probability, tuning::kNotProven);
   d.notes.push_back(kNoGainNote);
 }
@@ -122,7 +143,7 @@ void JudgeByFile(const std::vector<Reading>& readings, const Scenario& scenario,
                                   refusal.what()));
   }
   Bound(d.gain);
-  ProposeOnly(d);
+  ProposeOnly(result);
   TellUnsized(result);
   TellAliases(result.run, d);
 }

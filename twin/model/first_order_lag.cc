@@ -5,6 +5,13 @@
 
 namespace twinbench::model {
 
+void FirstOrderLag::BeginInMotion(double time_s, double quantity, double rate) {
+  has_begun_ = true;
+  time_s_ = time_s;
+  quantity_ = quantity;
+  follower_ = quantity - rate * lag_s_;
+}
+
 double FirstOrderLag::Next(double time_s, double quantity) {
   if (lag_s_ <= 0.0 || !has_begun_) {
     follower_ = quantity;

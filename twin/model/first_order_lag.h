@@ -9,6 +9,9 @@ class FirstOrderLag {
   /// @param lag_s  0: follows at once.
   explicit FirstOrderLag(double lag_s) : lag_s_(lag_s) {}
 
+  /// As if the quantity had changed at this rate ever since.
+  void BeginInMotion(double time_s, double quantity, double rate);
+
   /// @param time_s  Running forwards.
   /// @return what follows, in the unit of the quantity.
   double Next(double time_s, double quantity);

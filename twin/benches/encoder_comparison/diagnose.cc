@@ -13,6 +13,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/glitches.h"
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
+#include "twin/benches/encoder_comparison/diagnosis/other_lag.h"
 #include "twin/benches/encoder_comparison/diagnosis/pieces_of_curve.h"
 #include "twin/benches/encoder_comparison/diagnosis/speed_limit.h"
 #include "twin/benches/encoder_comparison/diagnosis/steady_reference.h"
@@ -94,6 +95,8 @@ diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario
   diagnose::encoder::TellEqualSteps(result);
   diagnose::encoder::TellCurveInPieces(result);
   diagnose::encoder::TellOrFirstOrder(large.first->encoder.context, result);
+  diagnose::encoder::TellOrCurve(large.first->encoder.context, result);
+  diagnose::encoder::TellOtherLag(large, result.diagnosis);
   diagnose::encoder::TellMeanRatio(result);
   diagnose::encoder::TellWander(large.bent, result);
   diagnose::encoder::TellGlitches(large.first->encoder.glitches, scenario, result);

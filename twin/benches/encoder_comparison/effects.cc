@@ -67,7 +67,8 @@ std::vector<EffectEntry> MotionEffects() {
       {"latency",
        "device read later or earlier than the reference",
        {},
-       {Signed("delay", "s", 0.001, 10.0, "the reading is this old; its error is -speed * delay")}},
+       {Signed("delay", "s", 0.001, 10.0, "the reading is this old; its error is -speed * delay"),
+        Parameter("time_constant", "s", 0.0, 0.0, 10.0, "of a lag of first order behind that, a filter's or a servo's")}},
       // a quartz is right to 1e-4, the timer of a computer or of a controller of its own to 1e-3
       {"clock_rate",
        "clock of the device that runs fast against the reference's",

@@ -9,4 +9,8 @@ namespace twinbench::diagnose::encoder {
 /// leaves no more of the readings than they do, each of them may be no more than that, and the whole turn would tell.
 void TellOrFirstOrder(const SignalContext& context, DiagnosisRun& result);
 
+/// An order that the run goes through less than twice is no more than a curve where a polynomial does as well by Schwarz's
+/// criterion, beside the memory of what is left: it has not been seen to repeat, and any other order near it may be it.
+void TellOrCurve(const SignalContext& context, DiagnosisRun& result);
+
 }  // namespace twinbench::diagnose::encoder

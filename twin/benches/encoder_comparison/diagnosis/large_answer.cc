@@ -53,10 +53,14 @@ double ChanceOf(const LargeCause& cause, double readings) {
 void WeighTheRest(const LargeCauses& large, Diagnosis& d, std::vector<Cause>& causes) {
   if (d.verdict != Verdict::kUnknown) return;
   const std::vector<Eigen::VectorXd> shapes = UnnamedOf(large);
-  const double unnamed = PowerOf(shapes);
   double named = 0.0;
-  for (const LargeCause& cause : large.causes)
+  Eigen::VectorXd left = large.first->encoder.run.residual;
+  for (const LargeCause& cause : large.causes) {
     named += large.first->encoder.BesideSetUps(cause.shown).squaredNorm();
+    left -= cause.shown;
+  }
+  // A walk beside free sizes may be larger than all that there is to explain, and they smaller by as much.
+  const double unnamed = std::min(PowerOf(shapes), large.first->encoder.BesideSetUps(left).squaredNorm());
   if (unnamed <= named) {
     d.verdict = Verdict::kNamed;
     return;

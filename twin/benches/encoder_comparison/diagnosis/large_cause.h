@@ -59,6 +59,10 @@ bool AreOneWave(const LargeCause& a, const LargeCause& b, double apart);
 /// @param apart  OrdersApart.
 std::optional<LargeCause> OneOfTwoWaves(const Searched& searched, double apart);
 
+/// A loop in which the device leads, beside a latency by which it is behind: each takes away what the other makes too much.
+/// @param size  Of what the catalogue calls width or lag.
+bool LeadsBesideLatency(const std::string& effect, double size, const std::vector<LargeCause>& causes);
+
 /// A large shape without a name may be a cause whose signature bends: those that explain nearly as much alone.
 /// @return their numbers among the families, one that explains the same as the first behind it; empty if there is none.
 std::vector<int> NamedLikeUnnamed(const Searched& searched);

@@ -67,7 +67,8 @@ void LargeSearch::LeaveToLarge() {
   for (const Written& written : written_) least_odd += IsOfAngle(written.effect) ? 0.0 : kAsExact * written.explained;
   std::erase_if(terms, [&](const Term& term) {
     const bool is_odd = last.families[static_cast<std::size_t>(term.family)].effect.starts_with("direction");
-    return term.explained < (is_odd ? least_odd : least) || is_of_large(term) || IsChance(term, left);
+    const std::string& effect = last.families[static_cast<std::size_t>(term.family)].effect;
+    return term.explained < (is_odd ? least_odd : least) || is_of_large(term) || LeadsBesideLatency(effect, term.amplitudes[0], large_.causes) || IsChance(term, left);
   });
   if (large_.causes.empty() && terms.empty()) TellNothing(last);
 }

@@ -85,6 +85,7 @@ std::optional<LargeCauses> LargeSearch::Go(double most_left) {
   TakeLag();
   TakeLarge();
   if (power_ - kFewCauses * kLarge * kLarge > most_left) return std::nullopt;  // what is not large has yet to be taken
+  TakeOtherLag();
   while (SearchOn()) TakeLarge();
   LeaveToLarge();
   Review();

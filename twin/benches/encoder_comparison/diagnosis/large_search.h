@@ -36,6 +36,7 @@ class LargeSearch {
   void Begin();
   void TakeSignals();
   void TakeLag();
+  void TakeOtherLag();
   void TakeBlock(std::vector<LargeCause> block);
   void TakeLarge();
   bool TakeNext();

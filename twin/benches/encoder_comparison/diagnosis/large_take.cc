@@ -4,12 +4,14 @@
 #include <cmath>
 #include <complex>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
 #include "twin/core/linear_algebra.h"
+#include "twin/model/motion.h"
 
 /// What is large, one after the other.
 namespace twinbench::diagnose::encoder {
@@ -31,6 +33,16 @@ LargeCause SumOfWaves(LargeCause wave, const LargeCause& more, double order, dou
   return wave;
 }
 
+/// Whether a latency that is a delay alone, or a lag alone, leaves another rest than the other would.
+bool IsSeenInAcceleration(const EffectSettings& latency, const EncoderRun& encoder) {
+  constexpr double kHardly = 0.1;  // of the noise of a reading
+  const double delay_s = latency.parameters.at("delay"), lag_s = latency.parameters.at("time_constant");
+  if (delay_s < 0.0 || (delay_s > 0.0) == (lag_s > 0.0)) return false;
+  const Eigen::VectorXd acceleration_rad_s2 = model::RateOfChange(encoder.run.schedule, encoder.context.velocity_rad_s);
+  const double apart_rad = 0.5 * std::pow(delay_s + lag_s, 2) * acceleration_rad_s2.norm() / std::sqrt(encoder.run.Rows());
+  return apart_rad > kHardly * encoder.run.sigma.mean();
+}
+
 }  // namespace
 
 /// Signals that are cut off have all their faults at once: none of them is found alone.
@@ -48,6 +60,21 @@ void LargeSearch::TakeLag() {
   const auto is_excluded = [this](const char* name) { return std::ranges::count(options_.excluded, name) > 0; };
   if (power_ < kLarge * kLarge || !large_.causes.empty() || is_excluded("latency") || is_excluded("scale")) return;
   if (const std::optional<LagGuess> guess = GuessLag(encoder)) TakeBlock(LagBlock(*guess, encoder));
+}
+
+/// What is late by a delay may be late by a lag as well, where the acceleration shows which.
+void LargeSearch::TakeOtherLag() {
+  const EncoderRun& encoder = large_.first->encoder;
+  const auto latency = std::ranges::find(large_.causes, "latency", [](const LargeCause& cause) { return cause.effect.name; });
+  if (latency == large_.causes.end() || !encoder.context.has_clock || !IsSeenInAcceleration(latency->effect, encoder)) return;
+  std::vector<LargeCause> causes = large_.causes;
+  LargeCause& other = causes[static_cast<std::size_t>(latency - large_.causes.begin())];
+  std::map<std::string, double>& of = other.effect.parameters;
+  std::swap(of["delay"], of["time_constant"]);
+  other.causes.front().parameters = LagNumbers({of["delay"], of["time_constant"]});
+  other.effect.finding.u.clear();
+  const AskedAgain asked = fit_->Ask(causes);
+  if (fit_->PowerOf(asked.left) < power_ - kBetter) Accept(asked, std::move(causes), kFewCauses);
 }
 
 /// All at once, if the first of them is held and they leave no more than half.
@@ -98,6 +125,11 @@ bool LargeSearch::Take(const LargeCause& next) {
   constexpr double kNeedless = 0.5;  // of what would be dropped in the end
   if (power_ - power < kNeedless * LeastExplained() || IsOtherFunctionOfSpeed(next, asked)) return false;
   if (!(power < power_) || !IsHeld(asked.effects.back())) return false;
+  const EffectSettings& taken = asked.effects.back();
+  for (const char* size : {"width", "lag"}) {
+    const auto of = taken.parameters.find(size);
+    if (of != taken.parameters.end() && LeadsBesideLatency(taken.name, of->second, large_.causes)) return false;
+  }
   causes.back().explained = power_ - power;
   Accept(asked, std::move(causes), kFewCauses);
   return true;

@@ -70,7 +70,7 @@ SecondOrder::SecondOrder(const std::vector<EffectSettings>& effects, const Encod
       Append(size_rad * model::Wave(order * c.device_rad), columns_);
   }
   double delay_s = 0.0;
-  for (const EffectSettings& e : effects) delay_s += e.name == "latency" ? SizeOf(e, "delay") : 0.0;
+  for (const EffectSettings& e : effects) delay_s += e.name == "latency" ? SizeOf(e, "delay") + SizeOf(e, "time_constant") : 0.0;
   if (!(delay_s > 0.0) || !c.Moves()) return;
   Append(0.5 * delay_s * delay_s * model::RateOfChange(encoder.run.schedule, c.velocity_rad_s), columns_);
   speed_ = (c.velocity_rad_s.array() - c.velocity_rad_s.mean()).matrix().normalized();

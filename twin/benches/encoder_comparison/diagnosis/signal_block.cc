@@ -63,10 +63,21 @@ std::vector<LargeCause> SignalBlock(const SignalGuess& guess, const EncoderRun& 
   return block;
 }
 
-std::vector<LargeCause> LagBlock(const LagGuess& guess, const EncoderRun& encoder) {
-  constexpr double kFine = 0.02;  // of the delay, and of the gain
+std::vector<ParameterEstimate> LagNumbers(const LagGuess& guess) {
+  constexpr double kFine = 0.02;
   const Catalogue words(benches::encoder::Format().effects);
-  return {Guessed("latency", {words.Estimate("latency", "delay", guess.delay_s, kFine * guess.delay_s)}, {}, encoder.run.bench),
+  const auto told = [&](const char* name, double value_s) {
+    return words.Estimate("latency", name, value_s, value_s > 0.0 ? kFine * value_s : kNaN);
+  };
+  if (guess.lag_s == 0.0) return {told("delay", guess.delay_s)};
+  if (guess.delay_s == 0.0) return {told("time_constant", guess.lag_s), told("delay", 0.0)};
+  return {told("delay", guess.delay_s), told("time_constant", guess.lag_s)};
+}
+
+std::vector<LargeCause> LagBlock(const LagGuess& guess, const EncoderRun& encoder) {
+  constexpr double kFine = 0.02;  // of the gain
+  const Catalogue words(benches::encoder::Format().effects);
+  return {Guessed("latency", LagNumbers(guess), {}, encoder.run.bench),
           Guessed("scale", {words.Estimate("scale", "ratio", guess.gain - 1.0, kFine)}, {}, encoder.run.bench)};
 }
 

@@ -17,7 +17,10 @@ namespace twinbench::diagnose::encoder {
 std::vector<LargeCause> SignalBlock(const SignalGuess& guess, const EncoderRun& encoder,
                                     const std::vector<std::string>& excluded);
 
-/// A delay and the gain beside it, of a device whose motion the speed does not tell.
+/// A latency in the words of the catalogue; what is zero of it does not move.
+std::vector<ParameterEstimate> LagNumbers(const LagGuess& guess);
+
+/// A delay or a lag and the gain beside it, of a device whose motion the speed does not tell.
 std::vector<LargeCause> LagBlock(const LagGuess& guess, const EncoderRun& encoder);
 
 }  // namespace twinbench::diagnose::encoder

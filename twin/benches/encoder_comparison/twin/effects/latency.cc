@@ -1,4 +1,5 @@
 #include "twin/benches/encoder_comparison/twin/effects/effects.h"
+#include "twin/model/first_order_lag.h"
 
 namespace twinbench::sim {
 namespace {
@@ -14,10 +15,35 @@ class Late : public AngleEffect {
   double begin_s_, per_s_;
 };
 
+/// A filter, or a servo in proportion to how far it is behind: the device goes towards the shaft the faster the farther it is.
+class Lagging : public Late {
+ public:
+  Lagging(double age_s, double lag_s) : Late(age_s, 0.0), follower_(lag_s) {}
+  void Advance(const AngleMoment& moment) override {
+    // From one measuring position to the next it has settled.
+    const bool stands = moment.velocity_rad_s == 0.0 && last_.velocity_rad_s == 0.0;
+    const bool is_elsewhere = stands && moment.shaft_rad != last_.shaft_rad;
+    if (!has_begun_ || moment.setup != last_.setup || is_elsewhere)
+      follower_.BeginInMotion(ToSeconds(moment.now), moment.shaft_rad, moment.velocity_rad_s);
+    behind_rad_ = follower_.Next(ToSeconds(moment.now), moment.shaft_rad) - moment.shaft_rad;
+    last_ = moment;
+    has_begun_ = true;
+  }
+  double ShaftError_rad(const AngleMoment&) const override { return behind_rad_; }
+
+ private:
+  model::FirstOrderLag follower_;
+  AngleMoment last_;
+  double behind_rad_ = 0.0;
+  bool has_begun_ = false;
+};
+
 }  // namespace
 
 AngleEffectPointer MakeLatency(const EffectSettings& settings) {
-  return std::make_unique<Late>(Parameter(settings, "delay"), 0.0);
+  const double delay_s = Parameter(settings, "delay"), lag_s = Parameter(settings, "time_constant");
+  if (lag_s > 0.0) return std::make_unique<Lagging>(delay_s, lag_s);
+  return std::make_unique<Late>(delay_s, 0.0);
 }
 
 AngleEffectPointer MakeClockRate(const EffectSettings& settings) {
