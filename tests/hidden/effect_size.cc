@@ -74,7 +74,8 @@ void DrawShape(Stream& stream, const Ranges& ranges, EffectSettings& effect) {
   Set(effect, "at_voltage", UniformIn(stream, -0.01, 0.01));
   Set(effect, "frequency", LogUniformIn(stream, ranges.lowest_Hz, ranges.highest_Hz));
   Set(effect, "settles_over", LogUniformIn(stream, 10.0, 60.0) * deg);
-  Set(effect, "time_constant", settles ? UniformIn(stream, 0.5, 2.0) : LogUniformIn(stream, 200.0, 2000.0));
+  const double time_constant_s = settles ? UniformIn(stream, 0.5, 2.0) : LogUniformIn(stream, 200.0, 2000.0);
+  if (effect.name != "latency") Set(effect, "time_constant", time_constant_s);  // that is a delay
   Set(effect, "at_reading", std::round(UniformIn(stream, ranges.first_reading, ranges.last_reading)));
 }
 

@@ -122,11 +122,19 @@ std::optional<Size> AmplitudeTogether(const std::vector<Cause>& causes, double o
   return Size{std::abs(sum), std::sqrt(u2), "angle"};
 }
 
+/// In steady motion a lag of first order is as late as a delay.
+std::optional<Size> Lateness(const Cause& cause) {
+  const std::optional<Size> delay = Told(cause, "delay", "time"), lag = Told(cause, "time_constant", "time");
+  if (!delay || !lag) return delay;
+  const auto known = [](double u) { return std::isfinite(u) ? u : 0.0; };
+  return Size{delay->value + lag->value, std::hypot(known(delay->u), known(lag->u)), "time"};
+}
+
 std::optional<Size> SizeOf(const Cause& cause, const Expected& expected) {
   if (std::isfinite(expected.order)) return AmplitudeOf(cause, expected.order);
   if (cause.effect == "scale") return SizeOfScale(cause, expected);
   if (cause.effect == "drift") return SizeOfDrift(cause, expected.over_s);
-  if (cause.effect == "latency") return Told(cause, "delay", "time");
+  if (cause.effect == "latency") return Lateness(cause);
   if (cause.effect == "backlash") return Told(cause, "width", "angle");
   if (cause.effect == "hysteresis") return Told(cause, "lag", "angle", 2.0);  // it lags in either sense
   if (cause.effect == "slip") return Told(cause, "step", "angle");

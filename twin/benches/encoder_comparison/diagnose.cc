@@ -9,6 +9,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/bent_scale.h"
 #include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/equal_steps.h"
+#include "twin/benches/encoder_comparison/diagnosis/few_counts.h"
 #include "twin/benches/encoder_comparison/diagnosis/first_order.h"
 #include "twin/benches/encoder_comparison/diagnosis/glitches.h"
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
@@ -43,6 +44,12 @@ void TellLengths(const AxisUnit& unit, diagnose::Diagnosis& diagnosis) {
 std::vector<Reading> AnglesOf(const std::vector<Reading>& readings, const Scenario& scenario) {
   return separate::encoder::HaveStamps(readings) ? separate::encoder::AsComparison(readings)
                                                  : diagnose::encoder::OnSteadyCourse(readings, scenario);
+}
+
+Eigen::VectorXd ShownBy(const std::vector<Reading>& readings) {
+  Eigen::VectorXd shown_rad(std::ssize(readings));
+  for (std::size_t i = 0; i < readings.size(); ++i) shown_rad[static_cast<Eigen::Index>(i)] = readings[i].measured_rad;
+  return shown_rad;
 }
 
 /// Reading numbers at which something happens once. Beside what has no name, a walk above all, steps may be its pieces.
@@ -102,6 +109,7 @@ diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario
   diagnose::encoder::TellGlitches(large.first->encoder.glitches, scenario, result);
   if (limit) diagnose::encoder::TellSpeedLimit(*limit, result);
   DoubtUnsized(result.run, result.diagnosis.causes);
+  diagnose::encoder::DoubtFewCounts(ShownBy(large.first->encoder.used), result);
   result.diagnosis.left_out = (limit ? limit->asked : searched.encoder).left_out;
   result.diagnosis.harmonics =
       diagnose::encoder::HarmonicTable(large.first->encoder, {searched.encoder.run.sigma, {}});

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "twin/benches/encoder_comparison/axis_unit.h"
+#include "twin/benches/encoder_comparison/diagnosis/few_counts.h"
 #include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/core/distributions.h"
@@ -111,7 +112,7 @@ double RoundedReference_rad(const LinearRun& run, double noise_rad) {
 void SetNoise(LinearRun& run, const EncoderSettings& bench, const std::vector<Reading>& used) {
   Eigen::VectorXd shown_rad(std::ssize(used));
   for (std::size_t i = 0; i < used.size(); ++i) shown_rad[static_cast<Eigen::Index>(i)] = used[i].measured_rad;
-  const double step_rad = std::max(bench.device.resolution_rad, RunsIn(used) * CommonStep(shown_rad));
+  const double step_rad = std::max({bench.device.resolution_rad, RunsIn(used) * CommonStep(shown_rad), CountOfFewValues(shown_rad)});
   run.sigma_stated = bench.device.noise_known && bench.device.noise_rad > 0.0;
   const Eigen::VectorXd relative = RelativeNoise(used);
   const double count = bench.encoder_procedure.ReadingsAtOnce();
