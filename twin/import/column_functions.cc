@@ -147,8 +147,9 @@ std::vector<double> Places(std::vector<double> x, const std::string&) {
 /// are alike to the last digit. 0 where no group has two.
 std::vector<double> Scatter(const std::vector<double>& x, const std::vector<double>& group, const std::string&) {
   std::map<double, std::vector<double>> groups;
-  for (std::size_t i = 0; i < x.size(); ++i)
+  for (std::size_t i = 0; i < x.size(); ++i) {
     if (std::isfinite(x[i]) && std::isfinite(group[i])) groups[group[i]].push_back(x[i]);
+  }
   std::vector<double> left;
   double freedom = 0.0, squares = 0.0;
   for (const auto& [number, values] : groups) {
@@ -156,7 +157,10 @@ std::vector<double> Scatter(const std::vector<double>& x, const std::vector<doub
     const double count = static_cast<double>(values.size());
     double mean = 0.0;
     for (const double value : values) mean += value / count;
-    for (const double value : values) left.push_back(value - mean), squares += (value - mean) * (value - mean);
+    for (const double value : values) {
+      left.push_back(value - mean);
+      squares += (value - mean) * (value - mean);
+    }
     freedom += count - 1.0;
   }
   if (left.empty()) return {0.0};
