@@ -201,6 +201,26 @@ TEST(ClosePolygon, SaysThatThereAreOrdersAboveTheHighest) {
   EXPECT_THAT(closure.notes, testing::Contains(HasSubstr("orders above the highest")));
 }
 
+/// Orders above repeat in all readings of an angle: twenty-five clampings do not make them less. Even and uneven ones.
+TEST(ClosePolygon, StatesACurveNoBetterThanTheOrdersItLacks) {
+  Stream truth(21, "truth"), noise(22, "noise");
+  for (const std::vector<double>& offsets_deg : {EvenOffsets(25), std::vector{0.0, 3.1, 11.0, 52.4, 140.7, 201.3}}) {
+    NulledPolygon polygon = AnyPolygon(24, offsets_deg, {1, 2, 3, 5, 8}, truth);
+    polygon.noise_rad = 0.03 * arcsec;
+    polygon.passes = 2;
+    const std::vector<FaceReading> readings = polygon.Read(noise);
+    const PolygonClosure lacking = ClosePolygon(readings, 24, 3), whole = ClosePolygon(readings, 24, 8);
+    double lost_rad2 = 0.0;
+    for (const TrueWave& w : polygon.encoder)
+      if (w.order > 3) lost_rad2 += 0.5 * (w.cos_rad * w.cos_rad + w.sin_rad * w.sin_rad);
+    EXPECT_NEAR(lacking.encoder.u_unmodelled_rad, std::sqrt(lost_rad2), 0.05 * std::sqrt(lost_rad2));
+    EXPECT_THAT(lacking.notes, testing::Contains(HasSubstr("orders 5, 8 of the encoder stand out")));
+    EXPECT_GT(lacking.turntable.cov_rad2.diagonal().minCoeff(), 0.9 * lost_rad2);
+    EXPECT_EQ(whole.encoder.u_unmodelled_rad, 0.0);
+    EXPECT_THAT(whole.notes, testing::Not(testing::Contains(HasSubstr("stand out"))));
+  }
+}
+
 TEST(ClosePolygon, RefusesClampingsWithoutACommonFace) {
   Stream truth(6, "truth"), noise(6, "noise");
   std::vector<FaceReading> readings = AnyPolygon(6, {0.0, 20.0}, {1}, truth).Read(noise);

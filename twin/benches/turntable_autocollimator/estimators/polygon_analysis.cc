@@ -36,18 +36,20 @@ void AddBias(const HarmonicModel& rigorous, HarmonicModel& published) {
 }
 
 void NoteScatter(const PolygonClosure& closure, PolygonAnalysis& analysis) {
-  analysis.turntable_rad2 = closure.turntable.cov_rad2.diagonal();
+  const double unmodelled_rad = closure.encoder.u_unmodelled_rad;
+  analysis.turntable_rad2 = closure.turntable.cov_rad2.diagonal().array() - unmodelled_rad * unmodelled_rad;
   analysis.polygon_rad2 = closure.polygon.cov_rad2.diagonal();
   analysis.coefficients_rad2 = closure.encoder.cov_rad2.diagonal();
 }
 
-/// The published estimate of the rigorous one's readings; what both differ by is in its uncertainties.
+/// The published estimate of the rigorous one's readings; what both differ by, and orders above, are in its uncertainties.
 void TakePublished(const std::vector<FaceReading>& faces, const TurntableSettings& own, PolygonAnalysis& analysis) {
   PolygonClosure published = ClosePolygonByMeans(faces, own.polygon.faces, own.turntable_procedure.highest_order);
   const PolygonClosure& rigorous = *analysis.closure;
   NoteScatter(published, analysis);
   analysis.method_bias_rad = ClosureBias_rad(published.turntable, rigorous.turntable);
   AddBias(rigorous.encoder, published.encoder);
+  published.encoder.u_unmodelled_rad = rigorous.encoder.u_unmodelled_rad;
   published.turntable = CurveAt(published.encoder, published.turntable.position_rad);
   const double bias_rad2 = std::pow(ClosureBias_rad(published.polygon, rigorous.polygon), 2);
   for (Eigen::Index face = 0; face < published.polygon.value_rad.size(); ++face)

@@ -24,7 +24,7 @@ struct PolygonAnalysis {
   std::optional<PolygonClosure> closure;
   double method_bias_rad = 0.0;  // published: difference from the rigorous curve, rms; part of the uncertainties
   std::vector<StatedScatter> stated;
-  // Variances that the scatter of the readings makes, without that difference: of the curves, and of the
+  // Variances that the scatter of the readings makes, without that difference and orders above: of the curves, and of the
   // coefficients of `encoder`.
   Eigen::VectorXd turntable_rad2, polygon_rad2, coefficients_rad2;
   std::string not_separated;  // why there is no closure

@@ -7,6 +7,7 @@
 #include <map>
 #include <tuple>
 
+#include "twin/benches/turntable_autocollimator/estimators/orders_above.h"
 #include "twin/core/distributions.h"
 #include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
@@ -57,6 +58,7 @@ class ClosureDesign {
   }
 
   const Eigen::MatrixXd& columns() const { return columns_; }
+  const Eigen::MatrixXd& told() const { return told_; }
   const std::vector<int>& orders() const { return orders_; }
   const std::vector<HiddenOrder>& hidden() const { return hidden_; }
   const Numbered& faces() const { return faces_; }
@@ -164,6 +166,22 @@ std::string ListedOrders(const std::vector<HiddenOrder>& hidden, OrderHidden by)
   return fmt::format("{}", fmt::join(orders, ", "));
 }
 
+/// They repeat in all readings of an angle, and no number of these makes them less.
+void CountOrdersAbove(const ClosureDesign& design, const std::vector<FaceReading>& readings, PolygonClosure& result) {
+  if (result.noise.is_of_repeats && !(result.noise.scale > 1.0)) return;
+  Eigen::VectorXd angle_rad(std::ssize(readings));
+  for (std::size_t i = 0; i < readings.size(); ++i) angle_rad[static_cast<Eigen::Index>(i)] = readings[i].angle_rad;
+  const int last = MostHarmonics(static_cast<int>(DistinctAngles(readings).size()));
+  const OrdersAbove above =
+      FindOrdersAbove(design.told(), angle_rad, result.residual_rad, result.encoder.highest_order + 1, last);
+  if (above.orders.empty()) return;
+  result.encoder.u_unmodelled_rad = std::sqrt(above.variance_rad2);
+  result.notes.push_back(fmt::format(
+      "orders {} of the encoder stand out of the residuals: they are in the uncertainty of its curve and not in the curve; "
+      "turntable_procedure.highest_order would take them in",
+      fmt::join(above.orders, ", ")));
+}
+
 void AddClosureNotes(PolygonClosure& result) {
   for (const auto& [by, words] :
        {std::pair{OrderHidden::kByConstants, "are the same at all faces of a mounting: not separable from its constant"},
@@ -227,6 +245,7 @@ PolygonClosure ClosePolygon(const std::vector<FaceReading>& readings, int faces,
   const double variance_rad2 = std::pow(result.noise.scale * result.noise.u_rad, 2);
   result.encoder = CurveOf(design, solution, variance_rad2, highest_order);
   result.encoder.residual_rms_rad = result.residual_rms_rad;
+  CountOrdersAbove(design, readings, result);
   if (!design.orders().empty()) result.turntable = CurveAt(result.encoder, DistinctAngles(readings));
   const FaceSeries polygon = FacesOf(design, solution, variance_rad2, faces);
   result.polygon = polygon.errors;

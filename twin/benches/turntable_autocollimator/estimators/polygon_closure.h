@@ -55,7 +55,8 @@ struct PolygonClosure {
 /// Uncertainty: scatter of repeats (same clamping, face, direction), or of the residuals where these exceed it
 /// (p < 0.001) or nothing was read twice; 2 M / N of its square for M orders of N readings spread evenly. Not
 /// included: what is the same in every clamping as the encoder's error is, such as the roll of the crosshair times
-/// a tilt of the polygon and the flatness of its faces times its eccentricity; orders above the highest. Reference:
+/// a tilt of the polygon and the flatness of its faces times its eccentricity. Orders above the highest that stand out of
+/// the residuals are in the curve's (FindOrdersAbove), not in those of the orders. Reference:
 /// docs/theory.md 5.4; Kinnane et al., Metrologia 52 (2015) 244 (the procedure); Estler, J. Res. NIST 103 (1998)
 /// 141 (dual closure).
 PolygonClosure ClosePolygon(const std::vector<FaceReading>& readings, int faces, int highest_order);

@@ -29,7 +29,9 @@ AngleSeries CurveAt(const HarmonicModel& curve, const std::vector<double>& angle
   const Eigen::RowVectorXd mean = basis.colwise().mean();
   basis.rowwise() -= mean;
   series.value_rad = basis * curve.coefficients_rad;
-  series.cov_rad2 = CurveCovariance::Dense(basis * curve.cov_rad2 * basis.transpose());
+  Eigen::MatrixXd cov_rad2 = basis * curve.cov_rad2 * basis.transpose();
+  cov_rad2.diagonal().array() += curve.u_unmodelled_rad * curve.u_unmodelled_rad;
+  series.cov_rad2 = CurveCovariance::Dense(std::move(cov_rad2));
   return series;
 }
 

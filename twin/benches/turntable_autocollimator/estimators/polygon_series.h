@@ -11,7 +11,7 @@ namespace twinbench::separate::turntable {
 /// Nominal angles of the turntable within a turn, ascending, each once.
 std::vector<double> DistinctAngles(const std::vector<FaceReading>& readings);
 
-/// A curve at these angles, its mean over them taken out.
+/// A curve at these angles, its mean over them taken out. What is not modelled counts as independent from angle to angle.
 AngleSeries CurveAt(const HarmonicModel& curve, const std::vector<double>& angles_rad);
 
 struct FaceSeries {
