@@ -214,7 +214,7 @@ TEST(ClosePolygon, StatesACurveNoBetterThanTheOrdersItLacks) {
     for (const TrueWave& w : polygon.encoder)
       if (w.order > 3) lost_rad2 += 0.5 * (w.cos_rad * w.cos_rad + w.sin_rad * w.sin_rad);
     EXPECT_NEAR(lacking.encoder.u_unmodelled_rad, std::sqrt(lost_rad2), 0.05 * std::sqrt(lost_rad2));
-    EXPECT_THAT(lacking.notes, testing::Contains(HasSubstr("orders 5, 8 of the encoder stand out")));
+    EXPECT_THAT(lacking.notes, testing::Contains(HasSubstr("orders 5, 8 of the turntable's angle stand out")));
     EXPECT_GT(lacking.turntable.cov_rad2.diagonal().minCoeff(), 0.9 * lost_rad2);
     EXPECT_EQ(whole.encoder.u_unmodelled_rad, 0.0);
     EXPECT_THAT(whole.notes, testing::Not(testing::Contains(HasSubstr("stand out"))));

@@ -177,8 +177,8 @@ void CountOrdersAbove(const ClosureDesign& design, const std::vector<FaceReading
   if (above.orders.empty()) return;
   result.encoder.u_unmodelled_rad = std::sqrt(above.variance_rad2);
   result.notes.push_back(fmt::format(
-      "orders {} of the encoder stand out of the residuals: they are in the uncertainty of its curve and not in the curve; "
-      "turntable_procedure.highest_order would take them in",
+      "orders {} of the turntable's angle stand out of the residuals: they are in the uncertainty of the encoder's curve and not "
+      "in the curve; if they are the encoder's, turntable_procedure.highest_order takes them in",
       fmt::join(above.orders, ", ")));
 }
 
