@@ -275,6 +275,20 @@ TEST(SeparateDeviceUncertainty, CoversOrdersThatTheStopsDoNotTell) {
   EXPECT_NEAR(CoverageOfFalling(64, {.stops = 360, .noise_arcsec = 0.05}).device, 1.0, 0.15);
 }
 
+/// A spectrum that has come to its end below half the stops is not taken to go on: u was fifteen times what there was.
+TEST(SeparateDeviceUncertainty, EndsWhereTheLastOrdersAreNoiseAlone) {
+  double mean = 0.0;
+  constexpr int kRings = 12;
+  for (int seed = 0; seed < kRings; ++seed) {
+    Stream stream(static_cast<std::uint64_t>(seed), "test.ring");
+    Comparison bench{.noise_arcsec = 0.3, .seed = static_cast<std::uint64_t>(seed)};
+    for (int k = 1; k <= 28; ++k) bench.device.push_back({k, 20.0 * std::abs(stream.Normal()), 2.0 * units::kPi * stream.Uniform()});
+    mean += MeanChi2(SeparateDevice(bench.Readings()).curves.device, bench.device) / kRings;
+  }
+  EXPECT_GT(mean, 0.15);
+  EXPECT_LT(mean, 1.5);
+}
+
 /// 72 stops show order 80 as order 8, and 144 not at all.
 TEST(SeparateDeviceUncertainty, HoldsThatLinesMayBeTheOrderThatTheyLookLike) {
   const Comparison bench{.device = {{1, 5.0, 0.4}, {80, 3.0, 1.0}}, .noise_arcsec = 0.1};

@@ -13,6 +13,7 @@ using harmonics::Complex;
 constexpr int kMostVisible = 4;   // times the highest order are looked at
 constexpr int kFolding = 3;       // times the visible ones; what lies above counts with those below
 constexpr double kDeviations = 3.0;  // above chance
+constexpr std::size_t kFewest = 6;   // orders of the last quarter by which a spectrum has come to its end
 constexpr double kMedianOfSquare = 0.6931;  // of the squared amplitude of chance, over its mean
 
 /// Mean over the readings of value exp(-j order th); without values of 1.
@@ -61,6 +62,18 @@ struct Spectrum {
     if (count == 0.0 || !(Median(over_noise) > by_chance)) return 0.0;
     return std::max(0.0, Median(level));
   }
+  /// What the level is at most: three standard deviations above its median, by noise and by chance among the orders.
+  double Most_rad2() const {
+    std::vector<double> level, noise;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      level.push_back((square_rad2[i] / kMedianOfSquare - noise_rad2[i]) * order[i] * order[i]);
+      noise.push_back(noise_rad2[i] * order[i] * order[i]);
+    }
+    if (order.size() < kFewest) return INFINITY;
+    const double of_median = kDeviations / kMedianOfSquare / std::sqrt(static_cast<double>(order.size()));
+    const double middle = std::max(0.0, Median(level));
+    return middle + of_median * (middle + Median(noise));
+  }
 };
 
 /// Which fitted order an order of lines looks like at these angles; 0: a constant, -1: none.
@@ -107,21 +120,25 @@ Eigen::MatrixXd Unresolved::Waves(const Eigen::VectorXd& th_rad) const {
 Unresolved UnresolvedBy(const harmonics::HarmonicSeries& series, const FitRest& rest) {
   const int highest = series.Highest();
   Unresolved beyond{.visible = std::clamp(rest.visible, highest, kMostVisible * highest)};
-  Spectrum upper_half;
+  Spectrum upper_half, last_quarter;
+  const auto add = [&](int k, double square_rad2, double noise_rad2) {
+    upper_half.Add(k, square_rad2, noise_rad2);
+    if (4 * k > 3 * beyond.visible) last_quarter.Add(k, square_rad2, noise_rad2);
+  };
   for (int k = beyond.visible / 2 + 1; k <= highest; ++k) {
     const harmonics::Coefficient& c = series.At(k);
-    if (std::isfinite(c.value.real()) && c.cov.allFinite()) upper_half.Add(k, std::norm(c.value), c.cov.trace());
+    if (std::isfinite(c.value.real()) && c.cov.allFinite()) add(k, std::norm(c.value), c.cov.trace());
   }
   const double noise_rad2 = NoiseOfRest_rad2(rest), orders = beyond.visible - highest;
   double squares_rad2 = 0.0;
   for (int k = highest + 1; k <= beyond.visible; ++k) {
     const double square_rad2 = 4.0 * std::norm(MeanOf(rest, k, true));
     squares_rad2 += square_rad2;
-    if (2 * k > beyond.visible) upper_half.Add(k, square_rad2, noise_rad2);
+    if (2 * k > beyond.visible) add(k, square_rad2, noise_rad2);
   }
   if (squares_rad2 > (orders + kDeviations * std::sqrt(orders)) * noise_rad2)
     beyond.seen_rad2 = 0.5 * (squares_rad2 - orders * noise_rad2);
-  beyond.level_rad2 = upper_half.Level_rad2(rest.noise_dof);
+  beyond.level_rad2 = std::min(upper_half.Level_rad2(rest.noise_dof), last_quarter.Most_rad2());
   AddLines(series, rest, beyond);
   return beyond;
 }

@@ -33,7 +33,8 @@ struct Unresolved {
   Eigen::MatrixXd Waves(const Eigen::VectorXd& th_rad) const;
 };
 
-/// The median of the upper half counts: a single order that stands out is no sign of more.
+/// The median of the upper half counts: a single order that stands out is no sign of more. Where the last quarter has fallen
+/// below it, the spectrum has come to its end, and no more counts than that quarter may have.
 Unresolved UnresolvedBy(const harmonics::HarmonicSeries& series, const FitRest& rest);
 
 }  // namespace twinbench::separate::encoder
