@@ -329,6 +329,27 @@ std::string OtherWays(const std::vector<Reading>& readings) {
   return text.empty() ? "" : " (places go the other way round than the rows say: " + text + ")";
 }
 
+/// What was read of lengths and times other than the scenario states them; in words one a line.
+struct ShapesAsRead {
+  json values = json::object();
+  std::string text;
+};
+ShapesAsRead ShapesOf(const CircleAnalysis& a, const CircularMachineSettings& stated) {
+  ShapesAsRead shapes;
+  if (!a.IsFitted()) return shapes;
+  if (a.known.pitch_m != stated.cyclic_pitch_m) {
+    shapes.values["cyclic_pitch_mm"] = In(units::mm, a.known.pitch_m);
+    shapes.text += fmt::format("cyclic errors have a pitch of {:.4g} mm by the readings, not of {:.4g} mm as the scenario states\n",
+                               a.known.pitch_m / units::mm, stated.cyclic_pitch_m / units::mm);
+  }
+  if (a.known.spike_time_s != stated.spike_time_s) {
+    shapes.values["spike_time_s"] = In(1.0, a.known.spike_time_s);
+    shapes.text += fmt::format("spikes behind reversals are largest after {:.3g} s by the readings, not after {:.3g} s as the scenario states\n",
+                               a.known.spike_time_s, stated.spike_time_s);
+  }
+  return shapes;
+}
+
 json FarJson(const std::vector<FarRadius>& far) {
   json all = json::array();
   for (const FarRadius& one : far)
@@ -378,7 +399,9 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   if (!a.method_bias.empty()) evaluation.results["method_bias"] = BiasJson(a.method_bias);
   evaluation.summary += BiasText(a);
   evaluation.summary += RankedText(ranked) + DeviationsText(a);
-  if (a.IsFitted()) evaluation.summary += ErrorsText(a);
+  const ShapesAsRead shapes = ShapesOf(a, CircularOf(scenario).machine);
+  if (!shapes.values.empty()) evaluation.results["as_read"] = shapes.values;
+  if (a.IsFitted()) evaluation.summary += ErrorsText(a) + shapes.text;
   evaluation.tables = {{"polar.txt", PolarsOf(a)}};
   if (a.IsFitted() && a.fit.dof > 0) evaluation.misfits = {MisfitOf(a, OtherWays(readings))};
   if (a.IsFitted()) evaluation.joints = [fit = a.fit] { return std::vector<uncertainty::Joint>{JointOf(fit)}; };
