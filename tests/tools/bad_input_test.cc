@@ -6,10 +6,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class BadInput : public ProgramHere {
- protected:
-  BadInput() { Write("small.toml", kSmall); }
-};
+using BadInput = SmallProgram;
 
 TEST_F(BadInput, InAScenarioOrAFileThatItNamesIsToldWithItsLine) {
   Write("t.csv", "position_deg,ez_arcsec\n0,1\n90,x\n");
@@ -30,10 +27,6 @@ TEST_F(BadInput, InAScenarioOrAFileThatItNamesIsToldWithItsLine) {
   EXPECT_THAT(Refusal({"run", "bad.toml", "-o", "out"}), HasSubstr(" bad.toml:2: "));
 }
 
-TEST_F(BadInput, ABudgetOfWhatTheScenarioHasNotNamesWhatItHas) {
-  ExpectRefused({"budget", "small.toml"}, "a place in results.json that has, as calibration");
-}
-
 TEST_F(BadInput, WithoutEndIsRefused) {
   ExpectRefused({"run", "/dev/zero", "-o", "out"}, "larger than 256 MB");
   ExpectRefused({"separate", "/dev/zero", "--scenario", "small.toml"}, "larger than 256 MB");
@@ -49,8 +42,7 @@ TEST_F(BadInput, ThatNoFitDescribesHasNoResult) {
   Write("five.toml", "bench = \"freeform_five_axis\"\n[freeform_procedure]\nposes = 30\n"
                      "[[effect]]\nname = \"slope_crosstalk\"\nper_spot_px = 50.0\n");
   const Outcome run = Call({"run", "five.toml", "-o", "run"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("does not describe the readings: ccd leaves "));
+  ExpectEnded(run, 2, {"does not describe the readings: ccd leaves "});
   EXPECT_THAT(run.out, testing::AllOf(HasSubstr("no result: the fit "), testing::Not(HasSubstr("µm rms"))));
   const nlohmann::json results = nlohmann::json::parse(Read("run/results.json"));
   EXPECT_TRUE(results.contains("not_described"));
@@ -61,17 +53,9 @@ TEST_F(BadInput, ThatNoFitDescribesHasNoResult) {
 TEST_F(BadInput, ThatAnotherWiringDescribesHasNoResult) {
   Write("swapped.toml", Contents(TWINBENCH_SOURCE_DIR "/scenarios/rotary_4dof.toml") +
                             "[[effect]]\nname = \"convention\"\nwhere = \"swap_psds\"\n");
-  const Outcome run = Call({"run", "swapped.toml", "--set", "mechanics.fidelity=\"kinematic\"", "--set",
-                            "procedure.positions=12", "-o", "run"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("times with PSD a and b exchanged"));
-}
-
-TEST_F(BadInput, AScenarioOfAnotherBenchThanMadeTheReadingsIsRefused) {
-  Write("encoder.toml", "bench = \"encoder_comparison\"\n");
-  ASSERT_EQ(Call({"run", "small.toml", "-o", "run"}).exit_code, 0);
-  for (const char* command : {"diagnose", "separate"})
-    EXPECT_THAT(Refusal({command, "run", "--scenario", "encoder.toml"}), HasSubstr("encoder.toml: a scenario of bench encoder_comparison; expected one of rotary_4dof"));
+  ExpectEnded(Call({"run", "swapped.toml", "--set", "mechanics.fidelity=\"kinematic\"", "--set",
+                    "procedure.positions=12", "-o", "run"}),
+              2, {"times with PSD a and b exchanged"});
 }
 
 TEST_F(BadInput, WhatIsNoRunIsToldAsWhatItIsWithWhatToType) {
@@ -88,7 +72,7 @@ TEST_F(BadInput, WhatIsNoRunIsToldAsWhatItIsWithWhatToType) {
   }
 }
 
-TEST_F(BadInput, WhatIsNoBenchFileOfTheScenarioIsToldAsWhatItIs) {
+TEST_F(BadInput, WhatIsNoBenchFileOrScenarioOfTheRunIsToldAsWhatItIs) {
   Write("machine.toml", "kind = \"hardware\"\n[machine]\nkind = \"esp\"\n");
   Write("turntable.toml", "bench = \"turntable_autocollimator\"\n");
   Write("tables.toml", "kind = \"hardware\"\n[adc]\nkind = \"scpi\"\n");
@@ -96,9 +80,14 @@ TEST_F(BadInput, WhatIsNoBenchFileOfTheScenarioIsToldAsWhatItIs) {
               HasSubstr("turntable.toml: a scenario of turntable_autocollimator, no bench file; expected the file that says where the devices of rotary_4dof are"));
   EXPECT_THAT(Refusal({"measure", "small.toml", "--bench", "machine.toml", "-o", "m"}), HasSubstr("[machine], so of a machine"));
   EXPECT_THAT(Refusal({"measure", "turntable.toml", "--bench", "tables.toml", "-o", "m"}), HasSubstr("[adc], so of two tables"));
+  Write("encoder.toml", "bench = \"encoder_comparison\"\n");
+  ASSERT_EQ(Call({"run", "small.toml", "-o", "run"}).exit_code, 0);
+  for (const char* command : {"diagnose", "separate"})
+    EXPECT_THAT(Refusal({command, "run", "--scenario", "encoder.toml"}),
+                HasSubstr("encoder.toml: a scenario of bench encoder_comparison; expected one of rotary_4dof"));
 }
 
-TEST_F(BadInput, InAWordIsToldWithTheNearest) {
+TEST_F(BadInput, InAWordOrANumberIsToldWithWhatWouldBeRightAndTheNearest) {
   EXPECT_THAT(Refusal({"separate", "run", "--estimator", "rigorus"}), HasSubstr("there is no \"rigorus\" among published, rigorous; the nearest is rigorous"));
   EXPECT_THAT(Refusal({"help", "efects"}), HasSubstr("the nearest is effects"));
   EXPECT_THAT(Refusal({"help", "scenario", "rotary"}), HasSubstr("the nearest is rotary_4dof"));
@@ -108,10 +97,8 @@ TEST_F(BadInput, InAWordIsToldWithTheNearest) {
   EXPECT_THAT(Refusal({"score", "run", "--aganst", "x"}), HasSubstr("the nearest is --against"));
   EXPECT_THAT(Refusal({"score", "run", "--table", "x"}), testing::Not(HasSubstr("nearest"))) << "no option is meant by it";
   EXPECT_THAT(Refusal({"completion", "tcsh"}), testing::Not(HasSubstr("nearest"))) << "nor any of these words";
-}
-
-TEST_F(BadInput, InANumberWithoutAnUpperBoundIsSaidInOneLine) {
   EXPECT_THAT(Refusal({"plan", "small.toml", "--minutes", "2h"}), HasSubstr("\"2h\" is not allowed; expected a number above 0"));
+  ExpectRefused({"budget", "small.toml"}, "a place in results.json that has, as calibration");
 }
 
 /// What ended a run in words of its functions, or never, is said when the scenario is loaded.
@@ -140,7 +127,7 @@ TEST_F(BadInput, OfANearlyRightFileNamesTheRightOneBesideItOrAmongTheShippedScen
   EXPECT_THAT(Refusal({"check", "."}), HasSubstr(".: is a folder"));
 }
 
-TEST_F(BadInput, InAnOptionIsNamed) {
+TEST_F(BadInput, InAnOptionIsNamedAndOfACommandAllCommands) {
   Write("t.csv", "position_deg,ez_urad\n0,1\n");
   const std::pair<const char*, const char*> cases[] = {
       {"--set", "procedure.positons=12"}, {"--set", "positions"}, {"--seed", "-1"}, {"--seed", "1.5"},
@@ -150,9 +137,6 @@ TEST_F(BadInput, InAnOptionIsNamed) {
   for (const auto& [option, value] : cases) ExpectRefused({"run", "small.toml", "-o", "out", option, value});
   ExpectRefused({"run", "small.toml"}, "--output");
   EXPECT_THAT(Refusal({"run", "small.toml", "-o", "out", "--fidelity", "best"}), HasSubstr("best"));
-}
-
-TEST_F(BadInput, OfACommandNamesTheCommands) {
   ExpectRefused({"run", "s.toml", "-o", "x", "--noisefree"}, "--noise-free");
   ExpectRefused({"run", "s.toml", "-o", "x", "--set", "a=1", "b=2"}, "\"b=2\"");
   ExpectRefused({"seperate"}, "run, ");

@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class Commands : public ProgramHere {};
+using Commands = SmallProgram;
 
 TEST_F(Commands, ANewScenarioSaysWhatTheDefaultsSay) {
   for (const std::string& bench : BenchNames()) {
@@ -42,7 +42,6 @@ TEST_F(Commands, EveryKeyOfANewScenarioIsReadWhenItsHashIsTakenAway) {
 }
 
 TEST_F(Commands, ACheckSaysDurationLossesAndWhichUTheRunStates) {
-  Write("small.toml", kSmall);
   const nlohmann::json expected = Json({"check", "small.toml", "--json", "-"}).at("expected");
   EXPECT_EQ(expected.at("readings"), 124);
   EXPECT_GT(expected.at("minutes"), 1.0);
@@ -57,7 +56,6 @@ TEST_F(Commands, ACheckSaysDurationLossesAndWhichUTheRunStates) {
 }
 
 TEST_F(Commands, APlanWithoutTimeSaysWhatItLeavesOutAndStillProposesARun) {
-  Write("small.toml", kSmall);
   const nlohmann::json plan = Json({"plan", "small.toml", "--cpu", "0.001", "-o", "next.toml", "--json", "-"});
   EXPECT_TRUE(plan.at("left_out").contains("another run"));
   Succeed({"check", "next.toml"});
@@ -75,15 +73,12 @@ TEST_F(Commands, TheListHasEveryBenchAndEffect) {
   }
 }
 
-TEST_F(Commands, AnEffectIsExplainedWithWhatItDoes) {
+TEST_F(Commands, AnEffectIsExplainedWithWhatItDoesForProgramsToo) {
   const std::string roll = Succeed({"explain", "psd_roll"});
   EXPECT_THAT(roll, HasSubstr("roll_mrad = 5 "));
   EXPECT_THAT(roll, HasSubstr("what it adds to psd_a_"));
   EXPECT_THAT(Succeed({"explain", "eccentricity", "--bench", "encoder_comparison"}), HasSubstr("deg"));
   ExpectRefused({"explain", "psd_rol"});
-}
-
-TEST_F(Commands, WhatIsExplainedIsThereForProgramsToo) {
   const nlohmann::json benches = Json({"explain", "eccentricity", "--bench", "encoder_comparison", "--json", "-"}).at("benches");
   ASSERT_EQ(benches.size(), 1u);
   const nlohmann::json& told = benches.at(0);
@@ -144,12 +139,16 @@ TEST_F(Commands, HelpOfACommandOpensWithWhatItAnswersAndTwoExamples) {
   }
 }
 
-TEST_F(Commands, BashCompletesCommandsAndOptions) {
+TEST_F(Commands, EveryShellCompletesCommandsAndOptions) {
   Write("complete.sh", Succeed({"completion"}) +
                            "COMP_WORDS=(twinbench di); COMP_CWORD=1; _twinbench; echo \"${COMPREPLY[*]}\"\n"
                            "COMP_WORDS=(twinbench measure --all); COMP_CWORD=2; _twinbench; echo \"${COMPREPLY[*]}\"\n");
   ASSERT_EQ(std::system(("bash " + At("complete.sh") + " > " + At("said")).c_str()), 0);
   EXPECT_EQ(Read("said"), "diagnose\n--allow-homing\n");
+  EXPECT_THAT(Succeed({"completion", "zsh"}),
+              testing::AllOf(testing::StartsWith("#compdef twinbench\n"), HasSubstr("    measure) found=(--help")));
+  EXPECT_THAT(Succeed({"completion", "fish"}),
+              HasSubstr("complete -c twinbench -n '__fish_seen_subcommand_from measure' -l allow-homing\n"));
 }
 
 /// Some looked at things for a minute and failed then.
@@ -161,11 +160,6 @@ TEST_F(Commands, APlanOfEveryShippedScenarioEndsByNight) {
     EXPECT_EQ(plan.exit_code, 0) << entry.path() << "\n" << plan.err;
     EXPECT_THAT(plan.out, HasSubstr("minutes")) << entry.path();
   }
-}
-
-TEST_F(Commands, ZshAndFishCompleteToo) {
-  EXPECT_THAT(Succeed({"completion", "zsh"}), testing::AllOf(testing::StartsWith("#compdef twinbench\n"), HasSubstr("    measure) found=(--help")));
-  EXPECT_THAT(Succeed({"completion", "fish"}), HasSubstr("complete -c twinbench -n '__fish_seen_subcommand_from measure' -l allow-homing\n"));
 }
 
 }  // namespace

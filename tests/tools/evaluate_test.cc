@@ -15,11 +15,10 @@ std::vector<std::string> KeysOf(const nlohmann::json& json) {
 }
 
 /// A run in the folder `run`, its readings in `readings.csv`.
-class Evaluate : public ProgramHere {
+class Evaluate : public SmallProgram {
  protected:
   Evaluate() {
     BeginWith("evaluate", [this] {
-      Write("small.toml", kSmall);
       MakeRun("run");
       Succeed({"export", "run", "--readings", "readings.csv"});
     });
@@ -34,12 +33,6 @@ TEST_F(Evaluate, ExportToAFileAndToStdoutIsTheSameAndAMessageOfTheFileSystemIsCo
   EXPECT_EQ(Call({"separate", "run", "--json", "no/such/folder.json"}).exit_code, 1);
 }
 
-TEST_F(Evaluate, SeparateRepeatsTheSeparationOfTheRun) {
-  const auto results = nlohmann::json::parse(Read("run/results.json"));
-  const auto again = Json({"separate", "run", "--json", "-"});
-  for (const auto& [key, value] : again.items()) EXPECT_EQ(value, results.at("separation").at(key)) << key;
-}
-
 TEST_F(Evaluate, AReadingsFileWithAScenarioSeparatesLikeTheFolder) {
   for (const char* estimator : {"rigorous", "published"}) {
     const auto from_file =
@@ -48,7 +41,7 @@ TEST_F(Evaluate, AReadingsFileWithAScenarioSeparatesLikeTheFolder) {
   }
 }
 
-TEST_F(Evaluate, SeparateWritesAFileAndPrintsForAPersonByWhichEstimatorItGaveWhichNumbers) {
+TEST_F(Evaluate, SeparateWritesAFileAndPrintsForAPersonByWhichEstimatorItGaveWhichNumbersAndTakesOverrides) {
   EXPECT_THAT(Succeed({"separate", "run", "--json", "s.json"}), HasSubstr("separation by the rigorous estimator"));
   const auto rigorous = Json({"separate", "run", "--json", "-"});
   EXPECT_EQ(nlohmann::json::parse(Read("s.json")), rigorous);
@@ -56,17 +49,13 @@ TEST_F(Evaluate, SeparateWritesAFileAndPrintsForAPersonByWhichEstimatorItGaveWhi
               HasSubstr("separation by the published estimator"));
   EXPECT_NE(Json({"separate", "run", "--json", "-", "--estimator", "published"}).at("target").at("ex_arcsec"),
             rigorous.at("target").at("ex_arcsec"));
-}
-
-TEST_F(Evaluate, SeparateTakesOverrides) {
   // Who believes in PSDs at half the distance reads angles of about twice the size.
-  const auto honest = Json({"separate", "run", "--json", "-"});
   const auto near =
       Json({"separate", "run", "--json", "-", "--set", "psd_a.distance_mm=100", "--set", "psd_b.distance_mm=100"});
-  EXPECT_NE(honest.at("target").at("ez_arcsec"), near.at("target").at("ez_arcsec"));
+  EXPECT_NE(rigorous.at("target").at("ez_arcsec"), near.at("target").at("ez_arcsec"));
 }
 
-TEST_F(Evaluate, SeparationJsonHasTheAgreedKeys) {
+TEST_F(Evaluate, SeparationJsonHasTheAgreedKeysAndTheNumbersOfTheRun) {
   const auto json = Json({"separate", "run", "--json", "-"});
   EXPECT_THAT(KeysOf(json), ElementsAre("dof", "not_separable", "reference", "residual_rms", "target"));
   for (const char* table : {"target", "reference"}) {
@@ -81,6 +70,8 @@ TEST_F(Evaluate, SeparationJsonHasTheAgreedKeys) {
   for (const auto& lost : json.at("not_separable")) EXPECT_THAT(KeysOf(lost), ElementsAre("what", "why"));
   EXPECT_TRUE(json.at("dof").is_number_integer());
   EXPECT_TRUE(json.at("residual_rms").is_object());
+  const auto of_run = JsonIn("run/results.json").at("separation");
+  for (const auto& [key, value] : json.items()) EXPECT_EQ(value, of_run.at(key)) << key;
 }
 
 TEST_F(Evaluate, ScorePrintsEveryComponentAndIsWithinItsUncertainty) {
@@ -98,7 +89,7 @@ TEST_F(Evaluate, ScorePrintsEveryComponentAndIsWithinItsUncertainty) {
   EXPECT_THAT(Succeed({"score", "run", "--positions"}), HasSubstr("position_deg"));
 }
 
-TEST_F(Evaluate, AUsersOwnResultIsScoredInTheProgramsTable) {
+TEST_F(Evaluate, AUsersOwnResultIsScoredInTheProgramsTableAndNothingWithoutATruth) {
   Succeed({"separate", "run", "--tables", "mine.csv"});
   Succeed({"separate", "run", "--tables", "tables"});
   EXPECT_EQ(Read("mine.csv"), Read("tables/errors.csv"));
@@ -112,9 +103,6 @@ TEST_F(Evaluate, AUsersOwnResultIsScoredInTheProgramsTable) {
   ExpectRefused({"score", "run", "--against", "none.csv"}, "target.ez_arcsec[0]");
   Write("bare.csv", "name,value\ntarget.ez_arcsec[0],1\n");
   ExpectRefused({"score", "run", "--against", "bare.csv"}, "bare.csv:1");
-}
-
-TEST_F(Evaluate, ScoreNeedsATruth) {
   Succeed({"import", "readings.csv", "--scenario", "small.toml", "-o", "imported"});
   ExpectRefused({"score", "imported"}, "imported/truth.json");
 }
@@ -127,12 +115,10 @@ std::string SchemaFor(const std::string& version) {
 <xs:attribute name="schemaVersion" fixed=")" + version + R"("/></xs:complexType></xs:element></xs:schema>)";
 }
 
-class CertificateCommand : public ProgramHere {
+class CertificateCommand : public Evaluate {
  protected:
   CertificateCommand() {
     BeginWith("certificate", [this] {
-      Write("small.toml", kSmall);
-      MakeRun("run");
       Succeed({"certificate", "--template", "-o", "empty.toml"});
       std::string text = std::regex_replace(Read("empty.toml"), std::regex("country = \"\""), "country = \"DE\"");
       text = std::regex_replace(text, std::regex("(begin|end) = \"\""), "$1 = \"2026-02-28\"");
@@ -176,10 +162,7 @@ TEST_F(CertificateCommand, IsWrittenOnlyIfItSatisfiesTheSchema) {
   // Behind what xmllint says.
   for (const auto& [schema, said] : {std::pair{"bad", "does not satisfy bad/dcc.xsd; nothing was written"},
                                      std::pair{"broken", "could not read the schema"}}) {
-    const Outcome outcome =
-        Call({"certificate", "run", "--with", "laboratory.toml", "--schema", schema, "-o", "d.xml"});
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr(said));
+    ExpectEnded(Call({"certificate", "run", "--with", "laboratory.toml", "--schema", schema, "-o", "d.xml"}), 2, {said});
     EXPECT_FALSE(Exists("d.xml"));
   }
 }
@@ -191,15 +174,7 @@ TEST_F(CertificateCommand, SaysWhatIsMissingAndOverwritesNoInput) {
   ExpectRefused({"certificate", "nothing", "--with", "laboratory.toml"});
 }
 
-class ReportCommand : public ProgramHere {
- protected:
-  ReportCommand() {
-    BeginWith("report", [this] {
-      Write("small.toml", kSmall);
-      MakeRun("run");
-    });
-  }
-};
+using ReportCommand = Evaluate;
 
 TEST_F(ReportCommand, WritesPicturesWithoutABrowserAndTruthOnlyOfAScoredRun) {
   Succeed({"report", "run", "--svg", "pictures"});

@@ -47,12 +47,11 @@ std::vector<Called> AllCalls() {
   };
 }
 
-class JsonAnswers : public ProgramHere {
+class JsonAnswers : public SmallProgram {
  protected:
   JsonAnswers() {
     BeginWith("json", [this] {
       Write("s.toml", kStops);
-      Write("small.toml", kSmall);
       Write("bad.toml", std::string(kStops) + "stop_per_turn = 3\n");
       Write("bad.csv", "these,are,no\nreadings\n");
       Write("study.toml", "scenario = \"s.toml\"\ntrials = 2\n");

@@ -45,47 +45,13 @@ TEST_P(EveryBench, AKilledMeasurementGoesOnToTheSameReadings) {
   ExpectAsRun("played");
 }
 
-/// By hand, for it takes minutes: TWINBENCH_KILLS=100 test_machine_tools --gtest_also_run_disabled_tests --gtest_filter='*AsOften*'.
-/// A run is killed at any moment and taken up, again and again, until it is whole; then the next one begins.
-TEST_P(EveryBench, DISABLED_KilledAsOftenAsAskedItEndsWithTheSameReadings) {
-  const char* asked = std::getenv("TWINBENCH_KILLS");
-  const int kills = asked ? std::stoi(asked) : 20;
-  const auto server = ServeAt("max");
-  const auto begun = std::chrono::steady_clock::now();
-  Succeed(Measure("whole"));
-  const double takes_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  Stream moment(11, "kill");
-  int killed = 0, whole = 0;
-  while (killed < kills) {
-    const std::string name = "run" + std::to_string(whole);
-    for (std::size_t kept = 0;;) {
-      Process run(At(""), Measure(name));
-      if (killed < kills) std::this_thread::sleep_for(std::chrono::duration<double>(takes_s * moment.Uniform()));
-      if (killed == kills || !run.Runs()) {
-        ASSERT_NE(run.Wait().exit_code, 1);
-        break;
-      }
-      run.Kill();
-      ++killed;
-      const std::size_t now = Exists(name + "/record.sqlite") ? RunRecord::Open(At(name))->Readings().size() : 0;
-      ASSERT_GE(now, kept) << "what was kept is never lost";
-      kept = now;
-    }
-    ExpectAsRun(name);
-    ++whole;
-  }
-  std::printf("%s: %d kills, %d runs ended whole, all of them bit-equal\n", GetParam().name, killed, whole);
-}
-
 TEST_P(MachineThatMoves, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
   const auto server = ServeAt("2000");
   {
     Process run(At(""), Measure("stopped"));
     run.Await(1);
     run.Signal(SIGINT);
-    const Outcome outcome = run.Wait();
-    EXPECT_EQ(outcome.exit_code, 1);
-    EXPECT_THAT(outcome.err, HasSubstr("The controller says that all axes stand still"));
+    ExpectEnded(run.Wait(), 1, {"The controller says that all "});
   }
   Succeed(Measure("stopped"));
   EXPECT_EQ(ReadingsOf("stopped"), readings_);
@@ -97,10 +63,7 @@ TEST_P(MachineThatMoves, AServerThatDiesIsToldAndGoneOnFromWithANewOne) {
   Process run(At(""), Measure("cut"));
   run.Await(1);
   server->Kill();
-  const Outcome outcome = run.Wait();
-  EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_THAT(outcome.err, HasSubstr("STATE UNKNOWN - USE THE EMERGENCY STOP"));
-  EXPECT_THAT(outcome.err, HasSubstr("WHETHER THE AXES STAND STILL IS NOT KNOWN"));
+  ExpectEnded(run.Wait(), 3, {"STATE UNKNOWN - USE THE EMERGENCY STOP", "STAND STILL IS NOT KNOWN"});
   server = ServeAt("max");
   Succeed(Measure("cut"));
   EXPECT_EQ(ReadingsOf("cut"), readings_);
@@ -108,21 +71,12 @@ TEST_P(MachineThatMoves, AServerThatDiesIsToldAndGoneOnFromWithANewOne) {
 
 TEST_P(ServedMachineProgram, ARehearsalAsksTheControllerAndMovesNothing) {
   const auto server = ServeAt("max");
-  const Outcome fine = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only"});
-  EXPECT_EQ(fine.exit_code, 0) << fine.err;
-  EXPECT_THAT(fine.err, HasSubstr(std::string("axis ") + GetParam().axis));
-  EXPECT_THAT(fine.err, HasSubstr("limits "));
+  const std::string axis = std::string("axis ") + GetParam().axis;
+  ExpectEnded(Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only"}), 0, {axis, "limits "});
   Write("bench.toml", Read("bench.toml") + "\n[axis_" + GetParam().axis + "]\n" + GetParam().limits);
-  const Outcome narrow = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "narrow"});
-  EXPECT_EQ(narrow.exit_code, 1);
-  EXPECT_THAT(narrow.err, HasSubstr(std::string("PROBLEM: axis ") + GetParam().axis + " would travel"));
+  ExpectEnded(Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "narrow"}), 1,
+              {"PROBLEM: " + axis + " would travel"});
   EXPECT_FALSE(Exists("narrow"));
-}
-
-TEST_P(ServedMachineProgram, ItsOwnTwinIsABenchToo) {
-  Write("bench.toml", "kind = \"twin\"\n");
-  Succeed(Measure("own"));
-  EXPECT_EQ(ReadingsOf("own"), readings_);
 }
 
 TEST_F(ProgramHere, ARecordingOfAMachineIsAskedWhatItWasAskedOnly) {
@@ -132,14 +86,14 @@ TEST_F(ProgramHere, ARecordingOfAMachineIsAskedWhatItWasAskedOnly) {
   Succeed({"measure", "small.toml", "--bench", "bench.toml", "-o", "own"});
   const Outcome other = Call({"measure", "small.toml", "--bench", "replay.toml", "-o", "other", "--set",
                               "encoder_procedure.stop_interval_s=7.0"});
-  EXPECT_EQ(other.exit_code, 1);
-  EXPECT_THAT(other.err, HasSubstr("\"clock: wait 5000000000\" is not in the recording at this place"));
+  ExpectEnded(other, 1, {"\"clock: wait 5000000000\" is not in the recording at this place"});
   EXPECT_THAT(other.err, testing::Not(HasSubstr("stand"))) << "of a recording's axes nothing can be asked";
 }
 
 constexpr const char *kNarrow_mm = "lower_mm = -20.0\nupper_mm = 20.0\n",
                      *kNarrow_deg = "lower_deg = -20.0\nupper_deg = 20.0\n";
 constexpr Machine kFreeformMachine = {"Freeform", "freeform", "x", kNarrow_mm};  // as circles, and takes longest
+constexpr Machine kRotaryMachine = {"Rotary", "rotary", "", ""};  // its limits: serve_test.cc
 constexpr Machine kMachines[] = {{"Circles", "circles", "x", kNarrow_mm},
                                  {"Turntable", "turntable", "turntable", kNarrow_deg},
                                  {"Stops", "stops", "shaft", kNarrow_deg},
@@ -150,10 +104,12 @@ std::string NameOfMachine(const ::testing::TestParamInfo<Machine>& machine) {
 INSTANTIATE_TEST_SUITE_P(Machines, EveryBench, ::testing::ValuesIn(kMachines), NameOfMachine);
 INSTANTIATE_TEST_SUITE_P(Others, EveryBench,
                          ::testing::Values(kFreeformMachine, Machine{"Sweep", "sweep", "shaft", kNarrow_deg},
-                                           Machine{"Rotary", "rotary", "", ""}),
+                                           kRotaryMachine),
                          NameOfMachine);
 INSTANTIATE_TEST_SUITE_P(Machines, ServedMachineProgram, ::testing::ValuesIn(kMachines), NameOfMachine);
-INSTANTIATE_TEST_SUITE_P(Machines, MachineThatMoves, ::testing::Values(kMachines[0], kMachines[3]), NameOfMachine);  // on paths; turning on
+INSTANTIATE_TEST_SUITE_P(Machines, MachineThatMoves,
+                         ::testing::Values(kMachines[0], kMachines[3], kRotaryMachine),  // on paths; turning on; tables
+                         NameOfMachine);
 
 }  // namespace
 }  // namespace twinbench::test

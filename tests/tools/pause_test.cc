@@ -1,7 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-
 #include "tools/twinbench/alarm_text.h"
 #include "tools/twinbench/live_judge.h"
 #include "tools/twinbench/passing_run.h"
@@ -30,10 +26,25 @@ bool NoStop() {
   return false;
 }
 
-TEST(Pause, HoldsNobodyUnasked) {
+using Words = std::vector<std::string>;
+
+/// What is said where a run may be held at its third reading.
+Words SaidAt(bool is_asked, const std::function<Standstill()>& look, const std::function<bool()>& stop = NoStop) {
   Held run;
-  run.pause.HoldIfAsked(3, [] { return Standstill{true, ""}; }, NoStop);
-  EXPECT_TRUE(run.said.empty());
+  run.pause.Ask(is_asked);
+  run.pause.HoldIfAsked(3, look, stop);
+  return run.said;
+}
+
+TEST(Pause, HoldsWhoAsksUntilAStopUnlessAnythingMovesOrNobodyAnswersAndLooksOn) {
+  const auto moves = [] { return Standstill{false, "x moves"}; };
+  int looks = 0, asked = 0;
+  EXPECT_EQ(SaidAt(false, [] { return Standstill{true, ""}; }), Words{});
+  EXPECT_EQ(SaidAt(true, moves), Words{"not yet: x moves"});
+  EXPECT_EQ(SaidAt(true, []() -> Standstill { throw BenchError("no answer"); }), Words{"not yet: no answer"});
+  EXPECT_EQ(SaidAt(true, [&] { return ++looks == 1 ? Standstill{true, ""} : moves(); }),
+            (Words{"paused 3", "restless: x moves", "over 3"}));
+  EXPECT_EQ(SaidAt(true, {}, [&] { return ++asked > 2; }).back(), "over 3");
 }
 
 TEST(Pause, HoldsUntilItIsOver) {
@@ -47,33 +58,6 @@ TEST(Pause, HoldsUntilItIsOver) {
   run.pause.HoldIfAsked(3, {}, NoStop);
   EXPECT_GE(std::chrono::steady_clock::now() - begun, std::chrono::milliseconds(50));
   EXPECT_EQ(run.said, (std::vector<std::string>{"paused 3", "over 3"}));
-}
-
-TEST(Pause, IsNoneWhileAnythingMovesOrNobodyAnswers) {
-  Held run;
-  run.pause.Ask(true);
-  run.pause.HoldIfAsked(3, [] { return Standstill{false, "target moves"}; }, NoStop);
-  EXPECT_EQ(run.said, (std::vector<std::string>{"not yet: target moves"}));
-  Held mute;
-  mute.pause.Ask(true);
-  mute.pause.HoldIfAsked(3, []() -> Standstill { throw BenchError("no answer"); }, NoStop);
-  EXPECT_EQ(mute.said, (std::vector<std::string>{"not yet: no answer"}));
-}
-
-TEST(Pause, LooksOnAndSaysWhatMoves) {
-  Held run;
-  run.pause.Ask(true);
-  int looks = 0;
-  run.pause.HoldIfAsked(3, [&] { return ++looks == 1 ? Standstill{true, ""} : Standstill{false, "x moves"}; }, NoStop);
-  EXPECT_EQ(run.said, (std::vector<std::string>{"paused 3", "restless: x moves", "over 3"}));
-}
-
-TEST(Pause, EndsAtAStop) {
-  Held run;
-  run.pause.Ask(true);
-  int asked = 0;
-  run.pause.HoldIfAsked(3, {}, [&] { return ++asked > 2; });
-  EXPECT_EQ(run.said.back(), "over 3");
 }
 
 TEST(ForTerminal, LeavesNothingThatATerminalObeys) {

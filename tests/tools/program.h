@@ -95,8 +95,12 @@ class Program : public ::testing::Test {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return outcome.out;
   }
-  nlohmann::json Json(const std::vector<std::string>& arguments) {
-    return nlohmann::json::parse(Succeed(arguments));
+  nlohmann::json Json(const std::vector<std::string>& arguments) { return nlohmann::json::parse(Succeed(arguments)); }
+  nlohmann::json JsonIn(const std::string& name) const { return nlohmann::json::parse(Read(name)); }
+  /// It ended with this code and says all of this to stderr.
+  static void ExpectEnded(const Outcome& outcome, int code, const std::vector<std::string>& said = {}) {
+    EXPECT_EQ(outcome.exit_code, code) << outcome.err;
+    for (const std::string& words : said) EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
   }
 
   /// The working directory for "".

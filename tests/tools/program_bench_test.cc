@@ -33,8 +33,7 @@ class ProgramBench : public ProgramHere {
 
 TEST_F(ProgramBench, IsMeasuredAndDiagnosedLikeAnyOther) {
   WriteBench("\"0.02\"");
-  const Outcome measured = Measure("run");
-  EXPECT_EQ(measured.exit_code, 0) << measured.err;
+  ExpectEnded(Measure("run"), 0);
   const auto json = Json({"diagnose", "run", "--cache", "cache", "--json", "-"});
   std::vector<std::string> effects;
   for (const auto& cause : json.at("causes")) effects.push_back(cause.at("effect"));
@@ -74,10 +73,8 @@ TEST_F(ProgramBench, NothingMeasuredComesFromTheTwin) {
 TEST_F(ProgramBench, StopsWithoutRowsAndRowsThatNobodyAskedForAreSaidAndTheseLeftOut) {
   for (const std::string mode : {"missing", "extra"}) {
     WriteBench("\"0.02\", \"0\", \"" + mode + "\"");
-    const Outcome measured = Measure(mode);
-    EXPECT_EQ(measured.exit_code, 0) << measured.err;
-    EXPECT_THAT(measured.err,
-                HasSubstr(mode == "missing" ? "the program read 130 of 144 measuring positions" : "1 row is of no measuring position"));
+    ExpectEnded(Measure(mode), 0, {mode == "missing" ? "the program read 130 of 144 measuring positions"
+                                                     : "1 row is of no measuring position"});
   }
   EXPECT_EQ(Json({"diagnose", "extra", "--cache", "cache", "--json", "-"}).at("readings"), 144);
 }

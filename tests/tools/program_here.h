@@ -93,4 +93,10 @@ class ProgramHere : public Program {
   }
 };
 
+/// The same with the small scenario.
+class SmallProgram : public ProgramHere {
+ protected:
+  SmallProgram() { Write("small.toml", kSmall); }
+};
+
 }  // namespace twinbench::test

@@ -8,10 +8,7 @@ namespace {
 
 using testing::HasSubstr, testing::Not, testing::StartsWith;
 
-class Run : public ProgramHere {
- protected:
-  Run() { Write("small.toml", kSmall); }
-};
+class Run : public SmallProgram {};
 
 TEST_F(Run, LeavesScenarioRecordTruthAndResultsAndPrintsThemToStdoutAndProgressToStderr) {
   const Outcome outcome = Call({"run", "small.toml", "-o", "a/b"});
@@ -42,12 +39,16 @@ TEST_F(Run, GivesTheSameBytesForTheSameSeedOnlyAndTakesEverySeedOf64Bits) {
   EXPECT_EQ(ReadingsOf("last"), ReadingsOf("again"));
 }
 
-TEST_F(Run, TakesOverridesFidelityAndNoiseFree) {
-  MakeRun("a", {"--set", "procedure.positions=8", "--set", "procedure.shifts=[0,3]", "--fidelity", "bullet", "--noise-free"});
+TEST_F(Run, TakesOverridesFidelityNoiseFreeAndImagesAndOptionsInFrontOfTheScenario) {
+  MakeRun("a", {"--set", "procedure.positions=8", "--set", "procedure.shifts=[0,3]", "--fidelity", "bullet",
+                "--noise-free", "--images", "--set", "laser.beam=gaussian"});
+  EXPECT_TRUE(Exists("a/images/irradiance.exr"));
   const std::string scenario = Read("a/scenario.toml");
   for (const char* line :
        {"positions = 8\n", "shifts = [0, 3]\n", "fidelity = \"bullet\"\n", "noise_free = true\n"})
     EXPECT_THAT(scenario, HasSubstr(line));
+  Succeed({"run", "--set", "procedure.passes=[1]", "--set", "seed=3", "small.toml", "-o", "run"});
+  EXPECT_TRUE(Exists("run/results.json"));
 }
 
 TEST_F(Run, TakesTheErrorsOfATableFromAFile) {
@@ -68,11 +69,6 @@ TEST_F(Run, WithoutUsableReadingsSaysSoAndSucceeds) {
   EXPECT_EQ(results.at("readings_by_status").at("saturated"), 124);
 }
 
-TEST_F(Run, WritesImagesOnDemand) {
-  MakeRun("a", {"--images", "--set", "laser.beam=gaussian"});
-  EXPECT_TRUE(Exists("a/images/irradiance.exr"));
-}
-
 TEST_F(Run, EntersItsMountingsInTheRecord) {
   MakeRun("run");
   const auto events = RunRecord::Open(At("run"))->Events();
@@ -81,12 +77,7 @@ TEST_F(Run, EntersItsMountingsInTheRecord) {
   EXPECT_EQ(events[3].text, "mounting 2: grating clamped at 0 deg, body seated at -150 deg");
 }
 
-TEST_F(Run, TakesOptionsInFrontOfTheScenario) {
-  Succeed({"run", "--set", "procedure.passes=[1]", "--set", "seed=3", "small.toml", "-o", "run"});
-  EXPECT_TRUE(Exists("run/results.json"));
-}
-
-class AngleComparison : public ProgramHere {
+class AngleComparison : public SmallProgram {
  protected:
   AngleComparison() {
     Write("angle.toml",
@@ -123,7 +114,6 @@ TEST_F(AngleComparison, ReportsTheReversalOfABacklashItsIsoValuesAndWithOneMount
 }
 
 TEST_F(AngleComparison, RefusesReadingsOfAnotherBenchErrorsOfTablesAndImages) {
-  Write("small.toml", kSmall);
   MakeRun("rotary");
   Write("r.csv", ReadingsOf("rotary"));
   ExpectRefused({"import", "r.csv", "--scenario", "angle.toml", "-o", "b"}, "measured_deg");
@@ -147,11 +137,9 @@ class AngleBenches : public AngleComparison {
           "table_encoder = { eccentricity_um = 2.0, noise_arcsec = 0.1 }\n"
           "[hob_procedure]\nheads_deg = [0.0, 170.0]\nturns = 2\nsamples_per_turn = 250\npoll_s = 5.0\n");
   }
-  nlohmann::json Results(const std::string& run) { return nlohmann::json::parse(Read(run + "/results.json")); }
 };
 
 TEST_F(AngleBenches, AreCarriedOutExportedAndImportedToTheSameResults) {
-  Write("small.toml", kSmall);
   for (const std::string bench : {"small", "turntable", "hob", "angle"}) {
     const std::string a = bench + "_a", b = bench + "_b";
     Succeed({"run", bench + ".toml", "-o", a});
@@ -166,7 +154,7 @@ TEST_F(AngleBenches, TurntableTakesErrorsFromAFile) {
   Write("t.csv", "position_deg,ez_arcsec\n0,0\n90,10\n180,0\n270,-10\n");
   Succeed({"run", "turntable.toml", "-o", "a", "--noise-free", "--errors", "turntable=t.csv", "--set",
            "multitooth.tooth_rms_arcsec=0"});
-  const auto ez = Results("a").at("separation").at("turntable").at("ez_arcsec");
+  const auto ez = JsonIn("a/results.json").at("separation").at("turntable").at("ez_arcsec");
   EXPECT_NEAR(ez.at(3).get<double>() - ez.at(9).get<double>(), 20.0, 0.01);
   ExpectRefused({"run", "turntable.toml", "-o", "b", "--errors", "target=t.csv"},
                 "turntable=FILE.csv or multitooth=FILE.csv");
