@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/procedure/troubled_run.h"
 
 /// Faults, stops and resumed runs on the twin: whatever happens on the way, the readings are those of a run

@@ -1,7 +1,5 @@
 #include "twin/procedure/watch.h"
 
-#include <gmock/gmock.h>
-
 #include "tests/procedure/troubled_run.h"
 #include "tests/support/kept_text.h"
 

@@ -1,7 +1,5 @@
 #include "twin/procedure/watched_moves.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/fuzz/plain_bench.h"
 #include "tests/support/faults.h"
 
