@@ -1,7 +1,5 @@
 #include "hw_bridge/bench_file.h"
 
-#include <gmock/gmock.h>
-
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"
 
@@ -47,16 +45,13 @@ TEST(BenchFile, OfAServedTwinReadsBackAsItsAddresses) {
   }
 }
 
-TEST(BenchFile, OfAServedTwinDrivesItsTablesAsAsked) {
+TEST(BenchFile, OfAServedTwinDrivesItsTablesAsAskedAndIsReadFromDisk) {
   for (const auto& [tables, address] :
        {std::pair{"esp", "esp tcp:127.0.0.1:5026"}, std::pair{"pty", "esp serial:/dev/pts/7"}}) {
     const BenchFile file = Parse(WriteServedBenchFile(kAddresses, tables));
     for (const ControlSettings* table : {&file.target, &file.reference})
       EXPECT_EQ(table->kind + " " + table->address, address);
   }
-}
-
-TEST(BenchFile, IsReadFromDisk) {
   const TemporaryFolder folder;
   const std::string path = folder.Write("bench.toml", ServedText());
   EXPECT_EQ(LoadBenchFile(path).path, path);
@@ -73,7 +68,7 @@ TEST(BenchFile, TakesUnitsFromItsKeys) {
   EXPECT_TRUE(std::isinf(file.reference_limits.upper_rad));  // none given: none
 }
 
-TEST(BenchFile, AMinimalOneHasAHostClockAnOperatorAndNothingElse) {
+TEST(BenchFile, AMinimalOneHasAHostClockAndAnOperatorAndOfATwinOrARecordNoDevices) {
   const BenchFile file = Parse(
       "[adc]\nkind = \"comedi\"\ndevice = \"/dev/comedi0\"\nchannels = [\"0\", \"1\", \"2\", \"3\"]\n"
       "calibration_file = \"card.calibration\"\n"
@@ -83,9 +78,6 @@ TEST(BenchFile, AMinimalOneHasAHostClockAnOperatorAndNothingElse) {
   EXPECT_EQ(file.fixture.kind, "console");
   EXPECT_EQ(file.autocollimator.kind, "none");
   EXPECT_EQ(file.adc.calibration_file, "/benches/card.calibration");
-}
-
-TEST(BenchFile, OfATwinOrARecordNeedsNoDevices) {
   EXPECT_EQ(Parse("kind = \"twin\"").kind, "twin");
   EXPECT_EQ(Parse("kind = \"replay\"\nrecord = \"run1\"").record, "/benches/run1");
 }
@@ -98,13 +90,9 @@ std::string LineOf(const std::string& text, const std::string& marker) {
          ":";
 }
 
-struct Wrong {
-  std::string text, line;  // which line is named, by something that stands there
-};
-
 TEST(BenchFile, ThatIsWrongIsRefusedWithPlaceAndWhatWouldBeRight) {
   const std::string served = ServedText();
-  const Wrong files[] = {
+  const std::pair<std::string, std::string> files[] = {  // the text, and what stands in the line that is named
       {"kind = \"hardware\"", "kind"}, {"atempts = 2", "atempts"}, {"[traget]\naxis = 1", "[traget]"},
       {"kind = \"twin\"\n\n[adc]\nkind = \"iio\"", "[adc]"}, {"kind = \"replay\"", "kind"},
       {"record = \"x\"", "record"}, {"attempts = 0", "attempts"}, {With("target", "lower = 1"), "lower"},
@@ -132,8 +120,7 @@ TEST(BenchFile, ThatIsWrongIsRefusedWithPlaceAndWhatWouldBeRight) {
 TEST(BenchFile, EveryKeyStandsInTheDocumentation) {
   const std::string text = Contents(TWINBENCH_SOURCE_DIR "/docs/hardware.md");
   BenchFile file;
-  for (const ScenarioKey& key : KeysOf(file))
-    EXPECT_THAT(text, HasSubstr("`" + key.Name() + "`")) << key.Path();
+  for (const ScenarioKey& key : KeysOf(file)) EXPECT_THAT(text, HasSubstr("`" + key.Name() + "`")) << key.Path();
 }
 
 }  // namespace

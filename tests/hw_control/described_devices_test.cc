@@ -1,8 +1,5 @@
 #include "hw_bridge/control/described_devices.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
 #include "hw_bridge/control/instrument_box.h"
 #include "tests/core/input_error.h"
 #include "tests/hw_control/fake_controller.h"

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "hw_bridge/control/device_line.h"
 #include "tests/hw_control/fake_controller.h"
 #include "tests/support/faults.h"

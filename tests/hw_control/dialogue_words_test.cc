@@ -103,7 +103,6 @@ TEST(BenchFileWithDialogue, SaysWhichKeyIsWrongAndWhatWouldBeRight) {
 }
 
 using test::KindOf;
-using testing::HasSubstr;
 
 /// A computer whose clocks are set by hand.
 struct Computer {
@@ -159,29 +158,26 @@ TEST(HostClock, OfThisComputerPassesAtLeastWhatItWaits) {
   EXPECT_GE(clock.Now() - before, std::chrono::milliseconds(20));
 }
 
-TEST(ConsoleFixture, SaysWhatToMountAndWaitsForEnter) {
+TEST(OperatorDevices, SayWhatToDoAndWaitForEnter) {
   std::istringstream in("\n\n");
   std::ostringstream out;
   ConsoleFixture fixture(Operator(in, out));
   fixture.Mount(2, 30.0 * units::deg, -10.0 * units::deg);
   EXPECT_KEPT(out.str());
   EXPECT_EQ(in.tellg(), 1);  // one Enter, not both
+  std::istringstream enter("\n");
+  std::ostringstream angles;
+  ConsoleGoniometer(Operator(enter, angles)).MoveTo(-300.0 * units::arcsec, 50.0 * units::arcsec);
+  EXPECT_KEPT(angles.str());
 }
 
-TEST(ConsoleFixture, EndsTheRunWhereNobodyIsAndWhereSomebodySaysStop) {
+TEST(OperatorDevices, EndTheRunWhereNobodyIsAndWhereSomebodySaysStop) {
   for (const char* input : {"", "stop\n"}) {
     std::istringstream in(input);
     std::ostringstream out;
     ConsoleFixture fixture(Operator(in, out));
     EXPECT_EQ(KindOf([&] { fixture.Mount(0, 0.0, 0.0); }), FaultKind::kStopped);
   }
-}
-
-TEST(ConsoleGoniometer, SaysTheAngles) {
-  std::istringstream in("\n");
-  std::ostringstream out;
-  ConsoleGoniometer(Operator(in, out)).MoveTo(-300.0 * units::arcsec, 50.0 * units::arcsec);
-  EXPECT_KEPT(out.str());
 }
 
 TEST(AbsentDevices, SayWhatNeedsThem) {

@@ -1,7 +1,5 @@
 #include "hw_bridge/control/esp_machine.h"
 
-#include <gmock/gmock.h>
-
 #include "hw_bridge/control/esp_words.h"
 #include "tests/hw_control/esp_model.h"
 #include "tests/support/faults.h"
@@ -22,8 +20,7 @@ class EspMachineWithoutStatus : public testing::Test {
   }
   /// Switched off and on: it counts from where it stands.
   void Restart() {
-    const std::lock_guard lock(model_.mutex);
-    model_.axis[1] = model_.axis[2] = {.motor_on = false};
+    model_.Become([](EspModel& m) { m.axis[1] = m.axis[2] = {.motor_on = false}; });
   }
 
   EspModel model_{.unit = 2};  // X and Y in mm
@@ -50,8 +47,7 @@ TEST_F(EspMachineWithoutStatus, ARestartIsToldByMotorsThatAreOffUntilItIsHomed) 
 
 TEST_F(EspMachineWithoutStatus, AnAxisWhoseMotorIsOffAtTheStartHasNoOrigin) {
   Restart();
-  EspMachine machine = Machine();
-  EXPECT_EQ(test::KindOf([&] { machine.StartMove({0.01, 0.0}, 0.0); }), FaultKind::kRestarted);
+  EXPECT_EQ(test::KindOf([this] { Machine().StartMove({0.01, 0.0}, 0.0); }), FaultKind::kRestarted);
 }
 
 TEST_F(EspMachineWithoutStatus, LimitsAndAGreatestSpeedThatSomebodyElseSetAreToldBeforeAnythingMoves) {

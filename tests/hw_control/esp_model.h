@@ -31,6 +31,11 @@ struct EspModel {
   int decimals = 4;     // that it understands of a group's places
   std::string group{};  // that somebody else has formed: "1,2"; it cannot be formed again
 
+  template <class Change>
+  void Become(Change change) {
+    const std::lock_guard lock(mutex);
+    change(*this);
+  }
   /// Several questions may stand on one line.
   FakeController::Reply operator()(const std::string& line) {
     const std::lock_guard lock(mutex);

@@ -1,8 +1,5 @@
 #include "hw_bridge/control/linuxcnc_machine.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
 #include "tests/hw_control/fake_controller.h"
 #include "tests/support/faults.h"
 #include "tests/support/kept_text.h"

@@ -1,4 +1,3 @@
-#include <gmock/gmock.h>
 #include <poll.h>
 #include <pty.h>
 

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "hw_bridge/ad/ad_source.h"
 #include "hw_bridge/control/scpi.h"
 #include "hw_bridge/control/served_clock.h"
@@ -88,21 +86,23 @@ Duration Drift(const ScpiClock& clock) {
   return clock.Now() - before;
 }
 
+/// The clock of a served twin in real time.
+struct ClockInRealTime {
+  ServedTwin served{test::RotaryScenario(), 1.0};
+  Dialogue talk{ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,"};
+  ScpiClock clock{{talk, "clock", kAmpleTime}};
+};
+
 TEST(ServedClock, IsHeldAgainWhereItsConnectionHadToBeOpenedAgain) {
-  constexpr double kRealTime = 1.0;
-  ServedTwin served(test::RotaryScenario(), kRealTime);
-  Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,");
-  ScpiClock clock({talk, "clock", kAmpleTime});
-  EXPECT_EQ(Drift(clock), Duration(0));
-  talk.Close();
-  EXPECT_EQ(Drift(clock), Duration(0));
+  ClockInRealTime real;
+  EXPECT_EQ(Drift(real.clock), Duration(0));
+  real.talk.Close();
+  EXPECT_EQ(Drift(real.clock), Duration(0));
 }
 
 TEST(ServedClock, WaitsWhatItIsToldAndTakesNoRealTimeUnpaced) {
-  constexpr double kRealTime = 1.0;
-  ServedTwin served(test::RotaryScenario(), kRealTime);
-  Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,");
-  ScpiClock clock({talk, "clock", kAmpleTime});
+  ClockInRealTime real;
+  ScpiClock& clock = real.clock;
   ScpiSimulation(clock).SetPaced(false);
   const Time before = clock.Now();
   clock.Wait(std::chrono::hours(10));  // far beyond what this test may take

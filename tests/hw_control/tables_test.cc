@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "hw_bridge/control/esp_table.h"
 #include "hw_bridge/control/scpi.h"
 #include "hw_bridge/control/scpi_table.h"
@@ -79,7 +77,6 @@ TEST_F(ScpiTables, TheControllersOwnLimitsHoldWhereTheFileGivesNoneAndItMayNotAl
   EXPECT_EQ(KindOf([&] { narrower.AgreeOnLimits(); }), std::nullopt);
 }
 
-// PyMeasure sends 30.123456 deg as 30.1235; a controller that drops digits does the same.
 TEST_F(ScpiTables, LimitsThatSomebodyElseSetAreToldBeforeAnythingMoves) {
   ScpiTable table = Table(1);
   table.AgreeOnLimits();
@@ -89,20 +86,18 @@ TEST_F(ScpiTables, LimitsThatSomebodyElseSetAreToldBeforeAnythingMoves) {
   EXPECT_NEAR(table.State().encoder_rad, 0.5, 1e-15);
 }
 
-TEST_F(ScpiTables, AControllerThatUnderstoodAnotherAngleIsStoppedAndTheDifferenceTold) {
+// PyMeasure sends 30.123456 deg as 30.1235; a controller that drops digits does the same.
+TEST_F(ScpiTables, AControllerThatUnderstoodAnotherAngleIsStoppedAndTheDifferenceToldUnlessItsDecimalsAreKnown) {
   model_.resolution_deg = 1e-4;
   ScpiTable table = Table(1);
   const auto move = [&] { table.StartMove(30.123456 * units::deg); };
   EXPECT_EQ(KindOf(move), FaultKind::kRefused);
   EXPECT_THAT(TextOf(move), HasSubstr("0.2016 arcsec off"));  // 0.000056 deg
   EXPECT_THAT(controller_.Lines(), Contains("ROT1:STOP"));
-}
-
-TEST_F(ScpiTables, AControllerWhoseDecimalsAreKnownIsToldNoMoreOfThem) {
-  ScpiTable table = Table(1, {}, {4});
-  table.StartMove(30.123456 * units::deg);
+  ScpiTable informed = Table(1, {}, {4});
+  informed.StartMove(30.123456 * units::deg);
   EXPECT_THAT(controller_.Lines(), Contains("ROT1:ANGL 30.1235"));
-  EXPECT_NEAR(table.State().commanded_rad, 30.1235 * units::deg, 1e-15);
+  EXPECT_NEAR(informed.State().commanded_rad, 30.1235 * units::deg, 1e-15);
 }
 
 TEST_F(ScpiTables, ARefusalOfTheControllerIsTold) {
@@ -133,7 +128,7 @@ TEST_F(ScpiTables, AControllerThatRestartsAsTheMoveBeginsIsStopped) {
   EXPECT_THAT(controller_.Lines(), Contains("ROT1:STOP"));
 }
 
-TEST(ScpiState, IsReadWithTheQuotesAndCommasOfItsFaultAndRefusedIfAnythingIsMissingOrStrange) {
+TEST(ScpiAnswers, AreReadWithTheQuotesAndCommasOfAFaultAndRefusedIfAnythingIsMissingOrStrange) {
   const auto state = ParseScpiState("180,90,1,0,1,-1,\"following error, axis 1\"");
   ASSERT_TRUE(state);
   EXPECT_DOUBLE_EQ(state->commanded_rad, units::kPi);
@@ -145,9 +140,6 @@ TEST(ScpiState, IsReadWithTheQuotesAndCommasOfItsFaultAndRefusedIfAnythingIsMiss
        {"", "1", "1,1,0,1,1,0", "1,1,0,1,1,0,\"", "1,1,0,1,1,0,\"\",1", "1,,0,1,1,0,\"\"", "1x,1,0,1,1,0,\"\"",
         "1,1,2,1,1,0,\"\"", "1,1,0,-1,1,0,\"\"", "1,1,0,1,1,2,\"\"", "1,1,0,1,1,0.5,\"\""})
     EXPECT_FALSE(ParseScpiState(text)) << text;
-}
-
-TEST(ScpiNumber, KnowsNotANumber) {
   EXPECT_TRUE(std::isnan(ParseScpiNumber("9.91E37", units::arcsec).value()));
   EXPECT_DOUBLE_EQ(ParseScpiNumber("3600", units::arcsec).value(), units::deg);
   EXPECT_FALSE(ParseScpiNumber("nan", 1.0));
@@ -178,10 +170,7 @@ TEST_F(EspTables, AnAxisIsDrivenInDegrees) {
 TEST_F(EspTables, AMotorThatGoesOffWithoutMsQueryMeansThatTheOriginIsLost) {
   EspTable table = Table(1);
   table.StartMove(0.1);
-  {
-    const std::lock_guard lock(model_.mutex);
-    model_.axis[1] = {.motor_on = false};  // switched off and on
-  }
+  model_.Become([](EspModel& m) { m.axis[1] = {.motor_on = false}; });  // switched off and on
   EXPECT_FALSE(table.State().referenced);
   EXPECT_TRUE(std::isnan(table.EncoderAngle_rad()));
   EXPECT_EQ(KindOf([&] { table.StartMove(0.1); }), FaultKind::kRestarted);
@@ -201,10 +190,7 @@ TEST_F(EspTables, OfMsQueryTheLimitSwitchHasItsSide) {
   model_.knows_status = true;
   EspTable table = Table(1);
   for (const auto& [switches, side] : {std::pair{0, 0}, std::pair{2, -1}, std::pair{4, 1}}) {
-    {
-      const std::lock_guard lock(model_.mutex);
-      model_.switches = switches;
-    }
+    model_.Become([&, at = switches](EspModel& m) { m.switches = at; });
     EXPECT_EQ(table.State().limit, side);
   }
 }
@@ -227,10 +213,7 @@ TEST_F(EspTables, ErrorsOfTheAxisAreTold) {
   table.StartMove(0.0);
   for (const auto& [error, kind] : {std::pair{104, FaultKind::kLimit}, std::pair{207, FaultKind::kLimit},
                                     std::pair{113, FaultKind::kRefused}, std::pair{6, FaultKind::kRefused}}) {
-    {
-      const std::lock_guard lock(model_.mutex);
-      model_.error = error;
-    }
+    model_.Become([to = error](EspModel& m) { m.error = to; });
     EXPECT_EQ(KindOf([&] { table.StartMove(0.0); }), kind) << error;
   }
 }
