@@ -1,7 +1,5 @@
 #include "hw_bridge/ad/ad_converter.h"
 
-#include <gmock/gmock.h>
-
 #include "hw_bridge/ad/negotiation.h"
 #include "tests/fuzz/plain_bench.h"
 #include "tests/hw_ad/blocks.h"
@@ -97,16 +95,6 @@ TEST_F(AdConverterTest, HasNoNumbersWithoutLightButKeepsTheCounts) {
     for (const ChannelBlock& channel : block.channel)
       EXPECT_TRUE(std::isnan(channel.mean_V) && std::isnan(channel.max_V));
   }
-}
-
-TEST_F(AdConverterTest, FaultsACardWhoseClockJumps) {
-  auto converter = Make();
-  script_.block.raw = test::RawBlock(test::FourLevels(kNoise_V), 100, 1);
-  script_.block.stamp.device_ns = 1000;
-  converter->Acquire(100, false);
-  clock_.Wait(std::chrono::seconds(1));
-  script_.block.stamp.device_ns = 2'000'000'000;
-  EXPECT_THROW(converter->Acquire(100, false), DeviceFault);
 }
 
 TEST_F(AdConverterTest, CountsScansByTheCardsClockWithThoseBetweenTheBlocksAndThoseTakenIfItStampsNone) {

@@ -96,14 +96,6 @@ struct ServedCard {
     }
   }
 
-  /// Beside its PSDs: 13 mm on ones that reach 5 mm.
-  void ExpectTheLightIsLostAsTheTwinLosesIt(AdConverter& card) {
-    served.Ask("GON:MOVE 10800,0;*OPC?");
-    sim::Twin twin(scenario);
-    twin.Bench().goniometer.MoveTo(3.0 * units::deg, 0.0);
-    EXPECT_EQ(card.Acquire(100, true).status, twin.Bench().adc.Acquire(100, true).status);
-  }
-
   /// A fault has its name in time, and the blocks behind it are as good as any: of the second, the clocks too.
   void ExpectNamedAndTheNextBlocksWhole(const Struck& struck) {
     const auto card = Open();

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "hw_bridge/numbers/comedi_numbers.h"
 #include "tests/core/input_error.h"
 #include "tests/hw_ad/backend_test.h"
@@ -39,16 +37,6 @@ TEST_F(ComediSourceTest, TellsWhatTheCardIs) {
   EXPECT_DOUBLE_EQ(actual.skew_s[3], 12e-6);
   EXPECT_FALSE(actual.stamps_scans);
   EXPECT_THAT(actual.identity, ::testing::HasSubstr("preloaded-ai16"));
-}
-
-TEST_F(ComediSourceTest, LosesTheLightAsTheTwinDoes) {
-  ServedCard card(ComediSettings);
-  const auto opened = card.Open();
-  card.ExpectTheLightIsLostAsTheTwinLosesIt(*opened);
-  card.served.Ask("GON:MOVE 0,0;*OPC?");
-  EXPECT_EQ(opened->Acquire(100, true).status, ReadingStatus::kOk);
-  card.served.Inject("no_light");
-  EXPECT_EQ(opened->Acquire(100, true).status, ReadingStatus::kNoLight);
 }
 
 class ComediFault : public ComediSourceTest, public ::testing::WithParamInterface<Struck> {};

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include <asio.hpp>
 #include <regex>
 
@@ -21,14 +19,6 @@ TEST(IioSource, GivesTheServedTwinsOwnBlocksAlsoAtAnotherRateRangeAndResolution)
   RotaryOf(scenario).adc.range_V = 5.0;
   RotaryOf(scenario).adc.bits = 12;
   ServedCard(IioSettings, scenario).ExpectTheTwinsOwnBlocks();
-}
-
-TEST(IioSource, SaturatesAndLosesTheLightAsTheTwinDoes) {
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).amplifier.offset_V[1] = 11.0;
-  ServedCard card(IioSettings, scenario);
-  card.ExpectTheTwinsOwnBlocks();
-  card.ExpectTheLightIsLostAsTheTwinLosesIt(*card.Open());
 }
 
 TEST(IioSource, TellsWhatTheCardIs) {
