@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "hw_bridge/ad/block_checks.h"
 #include "hw_bridge/ad/lost_word.h"
 #include "hw_bridge/ad/negotiation.h"
@@ -140,59 +138,43 @@ TEST(FaultMatrix, AWordIsNeverLostUnseenWhereOffsetsKeepTheLevelsApart) {
 
 // --- what ends the run until a hand has helped ---
 
-struct NeedsAHand {
-  const char *name, *injected, *stopped_by;
-  friend void PrintTo(const NeedsAHand& row, std::ostream* out) { *out << row.name; }
-};
-
-class FaultThatNeedsAHand : public ::testing::TestWithParam<NeedsAHand> {};
-
-TEST_P(FaultThatNeedsAHand, StopsTheRunWhichGoesOnAfterwards) {
-  Struck bench;
-  bench.options.alter = [](hw::BenchFile& file) { file.target_limits.stall_s = 3.0; };
-  const ServedRun run = bench.Run({{kAt, GetParam().injected}});
-  EXPECT_EQ(run.stopped_by, GetParam().stopped_by) << run.said;
-  EXPECT_EQ(run.log.readings.size(), static_cast<std::size_t>(kAt));
-  EXPECT_EQ(run.log.attempts.size(), 1u);
-  bench.options = {};
-  bench.ExpectCarriedOutUndisturbed(bench.Run({}, &run));
+TEST(FaultMatrix, WhatNeedsAHandStopsTheRunWhichGoesOnAfterwards) {
+  for (const auto& [injected, stopped_by] :
+       {std::pair{"adc,float", "signal_lost"}, {"target,limit", "limit"}, {"target,stall", "stalled"}}) {
+    SCOPED_TRACE(injected);
+    Struck bench;
+    bench.options.alter = [](hw::BenchFile& file) { file.target_limits.stall_s = 3.0; };
+    const ServedRun run = bench.Run({{kAt, injected}});
+    EXPECT_EQ(run.stopped_by, stopped_by) << run.said;
+    EXPECT_EQ(run.log.readings.size(), static_cast<std::size_t>(kAt));
+    EXPECT_EQ(run.log.attempts.size(), 1u);
+    bench.options = {};
+    bench.ExpectCarriedOutUndisturbed(bench.Run({}, &run));
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(Matrix, FaultThatNeedsAHand,
-                         ::testing::Values(NeedsAHand{"CableOff", "adc,float", "signal_lost"},
-                                           NeedsAHand{"LimitSwitch", "target,limit", "limit"},
-                                           NeedsAHand{"TableThatStandsStill", "target,stall", "stalled"}),
-                         [](const auto& row) { return row.param.name; });
 
 // --- what waits at a resume, and strikes while the bench is brought back to where the run was ---
 
-class FaultPendingAtAResume : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(FaultPendingAtAResume, IsNotTakenForARecordThatDoesNotFit) {
+TEST(FaultMatrix, WhatIsPendingAtAResumeIsNotTakenForARecordThatDoesNotFit) {
   Struck bench;
   const ServedRun run = bench.Run({{kAt, "target,limit"}});  // ends the run
   ASSERT_EQ(run.stopped_by, "limit") << run.said;
-  const ServedRun resumed = bench.Run({{0, GetParam()}}, &run);  // of this program: before anything is asked
-  if (std::string(GetParam()) == "adc,float") {
-    EXPECT_EQ(resumed.stopped_by, "signal_lost");
-    EXPECT_THAT(resumed.said, HasSubstr("check the cable"));
-    return;
+  for (const std::string fault :
+       {"adc,drop", "adc,short", "adc,error", "adc,gap", "adc,saturate", "adc,float", "adc,stuck", "adc,hum", "adc,slip",
+        "adc,no_light", "adc,saturate,2", "clock,step", "target,mute", "target,restart", "reference,restart",
+        "target,disconnect", "target,lost_step", "reference,not_in_position", "target,limit", "reference,stall"}) {
+    SCOPED_TRACE(fault);
+    const ServedRun resumed = bench.Run({{0, fault}}, &run);  // of this program: before anything is asked
+    if (fault == "adc,float") {
+      EXPECT_EQ(resumed.stopped_by, "signal_lost");
+      EXPECT_THAT(resumed.said, HasSubstr("check the cable"));
+      continue;
+    }
+    bench.ExpectCarriedOutUndisturbed(resumed);
+    ASSERT_GT(resumed.log.attempts.size(), run.log.attempts.size()) << "and what it cost is written down";
+    EXPECT_EQ(resumed.log.attempts.back().reading, kAt);
   }
-  bench.ExpectCarriedOutUndisturbed(resumed);
-  ASSERT_GT(resumed.log.attempts.size(), run.log.attempts.size()) << "and what it cost is written down";
-  EXPECT_EQ(resumed.log.attempts.back().reading, kAt);
-}
-
-INSTANTIATE_TEST_SUITE_P(Matrix, FaultPendingAtAResume,
-                         ::testing::Values("adc,drop", "adc,short", "adc,error", "adc,gap", "adc,saturate", "adc,float",
-                                           "adc,stuck", "adc,hum", "adc,slip", "adc,no_light", "adc,saturate,2",
-                                           "clock,step", "target,mute", "target,restart", "reference,restart", "target,disconnect", "target,lost_step",
-                                           "reference,not_in_position", "target,limit", "reference,stall"));
-
-TEST(FaultMatrix, AFaultThatStrikesAtEveryAttemptOfAResumeSaysWhatToDo) {
-  Struck bench;
-  const ServedRun run = bench.Run({{kAt, "target,limit"}});
-  const std::string said = MessageOf([&] { bench.Run({{0, "adc,no_light,3"}}, &run); });
+  const std::string said = MessageOf([&] { bench.Run({{0, "adc,no_light,3"}}, &run); });  // at every attempt
   EXPECT_THAT(said, HasSubstr("as before, in 3 attempts"));
   EXPECT_THAT(said, HasSubstr("look at the bench and go on with --resume"));
 }
