@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "twin/report/plan_text.h"
 #include "twin/report/sound.h"
 #include "twin/report/spoken_keys.h"

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/core/input_error.h"
 #include "tests/report/page_lines.h"
 #include "tests/support/kept_text.h"
@@ -53,7 +51,7 @@ TEST(PlotOf, PutsEveryPointWhereItBelongs) {
   EXPECT_EQ(At(lines, kRows / 2, 5), '.');
 }
 
-TEST(PlotOf, LabelsBothAxesWithTheirEnds) {
+TEST(PlotOf, LabelsBothAxesWithTheirEndsAndZeroWithoutASign) {
   const auto lines = test::LinesOf(PlotOf(Steps(), Letters::kAscii));
   EXPECT_THAT(lines.at(kFirstRow), HasSubstr("1.00|"));
   EXPECT_THAT(lines.at(kFirstRow + kRows - 1), HasSubstr("-1.00|"));
@@ -62,12 +60,9 @@ TEST(PlotOf, LabelsBothAxesWithTheirEnds) {
   EXPECT_EQ(axis.substr(axis.size() - 4), " 360");
   EXPECT_THAT(lines.at(kFirstRow + kRows + 2), HasSubstr("angle [deg]"));
   EXPECT_THAT(lines.back(), HasSubstr("> forward   < backward   x both"));
-}
-
-TEST(PlotOf, DoesNotLabelZeroWithASign) {
-  CurveText curve = Steps();
-  for (double& value : curve.forward) value *= 0.999;  // the middle is -0.0005
-  EXPECT_THAT(test::LinesOf(PlotOf(curve, Letters::kAscii)).at(kFirstRow + kRows / 2), HasSubstr(" 0.00|"));
+  CurveText near_zero = Steps();
+  for (double& value : near_zero.forward) value *= 0.999;  // the middle is -0.0005
+  EXPECT_THAT(test::LinesOf(PlotOf(near_zero, Letters::kAscii)).at(kFirstRow + kRows / 2), HasSubstr(" 0.00|"));
 }
 
 TEST(PlotOf, InUnicodeDrawsForwardAsALineAndBackwardAsRings) {
@@ -101,20 +96,13 @@ TEST(PlotOf, OfALevelLineIsInTheMiddle) {
 TEST(PlotOf, OfFewerThanTwoPlacesIsNothing) {
   CurveText curve;
   EXPECT_EQ(PlotOf(curve, Letters::kAscii), "");
-  curve.x = {1.0, 2.0};
   curve.forward = {1.0, std::numeric_limits<double>::quiet_NaN()};
   EXPECT_EQ(PlotOf(curve, Letters::kAscii), "");
 }
 
-TEST(TextTable, AlignsColumnsAndCellsOfSeveralLines) {
+TEST(TextTable, AlignsColumnsAndBreaksTheWidestAtWordsKeepingAWholeOneAsLongAsOthersCanGiveWay) {
   EXPECT_KEPT(TextTable({{"cause"}, {"share", true}}, {{"play\n  lost motion", "97 %"}, {"drift", "3 %"}}, 80));
-}
-
-TEST(TextTable, BreaksTheWidestColumnAtWordsAndKeepsItsIndent) {
   EXPECT_KEPT(TextTable({{"a"}, {"b"}}, {{"name\n  one two three four five six", "1"}}, 20));
-}
-
-TEST(TextTable, KeepsAWholeColumnAsLongAsOthersCanGiveWay) {
   const std::string title = "some thirty letters of a title of";
   EXPECT_KEPT(TextTable({{"a"}, {"b", false, true}}, {{title, "1.0000000 ± 0.0000001 µm"}}, 56));
 }
@@ -149,12 +137,10 @@ TEST(ControllerTable, GivesLinuxCncTheActualPositions) {
             "360.000000000 359.999000000 359.999000000\n");
 }
 
-TEST(ControllerTable, GivesTwinCatAdditiveValuesOverAModuloTurn) {
+TEST(ControllerTable, GivesTwinCatAModuloTurnHeidenhainItsColumnsAndNamesTheFormsThereAre) {
   EXPECT_KEPT(ControllerTable("twincat", Quarters(), "C", {"of a turntable"}));
-}
-
-TEST(ControllerTable, GivesHeidenhainItsColumns) {
   EXPECT_KEPT(ControllerTable("heidenhain", Quarters(), "B", {}));
+  EXPECT_KEPT(MessageOf([] { ControllerFormNamed("fanuc"); }));
 }
 
 TEST(ControllerTable, StartsAtZeroWhereTheTableDoesNot) {
@@ -171,10 +157,6 @@ TEST(ControllerTable, RefusesMoreEntriesThanTheControllerTakes) {
   for (const char* form : {"linuxcnc", "heidenhain"})
     EXPECT_KEPT(MessageOf([&] { ControllerTable(form, table, "C", {}); }));
   EXPECT_NO_THROW(ControllerTable("twincat", table, "C", {}));
-}
-
-TEST(ControllerTable, NamesTheFormsThereAre) {
-  EXPECT_KEPT(MessageOf([] { ControllerFormNamed("fanuc"); }));
 }
 
 TEST(OrderRanges, JoinsNeighbours) {
