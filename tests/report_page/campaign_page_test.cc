@@ -1,7 +1,5 @@
 #include "twin/campaign/campaign_page.h"
 
-#include <gmock/gmock.h>
-
 #include <numeric>
 
 #include "tests/core/input_error.h"
@@ -31,18 +29,17 @@ Table TableIn(const std::string& path) {
   return table;
 }
 
-TEST(CoverageTile, SaysWhetherUncertaintiesHold) {
-  twinbench::TemporaryFolder folder;
-  const report::PageTile tile = CoverageTile(SummaryOf(TableIn(folder.File("t.sqlite"))));
-  EXPECT_EQ(tile.value, "66.7 %");  // |trial - 2.5| of 0.5 and 1.5 are within 1.96
-  EXPECT_EQ(tile.tone, report::VerdictTone::kBad);
-}
-
-TEST(CampaignSections, PlotsHoldEveryTrial) {
+TEST(CampaignPage, SaysWhetherUncertaintiesHoldAndPlotsEveryTrial) {
   twinbench::TemporaryFolder folder;
   const Table trials = TableIn(folder.File("t.sqlite"));
+  const report::PageTile tile = CoverageTile(SummaryOf(trials));
+  EXPECT_EQ(tile.value, "66.7 %");  // |trial - 2.5| of 0.5 and 1.5 are within 1.96
+  EXPECT_EQ(tile.tone, report::VerdictTone::kBad);
   const std::vector<report::PageSection> sections = CampaignSections(trials, SummaryOf(trials));
   ASSERT_EQ(sections.size(), 2u);
+  const auto& table = std::get<report::PageTable>(sections[0].blocks.at(0));
+  // Mean of 10 to 15; four of six errors are within 1.96 u.
+  EXPECT_THAT(table.rows.at(0), ElementsAre("mean", "arcsec", "6", "12.5", "1.871", "2", "0", "66.7 %"));
   const auto& histograms = std::get<report::PageChoice>(sections[1].blocks.at(0));
   ASSERT_THAT(histograms.answers, ElementsAre(ElementsAre("mean_arcsec", "error / u"), ElementsAre("mean_arcsec", "value")));
   const std::vector<double>& counts = histograms.figures[1].series[0].y;
@@ -51,15 +48,6 @@ TEST(CampaignSections, PlotsHoldEveryTrial) {
   const auto& scatters = std::get<report::PageChoice>(sections[1].blocks.at(1));
   EXPECT_THAT(scatters.figures.at(0).series.at(0).x, ElementsAre(0.001, 0.001, 0.001, 0.002, 0.002, 0.002));
   EXPECT_THAT(scatters.figures[0].series[0].y, ElementsAre(10, 11, 12, 13, 14, 15));
-}
-
-TEST(CampaignSections, TheSummaryIsThatOfTheCampaign) {
-  twinbench::TemporaryFolder folder;
-  const Table trials = TableIn(folder.File("t.sqlite"));
-  const std::vector<report::PageSection> sections = CampaignSections(trials, SummaryOf(trials));
-  const auto& table = std::get<report::PageTable>(sections[0].blocks.at(0));
-  // Mean of 10 to 15; four of six errors are within 1.96 u.
-  EXPECT_THAT(table.rows.at(0), ElementsAre("mean", "arcsec", "6", "12.5", "1.871", "2", "0", "66.7 %"));
 }
 
 TEST(ResultSummary, AMeanOfNumbersThatCancelIsNone) {

@@ -1,7 +1,5 @@
 #include "twin/report/page/curves.h"
 
-#include <gmock/gmock.h>
-
 #include <random>
 
 #include "twin/report/page/circles.h"
@@ -138,16 +136,13 @@ TEST(TilesOf, SayTheLargestCircularDeviationOfBothDirections) {
   EXPECT_EQ(tiles[0].note, "ISO 230-4, mounting 1 (bar), 1000 mm/min");
 }
 
-TEST(CurveFigures, BeginWithTheTurnOfWhatIsUnderTest) {
+TEST(CurveFigures, BeginWithTheTurnOfWhatIsUnderTestWithoutCurvesOfAnotherLength) {
   const json table = {{"position_deg", {0.0, 120.0, 240.0}}, {"dx_um", {1.0, 2.0, 3.0}}, {"ez_arcsec", {3.0, 2.0, 1.0}}};
   const std::vector<Figure> figures = CurveFigures({{"separation", {{"reference", table}, {"target", table}}}}, {});
   ASSERT_EQ(figures.size(), 4U);
   EXPECT_THAT(figures[0].title, "Table under test: index error EZ");
   EXPECT_THAT(figures[1].title, "Table under test: radial error DX");
   EXPECT_THAT(figures[2].title, "Reference table: index error EZ");
-}
-
-TEST(CurveFigures, KeepCurvesOfOtherLengthsApartFromTheirAngles) {
   const json odd = {{"a", {{"position_deg", {0, 1, 2}}, {"ez_arcsec", {1.0, 2.0}}}}};
   EXPECT_TRUE(CurveFigures(odd, {}).empty());
 }

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/report_page/blocks.h"
 #include "twin/report/page/causes.h"
 #include "twin/report/page/diagnosis_page.h"
@@ -74,13 +72,10 @@ TEST(DiagnosisSections, RankCausesByWhatTheyExplain) {
   EXPECT_EQ(GroupsOf({{"causes", causes}})[0].name, "tone") << "where no share is stated, by probability";
 }
 
-TEST(DiagnosisSections, NameTheDoublesOfACause) {
-  EXPECT_THAT(BlockIn<PageTable>(DiagnosisSections(kDiagnosis), "Indistinguishable in this run (aliased)").rows,
-              ElementsAre(ElementsAre("eccentricity", "tilt at x", "0.99")));
-}
-
-TEST(DiagnosisSections, SayWhatIsSeenFromWhichSizeOnAndWhatIsNot) {
+TEST(DiagnosisSections, NameTheDoublesOfACauseAndFromWhichSizeOnOneIsSeen) {
   const std::vector<PageSection> sections = DiagnosisSections(kDiagnosis);
+  EXPECT_THAT(BlockIn<PageTable>(sections, "Indistinguishable in this run (aliased)").rows,
+              ElementsAre(ElementsAre("eccentricity", "tilt at x", "0.99")));
   EXPECT_THAT(BlockIn<PageTable>(sections, "Smallest detectable sizes").rows,
               Contains(ElementsAre("tilt at x", "tilt", "0.25", "mrad")));
   EXPECT_THAT(BlockIn<PageTable>(sections, "Not observable in this run").rows,

@@ -1,6 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "tests/report_page/blocks.h"

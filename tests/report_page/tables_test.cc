@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <nlohmann/json.hpp>
-
 #include "twin/report/page/named_numbers.h"
 #include "twin/report/page/page_json.h"
 #include "twin/report/page/tables.h"
@@ -34,16 +30,13 @@ TEST(ValueTable, ShowsTruthBesideAValueThatWasScored) {
               Contains(ElementsAre("calibration roll psd a", "0.06", "mrad", "0.20", "1.972", "0.39", "0.11")));
 }
 
-TEST(BudgetFigure, StacksTheSharesOfEverySource) {
+TEST(BudgetFigure, StacksTheSharesOfEverySourceBesideWhatIsNotSeparable) {
   const Figure figure = BudgetFigure(kEvaluated);
   EXPECT_THAT(figure.categories, ElementsAre("calibration roll mrad psd a", "ez"));
   ASSERT_EQ(figure.series.size(), 2u);
   EXPECT_EQ(figure.series[0].name, "drift");
   EXPECT_THAT(figure.series[0].y, ElementsAre(0.25, 0.0));
   EXPECT_THAT(figure.series[1].y, ElementsAre(0.75, 1.0));
-}
-
-TEST(NotSeparableTable, SaysWhatAndWhy) {
   EXPECT_THAT(NotSeparableTable(kEvaluated).rows, ElementsAre(ElementsAre("target dx", "nobody reads it")));
 }
 
@@ -89,14 +82,11 @@ TEST(ObjectTables, LieOnTheirSideWhereFewRowsHaveMoreColumnsThanAPageHolds) {
   EXPECT_THAT(table.rows.back(), ElementsAre("j", "9"));
 }
 
-TEST(NumberText, HasTwoDigitsOfItsUncertainty) {
+TEST(NumberText, HasTwoDigitsOfItsUncertaintyAndTheLongestUnitAtTheEndOfItsName) {
   EXPECT_EQ(NumberText(1234.5678, 0.0123), "1234.568");
   EXPECT_EQ(NumberText(1234.5678, 250.0), "1230");
   EXPECT_EQ(NumberText(0.5, 0.0), "0.5");
   EXPECT_EQ(MeasuredText(-1.26e11, 6e10, "per_m4"), "(−1.26 ± 0.60)e11 m⁻⁴");
-}
-
-TEST(NameAndUnit, TakesTheLongestUnitAtTheEnd) {
   EXPECT_EQ(NameAndUnit("expansion_um_m_K").unit, "µm/m/K");
   EXPECT_EQ(NameAndUnit("ez_arcsec").name, "ez");
   EXPECT_EQ(NameAndUnit("dwell_s").unit, "s");
@@ -113,16 +103,12 @@ Page EvilPage() {
   return {kEvil, kEvil, kEvil, VerdictTone::kPlain, {{kEvil, kEvil, {PageText{kEvil, kEvil}, PageTable{kEvil, {kEvil}, {{kEvil}}}}}}};
 }
 
-TEST(PageHtml, TextOfAScenarioCanNeitherEndAnElementNorBeginOne) {
+TEST(PageHtml, TextOfAScenarioEndsNoElementBeginsNoneAndComesBackAsItWas) {
   const std::string html = PageHtml(EvilPage(), kMarkup);
   // Of all that is written only the markup's own four tags have an angle bracket.
   EXPECT_EQ(std::count(html.begin(), html.end(), '<'), 4);
   EXPECT_EQ(std::count(html.begin(), html.end(), '>'), 4);
   EXPECT_THAT(html, Not(HasSubstr("alert(1)</script>")));
-}
-
-TEST(PageHtml, TextComesBackAsItWasWritten) {
-  const std::string html = PageHtml(EvilPage(), kMarkup);
   const std::size_t begin = html.find("json\">") + 6;
   const json data = json::parse(html.substr(begin, html.find("</script>") - begin));
   EXPECT_EQ(data["title"], kEvil);
