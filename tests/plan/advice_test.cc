@@ -1,6 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <algorithm>
 #include <stdexcept>
 
 #include "tests/uncertainty/bench_budget.h"
@@ -25,14 +22,11 @@ TEST(GainsOf, AddsInverseVariancesPlaceByPlace) {
   EXPECT_NEAR(MeanGain_bit(gains), 0.5, 1e-12);
 }
 
-TEST(GainsOf, AddsThePrecisionOfAWholeProgramme) {
+TEST(GainsOf, AddsThePrecisionOfAWholeProgrammeOnlyOfWhatIsWanted) {
   const std::vector<Gain> gains = GainsOf(kBefore, {&kMore, &kBefore, &kMore}, "");
   ASSERT_EQ(gains.size(), 2u);
   EXPECT_NEAR(gains[0].ratio, std::sqrt(0.5), 1e-12) << "dy is determined by one of the three";
   EXPECT_NEAR(gains[1].ratio, 0.5, 1e-12) << "four runs";
-}
-
-TEST(GainsOf, OnlyOfWhatIsWanted) {
   EXPECT_EQ(GainsOf(kBefore, kBefore, "target.dy").size(), 1u);
   EXPECT_EQ(GainsOf(kBefore, kBefore, "dy_um").size(), 1u);
   EXPECT_TRUE(GainsOf(kBefore, kBefore, "get.dy").empty());
@@ -48,7 +42,7 @@ TEST(Rank, PutsWhatBuysMostPerMinuteFirst) {
   EXPECT_EQ(advice.front().minutes, 10.0);
 }
 
-TEST(BiasesOf, AreChangesByTheirOwnUncertaintyTheMostFirst) {
+TEST(BiasesOf, AreChangesByTheirOwnUncertaintyTheMostFirstAndAPhaseComesRound) {
   const auto without = nlohmann::json::parse(
       R"({"ez_arcsec": [1.0, 2.0], "u_ez_arcsec": [0.5, 0.5], "dy_um": [0.0, 0.0], "u_dy_um": [0.1, 0.1]})");
   const auto with = nlohmann::json::parse(
@@ -59,12 +53,9 @@ TEST(BiasesOf, AreChangesByTheirOwnUncertaintyTheMostFirst) {
   EXPECT_NEAR(biases[0].rms, std::sqrt(12.5), 1e-12);
   EXPECT_NEAR(biases[0].per_u, std::sqrt(12.5) / 0.5, 1e-12);
   EXPECT_NEAR(biases[1].per_u, 1.0, 1e-12);
-}
-
-TEST(BiasesOf, APhaseComesRound) {
-  const auto without = nlohmann::json::parse(R"({"phase_deg": 179.0, "u_phase_deg": 1.0})");
-  const auto with = nlohmann::json::parse(R"({"phase_deg": -179.0, "u_phase_deg": 1.0})");
-  EXPECT_NEAR(BiasesOf(without, with).front().rms, 2.0, 1e-12);
+  const auto before = nlohmann::json::parse(R"({"phase_deg": 179.0, "u_phase_deg": 1.0})");
+  const auto after = nlohmann::json::parse(R"({"phase_deg": -179.0, "u_phase_deg": 1.0})");
+  EXPECT_NEAR(BiasesOf(before, after).front().rms, 2.0, 1e-12);
 }
 
 using testing::ElementsAre;

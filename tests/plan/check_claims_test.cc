@@ -1,10 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <set>
-
 #include "tests/perf/timing.h"
 #include "tests/support/night.h"
 #include "tools/twinbench/passing_run.h"

@@ -1,8 +1,5 @@
 #include "tests/plan/plan_claims.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/planned_run.h"
 #include "twin/benches/names.h"

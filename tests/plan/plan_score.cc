@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 
 #include "tests/plan/plan_claims.h"
 #include "twin/diagnose/tuning.h"

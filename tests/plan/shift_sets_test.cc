@@ -1,6 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <Eigen/Dense>
 #include <numbers>
 
