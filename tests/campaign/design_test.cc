@@ -1,8 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <set>
-
 #include "tests/campaign/small_study.h"
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"

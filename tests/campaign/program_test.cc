@@ -1,7 +1,5 @@
 #include "tests/tools/program.h"
 
-#include <gmock/gmock.h>
-
 #include "tests/campaign/small_study.h"
 #include "twin/core/sqlite_database.h"
 
