@@ -1,7 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "twin/benches/circular_motion/estimators/iso230_4.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"

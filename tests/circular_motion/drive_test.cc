@@ -1,8 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/twin/live.h"
 #include "twin/benches/evaluated.h"

@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <cmath>
-
 #include "tests/circular_motion/oracle.h"
 #include "twin/benches/circular_motion/analysis.h"
 #include "twin/benches/circular_motion/twin/live.h"
@@ -41,12 +37,6 @@ TEST(PublishedCircle, FindsTheCentreAndLeavesItsTangentialPart) {
   }
   EXPECT_NEAR(largest_um, 23.32056635769292, 1e-4);
   EXPECT_NEAR(radial_um, 0.003480009885231894, 1e-6);
-}
-
-TEST(RigorousCircle, LeavesNothingOfAnOffset) {
-  const CircleMounting mounting{{20.0 * um, -12.0 * um}};
-  for (const CirclePoint& p : OffCentre({20.0 * um, -12.0 * um}))
-    EXPECT_LT(Deviation_m(p, {}, mounting, {1.0, 1.0, 1.0, 0.0}).norm(), 1e-15);
 }
 
 /// The run of an independent implementation and what it was made with.

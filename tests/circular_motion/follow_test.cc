@@ -1,8 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <sstream>
-
 #include "tests/circular_motion/oracle.h"
 #include "twin/benches/circular_motion/twin/factory.h"
 #include "twin/core/csv.h"

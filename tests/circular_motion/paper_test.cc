@@ -1,8 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "tests/circular_motion/circle_run.h"
 #include "tests/circular_motion/oracle.h"
 #include "tests/support/night.h"
@@ -54,25 +49,6 @@ TEST(PaperOfTheBar, RepeatsWithinAMicrometreAt156Millimetres) {
   // Another implementation of the same noise has 0.64 um in 95 of 100 sets; of 200 sets that quantile scatters
   // 0.03.
   EXPECT_NEAR(largest_m[kSets * 95 / 100] / um, 0.64, 0.08);
-}
-
-TEST(PaperOfTheBar, AgreesWithTheGridWhereEveryUnknownIsFittedAndNotAsPublished) {
-  const auto seeds = static_cast<std::uint64_t>(test::ByNight(10, 4));
-  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const Scenario scenario =
-        Instrument(seed, {"circular_procedure.points=36", "encoder.eccentricity_arcsec=5.0", "bar.ball3_um=0.1"});
-    const std::vector<Reading> readings = test::CircleReadings(scenario);
-    const BarAgainstGrid fitted = CompareWithGrid(Analyse(scenario, readings, Estimator::kRigorous).paths);
-    EXPECT_LT(fitted.radial_max_m, 2.0 * um) << seed;
-    EXPECT_LT(fitted.tangential_max_m, 2.0 * um) << seed;
-    const CircleAnalysis published = Analyse(scenario, readings, Estimator::kPublished);
-    double tangential_m = 0.0;  // of a machine without errors
-    for (const CirclePath& path : published.paths) {
-      for (const PathPoint& point : path.points)
-        tangential_m = std::max(tangential_m, path.is_bar ? std::abs(point.Tangential_m()) : 0.0);
-    }
-    EXPECT_GT(tangential_m, 10.0 * um) << "zero of the encoder and centre stay in it, seed " << seed;
-  }
 }
 
 /// e' cov^-1 e of all fitted errors of machine, bar and encoder, and how many they are.
