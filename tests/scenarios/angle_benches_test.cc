@@ -1,8 +1,6 @@
 #include "tests/support/angle_benches.h"
 #include "tests/support/night.h"
 
-#include <gtest/gtest.h>
-
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/turntable_autocollimator/bench.h"
 
@@ -12,7 +10,7 @@ namespace {
 
 using separate::hob::HobAnalysis, separate::hob::OrderStatus, separate::turntable::TurntableAnalysis, units::arcsec;
 
-test::BenchRun Turntable(const std::string& file, const std::vector<std::string>& overrides = {}) {
+test::BenchRun Shipped(const std::string& file, const std::vector<std::string>& overrides = {}) {
   return test::RunBench(LoadScenario(test::ScenarioPath(file), overrides));
 }
 
@@ -50,7 +48,7 @@ double MeanChi2(const separate::turntable::AngleSeries& series, const nlohmann::
 }
 
 TEST(TurntableAutocollimator, IsCompensatedToTwoArcsecAtTheCheckPositionsAndFindsTheRollOfTheCrosshair) {
-  const TurntableAnalysis a = Analysed(Turntable("turntable_autocollimator.toml"));
+  const TurntableAnalysis a = Analysed(Shipped("turntable_autocollimator.toml"));
   EXPECT_NEAR(a.before.peak_to_valley_rad / arcsec, 17.82, 0.9) << "the paper's turntable; noise of both ends 0.25";
   ASSERT_TRUE(a.check);
   EXPECT_EQ(a.check->after.count, 144);
@@ -81,7 +79,7 @@ TEST(TurntableAutocollimator, ErrsFarLessThanEquation5AtItsPolesAndIsCompensated
   const int seeds = test::ByNight(200, 25);
   double pointwise = 0.0, global = 0.0, largest_after = 0.0;
   for (int seed = 1; seed <= seeds; ++seed) {
-    const test::BenchRun run = Turntable("turntable_autocollimator.toml", {"seed=" + std::to_string(seed)});
+    const test::BenchRun run = Shipped("turntable_autocollimator.toml", {"seed=" + std::to_string(seed)});
     const TurntableAnalysis a = Analysed(run);
     const auto& table = run.truth.at("turntable");
     pointwise += WorstPointwise_arcsec(a, table) / seeds;
@@ -95,13 +93,13 @@ TEST(TurntableAutocollimator, ErrsFarLessThanEquation5AtItsPolesAndIsCompensated
 /// One shift of the teeth counts them as the turntable's, whatever their certificate says.
 TEST(TurntableAutocollimator, KnowsItsTeethNoBetterThanItsScenarioSaysTheyErr) {
   for (const char* errs : {"multitooth.tooth_rms_arcsec=2", "multitooth.random.ez_arcsec=2"}) {
-    const test::BenchRun run = Turntable("turntable_autocollimator.toml", {errs});
+    const test::BenchRun run = Shipped("turntable_autocollimator.toml", {errs});
     EXPECT_LT(MeanChi2(Analysed(run).separation->turntable, run.truth.at("turntable")), 3.0) << errs;
   }
 }
 
 TEST(TurntableShifts, SeparateTurntableAndTeethWithinTheirUncertainties) {
-  const test::BenchRun run = Turntable("turntable_shifts.toml");
+  const test::BenchRun run = Shipped("turntable_shifts.toml");
   const TurntableAnalysis a = Analysed(run);
   EXPECT_EQ(a.separation->status, separate::turntable::IndexingStatus::kSeparated);
   // 36 values: mean 1, deviation sqrt(2 / 36) = 0.24; four of these.
@@ -121,17 +119,13 @@ TEST(TurntableShifts, AreScoredByWhatTheyTellApart) {
 
 // --- hobbing machine ---
 
-test::BenchRun Machine(const std::string& file, const std::vector<std::string>& overrides = {}) {
-  return test::RunBench(LoadScenario(test::ScenarioPath(file), overrides));
-}
-
 HobAnalysis Analysed(const test::BenchRun& run, Estimator estimator) {
   return separate::hob::AnalyseHob(run.readings, run.scenario, estimator);
 }
 
 /// As the scenario says, carried out once.
 const test::BenchRun& AsItSays() {
-  static const test::BenchRun run = Machine("hob_transmission.toml");
+  static const test::BenchRun run = Shipped("hob_transmission.toml");
   return run;
 }
 
@@ -154,7 +148,7 @@ TEST(HobTransmission, ShowsThirteenAndTenArcsecFindsTheEncoderAndAgreesAtRestWit
 
 TEST(HobTransmission, FindsTheEncoderOverTenSeedsAndAgreesAtRestToTheNoiseWithAPerfectCalibrator) {
   for (int seed = 1; seed <= 10; ++seed) {
-    const HobAnalysis a = Analysed(Machine("hob_transmission.toml", {"seed=" + std::to_string(seed), "mechanics.fidelity=kinematic",
+    const HobAnalysis a = Analysed(Shipped("hob_transmission.toml", {"seed=" + std::to_string(seed), "mechanics.fidelity=kinematic",
                                                                      "interferometer.calibrator=[]", "interferometer.u_calibrator_arcsec=0"}),
                                    Estimator::kPublished);
     const auto& first = a.encoder_against_interferometer.front();
@@ -169,7 +163,7 @@ TEST(HobTransmission, FindsTheEncoderOverTenSeedsAndAgreesAtRestToTheNoiseWithAP
 TEST(HobTransmission, KnowsItsEncoderAtRestNoBetterThanInItsSteps) {
   for (const char* steps : {"table_encoder.interpolation=1", "table_encoder.interpolation=7",
                             "table_encoder.interpolation=50", "hob_encoder.lines=100"}) {
-    const test::BenchRun run = Machine("hob_transmission.toml", {steps, "mechanics.fidelity=kinematic"});
+    const test::BenchRun run = Shipped("hob_transmission.toml", {steps, "mechanics.fidelity=kinematic"});
     const auto scored = benches::hob::ScoreRun(run.scenario, run.readings, run.truth, Estimator::kRigorous).json;
     const double chi2 = scored.at("interferometer at rest").at("amplitude").at("mean_chi2").get<double>();
     EXPECT_LT(chi2, 4.0) << steps;
@@ -179,7 +173,7 @@ TEST(HobTransmission, KnowsItsEncoderAtRestNoBetterThanInItsSteps) {
 
 TEST(HobTransmission, AgreesInMotionWithAnInterferometerThatErrsItself) {
   const HobAnalysis a =
-      Analysed(Machine("hob_transmission.toml", {"interferometer.stops=0"}), Estimator::kPublished);
+      Analysed(Shipped("hob_transmission.toml", {"interferometer.stops=0"}), Estimator::kPublished);
   const auto& one_place = a.encoder_against_one_place.front();
   ASSERT_EQ(one_place.order, 1);
   // 0.3 arcsec of its calibrator, in full with one place of the head; over two nearly opposite ones a tenth of it.
@@ -202,7 +196,7 @@ TEST(HobTransmission, HasALineAtOrder22AndTheSameHigherOrdersInBothPositions) {
 }
 
 TEST(HobThreeHeads, TellAllOrdersOfTheEncoderFromThoseOfTheMachine) {
-  const test::BenchRun run = Machine("hob_three_heads.toml");
+  const test::BenchRun run = Shipped("hob_three_heads.toml");
   const HobAnalysis a = Analysed(run, Estimator::kRigorous);
   for (const int order : {1, 2, 6}) {
     EXPECT_EQ(a.separation->At(order).status, OrderStatus::kSeparated) << order;

@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/support/angle_benches.h"
 #include "twin/benches/circular_motion/analysis.h"
 #include "twin/report/evaluation.h"
@@ -202,13 +200,6 @@ const EvaluatedFreeform& Freeform(const std::string& file) {
 
 double OfScore(const EvaluatedFreeform& e, const char* key) {
   return e.score.at("volumetric_um").at(key).get<double>();
-}
-
-TEST(FreeformFiveAxis, NamesThe37DirectionsThatAreNotInTheReadings) {
-  const EvaluatedFreeform& e = Freeform("freeform_five_axis.toml");
-  EXPECT_EQ(e.separation.at("rank"), 114);
-  EXPECT_EQ(e.separation.at("unknowns"), 151);
-  EXPECT_EQ(e.separation.at("not_separable").size(), 37u);
 }
 
 TEST(FreeformFiveAxis, PredictsTheTipWhereTheProbeHasNotBeen) {

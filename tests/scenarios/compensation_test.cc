@@ -1,7 +1,5 @@
 #include "twin/separate/compensation.h"
 
-#include <gmock/gmock.h>
-
 #include "tests/separate/index_spectrum.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/night.h"

@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
 #include "tests/support/angle_benches.h"
 #include "tests/support/night.h"
 #include "twin/benches/turntable_autocollimator/bench.h"

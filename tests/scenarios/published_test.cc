@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "tests/support/twin_run.h"
 #include "twin/benches/rotary_4dof/tables.h"
 

@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/core/input_error.h"
 #include "tests/support/angle_benches.h"
 #include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
