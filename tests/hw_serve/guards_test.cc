@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "hw_bridge/serve/esp_commands.h"
 #include "hw_bridge/serve/esp_machine_conversation.h"
 #include "hw_bridge/serve/scpi_commands.h"

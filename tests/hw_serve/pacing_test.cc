@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/hw_serve/serving.h"
 #include "tests/hw_serve/virtual_bench.h"
 
@@ -64,19 +62,6 @@ TEST(Pacing, AHoldEndsWithItsConnection) {
   }
   bench.Pass(milliseconds(50));
   EXPECT_EQ(other.AskNumber("CLOC:NOW?"), 50'000'000);
-}
-
-TEST(Pacing, AHeldEspTableGetsOnByPolling) {
-  ServedTwin served(OnFreePorts(kAtOnce));
-  TcpClient scpi(served.at().scpi_port), esp(served.at().esp_port);
-  scpi.Ask("CLOC:HOLD ON;*OPC?");
-  esp.Send("1PA30\n");
-  EXPECT_EQ(esp.Ask("1TP"), "0");  // looking alone takes no time
-  EXPECT_EQ(esp.Ask("1MD?"), "0");
-  EXPECT_EQ(scpi.AskNumber("CLOC:NOW?"), 50'000'000);
-  while (esp.Ask("1MD?") == "0") {
-  }
-  EXPECT_EQ(scpi.AskNumber("CLOC:NOW?"), 1'400'000'000);  // to the instant: 1 s and the window of 0.4 s
 }
 
 TEST(Pacing, ScansOfARunningConverterFollowOneAnother) {
