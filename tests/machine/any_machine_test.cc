@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/machine/benches.h"
 #include "tests/support/machine_run.h"
 #include "twin/procedure/machine_watch.h"

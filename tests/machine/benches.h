@@ -51,10 +51,10 @@ struct DrivenTwin {
   DrivenTwin& operator=(const DrivenTwin&) = delete;
 
   void Drive() { DriveOn(bench); }
-  void DriveOn(MachineBench& other) { BenchOf(scenario).drive(other, scenario, log, {}, options); }
+  void DriveOn(MachineBench other) { BenchOf(scenario).drive(other, scenario, log, {}, options); }
   /// In which that ends; "": it was carried out.
   std::string Fault() { return FaultOn(bench); }
-  std::string FaultOn(MachineBench& other) {
+  std::string FaultOn(MachineBench other) {
     const std::optional<DeviceFault> fault = FaultOf([&] { DriveOn(other); });
     if (fault) said = fault->what();
     return fault ? FaultName(fault->kind()) : "";

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/core/input_error.h"
 #include "tests/machine/benches.h"
 #include "tests/support/angle_benches.h"
@@ -122,22 +120,19 @@ TEST(Comparison, ASweepWhoseReadingsComeLateIsNoRun) {
     }
     Clock& clock;
   } slow(twin.bench);
-  MachineBench late = AsHardware(twin.bench, slow);
-  EXPECT_EQ(twin.FaultOn(late), "overrun");
+  EXPECT_EQ(twin.FaultOn(AsHardware(twin.bench, slow)), "overrun");
 }
 
-class SeveralHeads : public ::testing::TestWithParam<Scenario (*)()> {};
-
-TEST_P(SeveralHeads, AreReadOnATwinOnly) {
-  Scenario scenario = GetParam()();
-  EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 1.0};
-  EXPECT_EQ(TextOf(DrivenInProcess(scenario), scenario), TextOf(RunBench(scenario).readings, scenario));
-  DrivenTwin twin(scenario);
-  twin.bench.simulation = nullptr;
-  EXPECT_NE(twin.Fault(), "");
+TEST(Comparison, SeveralHeadsAreReadOnATwinOnly) {
+  for (Scenario (*make)() : {ShortStops, ShortSweep}) {
+    Scenario scenario = make();
+    EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 1.0};
+    EXPECT_EQ(TextOf(DrivenInProcess(scenario), scenario), TextOf(RunBench(scenario).readings, scenario));
+    DrivenTwin twin(scenario);
+    twin.bench.simulation = nullptr;
+    EXPECT_NE(twin.Fault(), "");
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(Comparison, SeveralHeads, ::testing::Values(ShortStops, ShortSweep));
 
 /// Somebody who turns the multi-tooth table by hand is not asked to while the turntable moves.
 TEST(MultitoothByHand, IsTurnedOnceTheTurntableStandsAndWithoutAnIndexerIsRefused) {

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/machine/benches.h"
 #include "tests/support/machine_run.h"
 #include "twin/benches/circular_motion/columns.h"
@@ -107,8 +105,7 @@ struct Restarting {
   }
   std::string Fault(bool may_home) {
     twin.options.may_home = may_home;
-    MachineBench bench = troubled.Bench();
-    return twin.FaultOn(bench);
+    return twin.FaultOn(troubled.Bench());
   }
 
   DrivenTwin twin;
@@ -238,9 +235,8 @@ TEST(MachineFaults, AnAxisThatLeavesItsStopWhileItIsReadCostsAnAttempt) {
   for (const double by_um : {0.9, 1.1}) {
     DrivenTwin twin(ShortFreeform());
     Pushed pushed(twin.bench, 1, by_um * 1e-6);
-    MachineBench bench = pushed.Bench();
     twin.options.axes.assign(5, AxisLimits{.in_position = 1e-6});
-    twin.DriveOn(bench);
+    twin.DriveOn(pushed.Bench());
     ASSERT_EQ(twin.log.attempts.size(), by_um > 1.0 ? 1u : 0u);
     if (by_um > 1.0) {
       EXPECT_EQ(twin.log.attempts[0].fault, "moved");
@@ -260,9 +256,8 @@ TEST(MachineFaults, AnInstrumentsOwnClockGoesIntoNoReading) {
       DrivenTwin twin(make());
       Pushed late(twin.bench, 0, 0.0);
       late.stamped_late_by = late_by;
-      MachineBench bench = late.Bench();
       const bool is_what_a_connection_takes = std::chrono::abs(late_by) < std::chrono::seconds(1);
-      EXPECT_EQ(twin.FaultOn(bench), is_what_a_connection_takes ? "" : "clock");
+      EXPECT_EQ(twin.FaultOn(late.Bench()), is_what_a_connection_takes ? "" : "clock");
       if (is_what_a_connection_takes) continue;
       EXPECT_TRUE(twin.log.readings.empty());
       ASSERT_EQ(twin.log.attempts.size(), 3u);
@@ -285,8 +280,7 @@ std::string FaultWithout(DrivenTwin& twin, std::size_t trigger) {
     answer = LatchedText(latched, shown);
     is_lost = true;
   });
-  MachineBench bench = troubled.Bench();
-  return twin.FaultOn(bench);
+  return twin.FaultOn(troubled.Bench());
 }
 
 TEST(MachineFaults, ATriggerThatLatchesNothingIsAGapOfWhichNothingIsKeptAndIsGoneForAgain) {
@@ -313,24 +307,6 @@ TEST(MachineFaults, AShaftThatFreezesInASweepIsStalled) {
   const MachineRun run = bench.Run({{0, "machine,stall"}});
   EXPECT_EQ(run.stopped_by, "stalled") << run.said;
   EXPECT_THAT(run.said, HasSubstr("should turn, and stands at"));
-}
-
-TEST(MachineFaults, AStopIsReadBack) {
-  Failing bench;
-  const std::vector<MachineAxis> axes = {{"x"}, {"y"}};
-  const auto opened = hw::OpenMachineHardware(hw::ParseMachineFile(bench.BenchFile(), "served.toml", axes), axes,
-                                              InstrumentColumns(FormatOf(kCircularBench).columns));
-  MachineBench devices = opened->Devices();
-  devices.simulation->Restart();
-  devices.machine.StartMove({0.0, 0.0}, 1e-3);
-  EXPECT_TRUE(devices.machine.State()[0].moving);
-  EXPECT_TRUE(procedure::StopMachine(devices, {}).is_sure);
-  EXPECT_FALSE(devices.machine.State()[0].moving);
-
-  devices.machine.StartMove({0.0, 0.0}, 1e-3);
-  bench.served.Inject("machine,mute");
-  EXPECT_TRUE(procedure::StopMachine(devices, {}).is_sure) << "a lost answer is no reason to give up";
-  EXPECT_FALSE(devices.machine.State()[0].moving);
 }
 
 /// A served twin at the pace of the world whose clock nobody holds is what hardware is.

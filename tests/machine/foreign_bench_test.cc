@@ -8,8 +8,6 @@
 namespace twinbench::test {
 namespace {
 
-using testing::AllOf, testing::HasSubstr;
-
 /// Of standard uncertainties. The noise of benches that are read at stops is the same in every run.
 constexpr double kCoverage = 3.0;
 /// Of a machine that turns on, when a path begins is a matter of the computer's time, and so is what is drawn, as
@@ -96,9 +94,8 @@ class ForeignBenchProgram : public ProgramHere {
   }
 
   static void ExpectStateUnknown(const Outcome& measured) {
-    EXPECT_EQ(measured.exit_code, 3);
-    EXPECT_THAT(measured.err, AllOf(HasSubstr("STATE UNKNOWN - USE THE EMERGENCY STOP"),
-                                    HasSubstr("WHETHER THE AXES STAND STILL IS NOT KNOWN"), HasSubstr("--resume")));
+    ExpectEnded(measured, 3, {"STATE UNKNOWN - USE THE EMERGENCY STOP", "WHETHER THE AXES STAND STILL IS NOT KNOWN",
+                              "--resume"});
   }
 
   const nlohmann::json& hidden() const { return hidden_; }
@@ -202,9 +199,7 @@ TEST_F(ForeignTurntableOnLinuxCnc, AnEmergencyStopOrAnotherProgramThatTakesTheCo
   for (const auto& [fault, said] : {std::pair{"controller.estop@9", "emergency stop is on"},
                                     std::pair{"controller.taken@9", "somebody else commands it now"}}) {
     std::filesystem::remove_all(At("measured"));
-    const Outcome measured = MeasureWith({fault});
-    EXPECT_EQ(measured.exit_code, 1);
-    EXPECT_THAT(measured.err, AllOf(HasSubstr(said), HasSubstr("brought to rest"), HasSubstr("--resume")));
+    ExpectEnded(MeasureWith({fault}), 1, {said, "brought to rest", "--resume"});
     EXPECT_GT(Kept(), 0u);
   }
 }
@@ -227,9 +222,7 @@ TEST_F(ForeignTurntableOnLinuxCnc, IsMeasuredOnTheRealProgram) {
 
 class ForeignShaft : public ForeignBenchProgram {
  protected:
-  ForeignShaft() : ForeignBenchProgram("encoder", Documented("shaft.toml")) {
-    BeRunBy(kDebianPython);
-  }
+  ForeignShaft() : ForeignBenchProgram("encoder", Documented("shaft.toml")) { BeRunBy(kDebianPython); }
   void SetUp() override {
     if (!hw::HasNumberDriver("modbus")) GTEST_SKIP() << "this build has no libmodbus";
   }
@@ -260,10 +253,8 @@ TEST_F(ForeignShaft, IsMeasuredOverASerialLineWhereALateAnswerLooksLikeTheNext) 
 }
 
 TEST_F(ForeignShaft, AnExceptionOfTheGatewayEndsTheRunWithTheShaftAtRest) {
-  const Outcome measured = MeasureWith({"gateway.refuse@9"});
-  EXPECT_EQ(measured.exit_code, 1);
-  EXPECT_THAT(measured.err, AllOf(HasSubstr("4 input registers from 20 were not read: Illegal data address"),
-                                  HasSubstr("unit 3"), HasSubstr("brought to rest")));
+  ExpectEnded(MeasureWith({"gateway.refuse@9"}), 1,
+              {"4 input registers from 20 were not read: Illegal data address", "unit 3", "brought to rest"});
 }
 
 // --- a five-axis machine ---
@@ -317,9 +308,7 @@ TEST_F(ForeignFiveAxes, AreMeasuredWhereLinuxCncRunsThem) {
 }
 
 TEST_F(ForeignFiveAxes, AreNotSentHomeUnderAnArtefact) {
-  const Outcome measured = MeasureWith({"controller.restart@9"});
-  EXPECT_EQ(measured.exit_code, 1);
-  EXPECT_THAT(measured.err, AllOf(HasSubstr("lost its origin with an instrument mounted"), HasSubstr("--resume")));
+  ExpectEnded(MeasureWith({"controller.restart@9"}), 1, {"lost its origin with an instrument mounted", "--resume"});
 }
 
 TEST_F(ForeignFiveAxes, AreMeasuredOnTheRealProgram) {

@@ -1,7 +1,5 @@
 #include "twin/benches/proof_by_steps.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/machine/benches.h"
 #include "tests/support/rotary_scenario.h"
 #include "tools/twinbench/planned_run.h"
@@ -287,12 +285,8 @@ TEST(ProofBySteps, TablesThatStandOrAreMirroredAndChannelsOfAnotherUnitOrOrderLe
     for (const ChangesVolts& changes : WrongVolts()) ExpectEnded(EndOfTables(kGoodBlocks, changes, {}, phase), kGood);
     for (const TableShares shares : kWrongShares) ExpectEnded(EndOfTables(kGoodBlocks, {}, shares, phase), kGood);
   }
-}
-
-TEST(ProofBySteps, AZeroThatIsSetWhileTheStepIsGoneBackLeavesNoReading) {
-  constexpr std::size_t kGood = 5;
   const ChangesVolts stays_away = [](Blocks& c, const Blocks& before) { c = before; };  // as beside the reading
-  ExpectEnded(EndOfTables(3 * kGood + 2, stays_away, {}), kGood);
+  ExpectEnded(EndOfTables(3 * kGood + 2, stays_away, {}), kGood);  // a zero that is set while the step is gone back
 }
 
 TEST(ProofBySteps, AnAutocollimatorWhoseSignsUnitsOrAxesChangeLeavesNoReadingOfACalibration) {
@@ -307,8 +301,7 @@ TEST(ProofBySteps, AnAutocollimatorWhoseSignsUnitsOrAxesChangeLeavesNoReadingOfA
 TEST(ProofBySteps, InAStabilityTestTablesGoAStepBeforeItsFirstReadingAndBehindItsLast) {
   ExpectWhole(EndOfTables(1000, {}, {}, "stability"), 6);
   ExpectEnded(EndOfTables(0, {}, {0.0, 0.0}, "stability"), 0);
-  constexpr int kBefore = 3;  // blocks
-  ExpectEnded(EndOfTables(kBefore + 3, {}, {0.0, 0.0}, "stability"), 5);
+  ExpectEnded(EndOfTables(3 + 3, {}, {0.0, 0.0}, "stability"), 5);  // three blocks come before
 }
 
 TEST(ProofByClosing, AZeroThatJumpsBetweenTwoPassesEndsTheMountingOnEveryBench) {

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "hw_bridge/replay/replay_bench.h"
 #include "hw_bridge/replay/replay_machine.h"
 #include "tests/core/input_error.h"
@@ -65,22 +63,20 @@ MemoryLog Replayed(const Scenario& scenario, const std::string& folder) {
   return log;
 }
 
-class ReplayOfARealBench : public ::testing::TestWithParam<Scenario (*)()> {};
-
-TEST_P(ReplayOfARealBench, GoesOnWhereTheRunDidAfterItWasStopped) {
-  const Scenario scenario = GetParam()();
-  const TemporaryFolder folder;
-  const std::vector<Reading> readings = Recorded(scenario, folder.path(), {5, 15});
-  ASSERT_EQ(static_cast<int>(readings.size()), BenchOf(scenario).planned_readings(scenario));
-  const MemoryLog played = Replayed(scenario, folder.path());
-  EXPECT_EQ(TextOf(played.readings, scenario), TextOf(readings, scenario));
-  ASSERT_EQ(played.attempts.size(), 2u);
-  EXPECT_EQ(played.attempts[0].reading, static_cast<int>(KeptWhenStoppedAt(5, scenario)));
-  EXPECT_EQ(played.attempts[1].reading, static_cast<int>(KeptWhenStoppedAt(15, scenario)));
+TEST(ReplayOfARealBench, GoesOnWhereTheRunDidAfterItWasStopped) {
+  for (Scenario (*make)() : {ShortCircles, ShortFreeform, ShortTurntable, ShortPolygon, ShortStops, ShortHob}) {
+    const Scenario scenario = make();
+    SCOPED_TRACE(scenario.bench);
+    const TemporaryFolder folder;
+    const std::vector<Reading> readings = Recorded(scenario, folder.path(), {5, 15});
+    ASSERT_EQ(static_cast<int>(readings.size()), BenchOf(scenario).planned_readings(scenario));
+    const MemoryLog played = Replayed(scenario, folder.path());
+    EXPECT_EQ(TextOf(played.readings, scenario), TextOf(readings, scenario));
+    ASSERT_EQ(played.attempts.size(), 2u);
+    EXPECT_EQ(played.attempts[0].reading, static_cast<int>(KeptWhenStoppedAt(5, scenario)));
+    EXPECT_EQ(played.attempts[1].reading, static_cast<int>(KeptWhenStoppedAt(15, scenario)));
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(Benches, ReplayOfARealBench,
-                         ::testing::Values(ShortCircles, ShortFreeform, ShortTurntable, ShortPolygon, ShortStops, ShortHob));
 
 /// The rotary bench's run by a version that did not look at encoders about a block.
 TEST(ReplayBench, PlaysARecordThatKnowsNoLooksAtEncoders) {

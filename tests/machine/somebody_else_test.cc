@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/machine/benches.h"
 #include "tests/support/troubled_bench.h"
 #include "twin/benches/hob_transmission/settings.h"
@@ -31,8 +29,7 @@ struct HandledRun {
                  [=, this](const std::string& device, const std::string& request, std::string&) {
                    if (device == "machine" && request != "stop" && ++calls == at_call) Act(hand, twin.bench.machine);
                  }) {
-    MachineBench bench = troubled.Bench();
-    fault = twin.FaultOn(bench);
+    fault = twin.FaultOn(troubled.Bench());
   }
 
   DrivenTwin twin;
@@ -96,8 +93,7 @@ TEST(SomebodyElse, WhoTurnsTheFeedOverrideEndsACircle) {
     AskedMachine overridden(
         [&](const std::string& device, const std::string& request) { return Perform(inner, shown, device, Overridden(request, factor)); },
         [&] { return inner.clock.Now(); }, {inner.machine.Axes(), shown, false, nullptr});
-    MachineBench bench = overridden.Bench();
-    EXPECT_EQ(twin.FaultOn(bench), fault) << factor << twin.said;
+    EXPECT_EQ(twin.FaultOn(overridden.Bench()), fault) << factor << twin.said;
   }
 }
 
@@ -134,14 +130,12 @@ void DoubtOn(procedure::MachineOptions& options, const Scenario& scenario) {
 TEST(SomebodyElse, WhoSetsTheZeroAnewEndsTheRunBeforeAReadingIsKeptElsewhere) {
   for (Scenario (*make)() : {ShortFreeform, ShortTurntable}) {
     DrivenTwin undisturbed(make());
-    MachineBench whole = AsHardware(undisturbed.bench);
-    ASSERT_EQ(undisturbed.FaultOn(whole), "");
+    ASSERT_EQ(undisturbed.FaultOn(AsHardware(undisturbed.bench)), "");
     for (const int at_call : {60, 71, 82, 93}) {
       DrivenTwin twin(make());
       DoubtOn(twin.options, twin.scenario);
       Rezeroed machine(twin.bench.machine, at_call);
-      MachineBench bench = AsHardware(twin.bench, machine, twin.bench.instruments);
-      const std::string fault = twin.FaultOn(bench);
+      const std::string fault = twin.FaultOn(AsHardware(twin.bench, machine, twin.bench.instruments));
       EXPECT_TRUE(fault == "implausible" || fault == "moved") << fault << ": " << twin.said;
       EXPECT_LT(twin.log.readings.size(), undisturbed.log.readings.size());
       for (std::size_t k = 0; k < twin.log.readings.size(); ++k)
@@ -170,8 +164,7 @@ TEST(SomebodyElse, WhoTakesTheMirrorAwayLeavesNoEmptyReading) {
   for (Scenario (*make)() : {ShortFreeform, ShortTurntable, ShortStops}) {
     DrivenTwin twin(make());
     Blind instruments(twin.bench.instruments, 4);
-    MachineBench bench = AsHardware(twin.bench, instruments);
-    EXPECT_EQ(twin.FaultOn(bench), "gap") << twin.said;
+    EXPECT_EQ(twin.FaultOn(AsHardware(twin.bench, instruments)), "gap") << twin.said;
     EXPECT_EQ(twin.log.readings.size(), 4u);
   }
 }
@@ -209,8 +202,7 @@ TEST(SomebodyElse, WhoStopsACounterLeavesNoSampleOfTheLookInWhichItStood) {
   const procedure::ClaimedColumn hob{*std::ranges::find(format.columns, "hob_encoder_deg", &ReadingColumn::name), 0.0, 0.0, from_table, true};
   twin.options.require_goes_along = [=](const Reading& r, const Reading& before) { procedure::RequireGoesAlong({hob}, r, before); };
   StandingCounter instruments(twin.bench.instruments, 4);
-  MachineBench bench = AsHardware(twin.bench, instruments);
-  EXPECT_EQ(twin.FaultOn(bench), "moved") << twin.said;
+  EXPECT_EQ(twin.FaultOn(AsHardware(twin.bench, instruments)), "moved") << twin.said;
   ASSERT_FALSE(twin.log.readings.empty());
   const auto left_rad = [&](const Reading& r) { return r.reference_rad - from_table(r); };
   for (const Reading& r : twin.log.readings)
