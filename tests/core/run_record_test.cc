@@ -70,25 +70,19 @@ TEST(RunRecord, GivesBackWhatItWasGivenAlsoAReadingWithoutNumbers) {
   EXPECT_THAT(record->provenance(), FieldsAre("0.1.0", "twin", 18446744073709551615u, "2026-01-02T03:04:05Z", kRotaryBench));
 }
 
-TEST(RunRecord, GivesBackWhatItWasGivenInMemoryToo) {
-  const auto one = RunRecord::CreateInMemory(AnyProvenance()), other = RunRecord::CreateInMemory(AnyProvenance());
-  for (int k = 0; k < 20; ++k) one->Append(ReadingOf(k), {});
-  ExpectReadingsOf(one->Readings(), 20);
-  EXPECT_TRUE(other->Readings().empty()) << "two records in memory are one";
-}
-
 TEST(KeptReadings, AreThoseOfARecordToTheSameBits) {
   Reading odd = ReadingOf(1);
   odd.target_rad = -0.0;
   odd.measured_rad = -0.0;
   odd.quantities = {{"radius_m", 0.15}, {"feed_m_s", 0.1}, {"bar_m", kNaN}};
-  const auto record = RunRecord::CreateInMemory(AnyProvenance());
+  const auto record = RunRecord::CreateInMemory(AnyProvenance()), other = RunRecord::CreateInMemory(AnyProvenance());
   KeptReadings kept;
   for (const Reading& reading : {ReadingOf(0), odd, ReadingOf(2)}) {
     record->Append(reading, {});
     kept.Append(reading, {});
   }
   const std::vector<Reading> of_record = record->Readings(), all = kept.Take();
+  EXPECT_TRUE(other->Readings().empty()) << "two records in memory are one";
   ASSERT_EQ(all.size(), of_record.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
     EXPECT_EQ(all[k].quantities, of_record[k].quantities);
@@ -417,54 +411,6 @@ TEST(RunRecord, ThatWasCutOffOrOverwrittenIsRefused) {
       file.seekp(static_cast<std::streamoff>(middle)) << std::string(20000, '\xAA');
     }
     EXPECT_THAT(OpenError(folder.path()), testing::StartsWith(path + ": the record ")) << is_cut;
-  }
-}
-
-/// Appends for ever and tells every reading that Append returned for.
-[[noreturn]] void AppendUntilKilled(const std::string& directory, int acknowledge) {
-  const auto record = RunRecord::Create(directory, AnyProvenance());
-  for (int i = 0;; ++i) {
-    record->Append(ReadingOf(i), BlockOf(std::vector<std::int16_t>(400, static_cast<std::int16_t>(i % 1000))));
-    if (write(acknowledge, &i, sizeof i) != sizeof i) _exit(1);
-  }
-}
-
-/// Starts a child that appends, kills it some time after `count` readings, and
-/// @return the number of the last reading that it acknowledged.
-int KillWhileAppending(const std::string& directory, int count) {
-  int ends[2];
-  if (pipe(ends) != 0) throw BenchError("no pipe");
-  const pid_t child = fork();
-  if (child == 0) {
-    close(ends[0]);
-    AppendUntilKilled(directory, ends[1]);
-  }
-  close(ends[1]);
-  int last = -1;
-  while (last < count && read(ends[0], &last, sizeof last) == sizeof last) {
-  }
-  usleep(static_cast<useconds_t>(137 * count));  // anywhere within an append
-  kill(child, SIGKILL);
-  for (int number = 0; read(ends[0], &number, sizeof number) == sizeof number;) last = number;
-  close(ends[0]);
-  waitpid(child, nullptr, 0);
-  return last;
-}
-
-TEST(RunRecord, HasEveryAcknowledgedReadingAfterKill) {
-  for (const int count : {0, 1, 5, 17, 60}) {
-    const TemporaryFolder folder;
-    const int last = KillWhileAppending(folder.path(), count);
-    ASSERT_GE(last, count);
-    const auto record = RunRecord::Open(folder.path());
-    const auto readings = record->Readings();
-    // The one after the last may be in as well: it was safe when the kill came before its acknowledgement.
-    ASSERT_GE(readings.size(), static_cast<std::size_t>(last + 1));
-    ASSERT_LE(readings.size(), static_cast<std::size_t>(last + 2));
-    ExpectReadingsOf(readings, readings.size());
-    EXPECT_EQ(record->RawBlocks().size(), readings.size());
-    EXPECT_FALSE(record->finished());
-    record->Append(ReadingOf(static_cast<int>(readings.size())), {});
   }
 }
 

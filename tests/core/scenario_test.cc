@@ -19,19 +19,6 @@ Scenario Parse(const std::string& text, const std::vector<std::string>& override
   return ParseScenario(kBench + text, "s.toml", ".", overrides);
 }
 
-/// The message about a text that begins in line 2 of the file.
-std::string ErrorOf(const std::string& text) {
-  return MessageOf([&] { Parse(text); });
-}
-
-/// Texts that begin in line 2 of a scenario of the bench.
-void ExpectScenariosRefused(const std::vector<Refused>& cases, const std::string& bench = kRotaryBench) {
-  const std::string first = "bench = \"" + bench + "\"\n";
-  ExpectRefused(
-      "s.toml", [&](const auto& text) { return MessageOf([&] { ParseScenario(first + text, "s.toml", "."); }); },
-      cases);
-}
-
 // --- good input ---
 
 TEST(Scenario, WithoutKeysIsTheReferenceBench) {
@@ -196,64 +183,10 @@ TEST(ScenarioOverride, IsNamedWhenItIsWrong) {
 
 // --- bad input: where, what, expected ---
 
-TEST(ScenarioError, NamesTheBenchesThatThereAre) {
-  ExpectRefused("s.toml", [](const auto& text) { return MessageOf([&] { ParseScenario(text, "s.toml", "."); }); },
-                {{1, "seed = 1\n"}, {2, "\nbench = \"lathe\"\n"}, {1, "bench = \"hob_transmision\"\n"}});
+TEST(ScenarioError, GivesTheLineOfASyntaxErrorAndAsksForABench) {
   EXPECT_KEPT(MessageOf([] { WriteScenario(Scenario{}); }));
-}
-
-TEST(ScenarioError, NamesTheBenchThatAKeyBelongsTo) {
-  ExpectScenariosRefused({{2, "[laser]\nwavelength_nm = 650\n"}, {2, "[[fixture]]\nname = \"plate\"\n"},
-                          {3, "[[effect]]\nname = \"psd_gain\"\n"}, {3, "[device]\nnoise_dg = 0.1\n"},
-                          {3, "[encoder_procedure]\npasses = [1, 0]\n"}},
-                         kEncoderBench);
-  ExpectScenariosRefused({{2, "[device]\nnoise_deg = 0.1\n"}});
-}
-
-TEST(ScenarioError, GivesTheLineOfASyntaxError) {
-  EXPECT_THAT(ErrorOf("seed = \n"), StartsWith("s.toml:2: "));
-  EXPECT_THAT(ErrorOf("seed = 1\nseed = 2\n"), StartsWith("s.toml:3: "));
-}
-
-TEST(ScenarioError, NamesTheNearestKnownKeyAlsoOfOneThatQuotesHideAndTheRightUnit) {
-  ExpectScenariosRefused({{3, "[laser]\nwavelenght_nm = 650\n"}, {2, "wavelength_nm = 650\n"},
-                          {2, "[lasr]\nwavelength_nm = 650\n"},
-                          {2, "[xyz]\na = 1\n"},  // the nameless top is no table to be near to
-                          {2, "[target.seeting]\nez_arcsec = 1\n"}, {2, "\"laser.wavelength_nm\" = 640\n"},
-                          {2, "\"\" = 1\n"}});
-  ExpectScenariosRefused({{3, "[laser]\nwavelength_m = 650e-9\n"}, {3, "[laser]\nwavelength = 650\n"},
-                          {3, "[procedure]\nsweep_deg = 1\n"}, {3, "[target.random]\ndx_arcsec = 1\n"}});
-}
-
-TEST(ScenarioError, NamesTypeBoundsLengthAndChoicesAsTheUserWritesThem) {
-  ExpectScenariosRefused({{3, "[laser]\nwavelength_nm = -5\n"}, {3, "[laser]\nwavelength_nm = \"red\"\n"},
-                          {3, "[psd_a]\ndistance_mm = 0\n"}, {3, "[psd_a]\ndistance_mm = [1]\n"},
-                          {2, "noise_free = 1\n"}, {2, "title = 5\n"}, {2, "seed = -1\n"},
-                          {3, "[procedure]\npositions = 36.0\n"}, {3, "[psd_a]\nroll_mrad = nan\n"},
-                          {3, "[psd_a]\nroll_mrad = -inf\n"}, {3, "[amplifier]\noffset_mV = [1, 2, 3]\n"},
-                          {3, "[procedure]\ndwell_s = []\n"},
-                          {5, "[amplifier]\noffset_mV = [1,\n  2,\n  \"x\", 4]\n"},
-                          {3, "[procedure]\nclamping = \"glue\"\n"}, {3, "[mechanics]\nfidelity = \"best\"\n"},
-                          {3, "[laser]\nbeam = \"ray\"\n"}, {3, "[procedure]\nphases = [\"warmup\"]\n"}});
-}
-
-TEST(ScenarioError, ChecksScanListShiftsPassesAndInlineErrors) {
-  ExpectScenariosRefused({{3, "[adc]\nscan_list = [\"psd_a_x\", \"psd_a_x\", \"psd_b_x\", \"psd_b_y\"]\n"},
-                          {3, "[procedure]\nshifts = [0, 36]\n"}, {3, "[procedure]\nshifts = [0, 5, 5]\n"},
-                          {3, "[procedure]\nshifts = [0, -1]\n"}, {3, "[procedure]\npasses = [1, 0]\n"},
-                          {3, "[procedure]\npasses = [1, 2]\n"}});
-  ExpectScenariosRefused({{2, "[target.errors]\nez_arcsec = [1]\n"},
-                          {4, "[target.errors]\nposition_deg = [0, 1]\nez_arcsec = [1]\n"},
-                          {4, "[target.errors]\nposition_deg = [0]\nez_urad = [1]\n"},
-                          {3, "[target]\nerrors_file = \"t.csv\"\n[target.errors]\nposition_deg = [0]\n"}});
-}
-
-TEST(ScenarioError, ChecksHarmonics) {
-  for (const char* entry : {"1", "{ order = 1 }", "{ component = \"ez\", order = 1 }",
-                            "{ component = \"ez\", order = 1, amplitude_um = 2 }",
-                            "{ component = \"rx\", order = 1 }", "{ component = \"ez\", ordr = 1 }",
-                            "{ component = \"ez\", order = 1, amplitude_arcsec = 1, phase_rad = 1 }"})
-    ExpectScenariosRefused({{3, "[target]\nharmonics = [" + std::string(entry) + "]\n"}});
+  EXPECT_THAT(MessageOf([] { Parse("seed = \n"); }), StartsWith("s.toml:2: "));
+  EXPECT_THAT(MessageOf([] { Parse("seed = 1\nseed = 2\n"); }), StartsWith("s.toml:3: "));
 }
 
 TEST(ScenarioError, NamesFilesThatCannotBeRead) {
@@ -264,18 +197,6 @@ TEST(ScenarioError, NamesFilesThatCannotBeRead) {
       {{3, "[target]\nerrors_file = \"no_such.csv\"\n"}, {3, "[environment]\ntemperature_file = \"no_such.csv\"\n"},
        {3, "[laser]\nbeam = \"profile\"\n"}, {2, "[[fixture]]\nname = \"plate\"\nmesh_file = \"none.stl\"\n"}});
   EXPECT_KEPT(MessageOf([] { LoadScenario("no_such.toml"); }));
-}
-
-TEST(ScenarioEffectError, NamesTheNearestEffectAndWhatItHasAndChecksPlaceAndBounds) {
-  ExpectScenariosRefused({{3, "[[effect]]\nname = \"psd_gian\"\n"}, {2, "[[effect]]\nwhere = \"yaw\"\n"},
-                          {2, "[effect]\nname = \"tone\"\n"},
-                          {5, "[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\nroll_deg = 1\n"},
-                          {5, "[[effect]]\nname = \"slip\"\nwhere = \"lateral\"\nangle_arcsec = 1\n"},
-                          {2, "[[effect]]\nname = \"psd_roll\"\n"},
-                          {4, "[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_c\"\n"},
-                          {4, "[[effect]]\nname = \"settling\"\nwhere = \"target\"\n"},
-                          {5, "[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\nroll_mrad = 501\n"},
-                          {5, "[[effect]]\nname = \"laser_drift\"\nwhere = \"yaw\"\ndrift_urad_per_h = inf\n"}});
 }
 
 // --- fixtures ---
@@ -305,30 +226,6 @@ rides_on_grating = true
   EXPECT_EQ(s.fixtures[1].mesh_unit_m, 25.4 * units::mm);
   EXPECT_TRUE(s.fixtures[1].rides_on_grating);
   EXPECT_TRUE(ParseScenario(text, "s.toml", folder.path(), {"fixture=[]"}).fixtures.empty());
-}
-
-TEST(ScenarioFixtureError, SaysWhatIsWrongWithAFixture) {
-  ExpectScenariosRefused({{2, "[[fixture]]\nbox_mm = [1, 1, 1]\n"}, {2, "[[fixture]]\nname = \"plate\"\n"},
-                          {2, "[[fixture]]\nname = \"plate\"\nbox_mm = [1, 1, 1]\nmesh_file = \"a.stl\"\n"},
-                          {4, "[[fixture]]\nname = \"plate\"\nbox_mm = [1, 0, 1]\n"},
-                          {4, "[[fixture]]\nname = \"plate\"\nbox_mm = [1, 1]\n"},
-                          {4, "[[fixture]]\nname = \"plate\"\nbox_um = [1, 1, 1]\n"},
-                          {4, "[[fixture]]\nname = \"plate\"\npositon_mm = [1, 1, 1]\n"},
-                          {2, "[fixture]\nname = \"plate\"\n"}, {2, "fixture = [1]\n"}});
-}
-
-TEST(ScenarioError, WantsTurntablePositionsWholeTeethAndHobSamplesWholeLinesApartAndOneEntryASetUpOrOneForAll) {
-  ExpectScenariosRefused({{3, "[turntable_procedure]\npositions = 50\n"},
-                          {3, "[turntable_procedure]\nverification_positions = 300\n"},
-                          {3, "[turntable_procedure]\nshifts_teeth = [360]\n"},
-                          {4, "[turntable_procedure]\ntilts_arcsec = [60, 100, 30]\nshifts_teeth = [0, 5]\n"},
-                          {3, "[turntable_procedure]\npasses = [1, 0]\n"},
-                          {5, "[polygon]\nfaces = 24\n[mirror]\nflatness_nm = 3000\n"}},
-                         kTurntableBench);
-  ExpectScenariosRefused(
-      {{2, "hob_procedure.samples_per_turn = 700\n"},
-       {2, "transmission.harmonics = [{ component = \"ex\", order = 1, amplitude_arcsec = 1 }]\n"}},
-      kHobBench);
 }
 
 // --- help ---

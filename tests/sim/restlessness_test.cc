@@ -123,13 +123,6 @@ TEST(Restlessness, ShakesBodiesByBulletUnlessToldOtherwise) {
   EXPECT_TRUE(VibrationOf(m).empty());
 }
 
-TEST(Restlessness, AsksForAVelocityWithEachFrequencyAndForAScaleThatReadsOn) {
-  for (const std::string keys :
-       {"vibration_frequency_Hz = [10.0, 20.0]\nvibration_velocity_um_s = [3.0]\n", "vibration = \"VC-H\"\n",
-        "encoder_subdivision_arcsec = [0.0, 2.9]\nencoder_periods = 80000\n"})
-    EXPECT_KEPT(MessageOf([&] { ParseScenario("bench = \"rotary_4dof\"\n[mechanics]\n" + keys, "s.toml", "."); }));
-}
-
 TEST(AsynchronousMotion, HasTheStatedSizeOverManyTurnsAndRepeatsInNone) {
   const AsynchronousMotion motion({0.1 * um, 0.02 * um, 0.05 * arcsec}, 5, "target");
   std::array<double, 5> square{};
