@@ -42,10 +42,10 @@ Pose ToPose(const BearingPose& bearing);
 struct ChainState {
   double target_rad = 0.0;  // nominal angle of the rotor on its base; ez comes with the error
   double reference_rad = 0.0;
-  PoseError target_error;     // laboratory frame
-  PoseError reference_error;  // frame of its rotor
-  BearingPose target_bearing;
-  BearingPose reference_bearing;
+  PoseError target_error = {};     // laboratory frame
+  PoseError reference_error = {};  // frame of its rotor
+  BearingPose target_bearing = {};
+  BearingPose reference_bearing = {};
   double goniometer_yaw_rad = 0.0;   // of the grating about the laser spot: Rz(yaw) Rx(tilt) in L,
   double goniometer_tilt_rad = 0.0;  // tilt positive turns the grating's normal upwards
 };

@@ -15,7 +15,7 @@ struct IrradianceMap {
   int width = 0;             // pixels
   int height = 0;
   double pitch_m = std::numeric_limits<double>::quiet_NaN();
-  std::vector<float> irradiance_W_m2;                      // row by row, width * height
+  std::vector<float> irradiance_W_m2 = {};                 // row by row, width * height
   Eigen::Isometry3d X_LP = Eigen::Isometry3d::Identity();  // pose of the detector
   double wavelength_m = std::numeric_limits<double>::quiet_NaN();
   double power_W = 0.0;  // of the light that made the map

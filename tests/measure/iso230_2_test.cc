@@ -253,12 +253,8 @@ constexpr double kTurn_rad = 2.0 * units::kPi;
 /// One pass through `stops` stops of a turn, the device ahead by position + 10 pass + half the direction [arcsec].
 void AddPass(int stops, int pass, int direction, std::vector<Reading>& readings, int setup = 0) {
   for (int k = 0; k < stops; ++k) {
-    Reading r;
-    r.reading = static_cast<int>(readings.size());
-    r.setup = setup;
-    r.pass = pass;
-    r.direction = direction;
-    r.position = direction > 0 ? k : stops - 1 - k;
+    Reading r{.reading = static_cast<int>(readings.size()), .setup = setup, .pass = pass, .direction = direction,
+              .position = direction > 0 ? k : stops - 1 - k};
     r.reference_rad = kTurn_rad * r.position / stops;
     r.measured_rad = r.reference_rad + (r.position + 10.0 * pass + 0.5 * direction) * units::arcsec;
     r.velocity_rad_s = 0.0;

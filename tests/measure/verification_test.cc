@@ -14,12 +14,9 @@ struct Record {
 
 /// Adds a stop where the bench reads `extra` more than the autocollimator, which shows `shown_rad` on both axes.
 void Add(Record& record, double shown_rad, const Eigen::Vector2d& extra_rad) {
-  Reading r;
-  r.phase = Phase::kVerification;
-  r.autocollimator_yaw_rad = r.autocollimator_tilt_rad = shown_rad;
-  Motion m;
-  m.phase = r.phase;
-  m.status = ReadingStatus::kOk;
+  Reading r{.phase = Phase::kVerification, .autocollimator_yaw_rad = shown_rad,
+            .autocollimator_tilt_rad = shown_rad};
+  Motion m{.phase = r.phase, .status = ReadingStatus::kOk};
   m.SetValues({shown_rad + extra_rad[0], shown_rad + extra_rad[1], 0.0, 0.0});
   m.cov = Vector4(9e-14, 1e-14, 0.0, 0.0).asDiagonal();
   m.cov_systematic = Vector4(16e-14, 3e-14, 0.0, 0.0).asDiagonal();
@@ -82,11 +79,7 @@ const Vector4 kStep(2 * units::arcsec, -1 * units::arcsec, 3 * units::arcsec, 0.
 const Vector4 kNoise(0.3 * units::arcsec, 0.2 * units::arcsec, 0.9 * units::arcsec, 0.1 * units::um);
 
 Motion At(double time_s, ReadingStatus status) {
-  Motion m;
-  m.phase = Phase::kStability;
-  m.status = status;
-  m.time = Time(FromSeconds(time_s));
-  return m;
+  return {.phase = Phase::kStability, .time = Time(FromSeconds(time_s)), .status = status};
 }
 
 /// A motion of `factor` steps at `time_s`, read with `kNoise`.

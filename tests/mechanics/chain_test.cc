@@ -45,11 +45,8 @@ TEST(WeightGradient, IsTheSlopeOfTheWeightsEnergyInTheChain) {
   q << 1e-3, -2e-3, 3e-3, 1e-2, -2e-2, 0.5, 2e-3, 1e-3, -1e-3, -1e-2, 3e-2, -1.1;
   const Chain chain(p.geometry);
   const auto energy = [&](const Vector12& at) {
-    ChainState s;
-    s.target_rad = at[SpinIndex(0)];
-    s.reference_rad = at[SpinIndex(1)];
-    s.target_bearing = BearingOf(at, 0);
-    s.reference_bearing = BearingOf(at, 1);
+    ChainState s{.target_rad = at[SpinIndex(0)], .reference_rad = at[SpinIndex(1)],
+                 .target_bearing = BearingOf(at, 0), .reference_bearing = BearingOf(at, 1)};
     const Pose X_LT = chain.TargetRotorPose(s);
     const Pose X_LR = chain.ReferenceRotorPose(s);
     Pose X_TS = Pose::Identity();
@@ -70,21 +67,13 @@ TEST(WeightGradient, IsTheSlopeOfTheWeightsEnergyInTheChain) {
 }
 
 TEST(Chain, EqualsTheProductOfItsFactorsForEveryInput) {
-  ChainGeometry g;
-  g.p_RG_m = Vector3(0.01, 0.03, 0.05);
-  g.centring_m = {20e-6, -30e-6};
-  g.mount_tilt_rad = {1e-4, -2e-4};
-  g.reseat_rad = -0.7;
-  g.clamp_rad = 0.3;
-  ChainState s;
-  s.target_rad = 1.1;
-  s.reference_rad = -2.3;
-  s.target_error = {1e-5, 2e-5, -3e-5, 1e-6, 2e-6, 3e-6};
-  s.reference_error = {-2e-5, 1e-5, 4e-5, -3e-6, 1e-6, 2e-6};
-  s.target_bearing = {1e-6, 2e-6, -3e-6, 2e-6, -5e-6};
-  s.reference_bearing = {-2e-6, 1e-6, -1e-6, 3e-6, 1e-6};
-  s.goniometer_yaw_rad = 1e-3;
-  s.goniometer_tilt_rad = -2e-3;
+  ChainGeometry g{.p_RG_m = Vector3(0.01, 0.03, 0.05), .centring_m = {20e-6, -30e-6},
+                  .mount_tilt_rad = {1e-4, -2e-4}, .reseat_rad = -0.7, .clamp_rad = 0.3};
+  ChainState s{.target_rad = 1.1, .reference_rad = -2.3, .target_error = {1e-5, 2e-5, -3e-5, 1e-6, 2e-6, 3e-6},
+               .reference_error = {-2e-5, 1e-5, 4e-5, -3e-6, 1e-6, 2e-6},
+               .target_bearing = {1e-6, 2e-6, -3e-6, 2e-6, -5e-6},
+               .reference_bearing = {-2e-6, 1e-6, -1e-6, 3e-6, 1e-6}, .goniometer_yaw_rad = 1e-3,
+               .goniometer_tilt_rad = -2e-3};
 
   using Eigen::AngleAxisd;
   using Eigen::Translation3d;

@@ -42,11 +42,8 @@ TEST(DriveLoads, CablesLeaveAFollowingErrorOfTheirSlopeByTheIntegralGain) {
 
 /// Work of both unbalances' forces as they stand, on the points where they act, by the poses of Chain.
 double Work(const Chain& chain, const Vector12& deflection) {
-  ChainState s;
-  s.target_rad = 0.7;
-  s.reference_rad = -0.2;
-  s.target_bearing = BearingOf(deflection, 0);
-  s.reference_bearing = BearingOf(deflection, 1);
+  ChainState s{.target_rad = 0.7, .reference_rad = -0.2, .target_bearing = BearingOf(deflection, 0),
+               .reference_bearing = BearingOf(deflection, 1)};
   const Vector3 at_target = chain.TargetRotorPose(s) * Vector3(0.0, 0.0, 0.01);
   const Vector3 at_reference = chain.ReferenceRotorPose(s) * Vector3(0.0, 0.0, 0.02);
   const double target_rad = 0.7 + 0.3, reference_rad = 0.7 - 0.4 - 0.2 + 1.1;

@@ -22,12 +22,9 @@ GearTrainParameters Frictionless() {
 }
 
 GearErrors SomeErrors() {
-  GearErrors e;
-  e.worm_wheel = {{1.0, 8.0 * kArcsec, 0.3}, {2.0, 1.0 * kArcsec, -0.5}};
-  e.worm = {{1.0, 2.0 * kArcsec, 0.7}};
-  e.tooth_mesh = {{2.0, 0.5 * kArcsec, 2.0}};
-  e.hob_drive = {{1.0, 3.0 * kArcsec, 1.1}};
-  return e;
+  return {.worm_wheel = {{1.0, 8.0 * kArcsec, 0.3}, {2.0, 1.0 * kArcsec, -0.5}},
+          .worm = {{1.0, 2.0 * kArcsec, 0.7}}, .tooth_mesh = {{2.0, 0.5 * kArcsec, 2.0}},
+          .hob_drive = {{1.0, 3.0 * kArcsec, 1.1}}};
 }
 
 double TransmissionError_rad(const GearTrainParameters& p, const GearTrainState& s) {
@@ -214,10 +211,8 @@ TEST(GearTrain, SpeedsAreTheDerivativesOfTheAngles) {
 }
 
 GearTrainState OnASine(double time_s) {
-  GearTrainState s;
-  s.time_s = time_s;
-  s.table_rad = 40.0 + 0.3 * time_s + 1e-3 * std::sin(20.0 * time_s);
-  s.table_rad_s = 0.3 + 0.02 * std::cos(20.0 * time_s);
+  GearTrainState s{.time_s = time_s, .table_rad = 40.0 + 0.3 * time_s + 1e-3 * std::sin(20.0 * time_s),
+                   .table_rad_s = 0.3 + 0.02 * std::cos(20.0 * time_s)};
   s.hob_rad = 22.0 * s.table_rad;
   s.hob_rad_s = 22.0 * s.table_rad_s;
   return s;

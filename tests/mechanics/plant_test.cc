@@ -56,14 +56,9 @@ TEST(KinematicPlant, EqualsTheChainOfItsCommandedAngles) {
     plant->Advance(0.6);
     ASSERT_TRUE(plant->Settled());
     const StackState s = plant->State();
-    ChainState commanded;
-    commanded.target_rad = i * kTenDegrees;
-    commanded.reference_rad = -i * kTenDegrees;
-    ChainState found;
-    found.target_rad = s.target_rad;
-    found.reference_rad = s.reference_rad;
-    found.target_bearing = s.target_bearing;
-    found.reference_bearing = s.reference_bearing;
+    ChainState commanded{.target_rad = i * kTenDegrees, .reference_rad = -i * kTenDegrees};
+    ChainState found{.target_rad = s.target_rad, .reference_rad = s.reference_rad,
+                     .target_bearing = s.target_bearing, .reference_bearing = s.reference_bearing};
     EXPECT_EQ(chain.GratingPose(found).matrix(), chain.GratingPose(commanded).matrix());  // not a bit differs
   }
 }

@@ -12,10 +12,7 @@ constexpr double kRadius_m = 0.05;
 constexpr double kRounding_rad = 1e-14;  // some operations on angles of a few turns in double
 
 Ring GoodRing() {
-  Ring ring;
-  ring.radius_m = kRadius_m;
-  ring.lines = 18000;
-  return ring;
+  return {.radius_m = kRadius_m, .lines = 18000};
 }
 
 /// All errors at once, some hundred times what a real ring has.

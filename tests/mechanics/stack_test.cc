@@ -37,11 +37,8 @@ TEST(StackDynamics, BulletPutsItsRotorsWhereTheChainDoes) {
     Vector12 q = Somewhere();
     q[SpinIndex(0)] = 10.0 * i * kDegree;
     q[SpinIndex(1)] = -10.0 * i * kDegree;
-    ChainState state;
-    state.target_rad = q[SpinIndex(0)];
-    state.reference_rad = q[SpinIndex(1)];
-    state.target_bearing = BearingOf(q, 0);
-    state.reference_bearing = BearingOf(q, 1);
+    ChainState state{.target_rad = q[SpinIndex(0)], .reference_rad = q[SpinIndex(1)],
+                     .target_bearing = BearingOf(q, 0), .reference_bearing = BearingOf(q, 1)};
     const Chain chain(p.geometry);
     const Pose target = chain.TargetRotorPose(state);
     const Pose reference = chain.ReferenceRotorPose(state);

@@ -22,11 +22,8 @@ Isometry3d FromColumns(const Vector3d& x, const Vector3d& y, const Vector3d& z) 
 
 /// Looks along +x_L at a mirror near the origin of L, from 400 mm away.
 AutocollimatorParameters ExampleInstrument() {
-  AutocollimatorParameters p;
-  p.X_LA = Translation3d(-0.4, 0.05, 0.2) * FromColumns(Vector3d::UnitY(), Vector3d::UnitZ(), Vector3d::UnitX());
-  p.half_field_rad = 410.0 * kArcsec;
-  p.low_light_fraction = 0.05;
-  return p;
+  return {.X_LA = Translation3d(-0.4, 0.05, 0.2) * FromColumns(Vector3d::UnitY(), Vector3d::UnitZ(), Vector3d::UnitX()),
+          .half_field_rad = 410.0 * kArcsec, .low_light_fraction = 0.05};
 }
 
 Surface Mirror(double sag_m = 0.0) {

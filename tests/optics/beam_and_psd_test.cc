@@ -29,10 +29,7 @@ TEST(GaussianBundle, HasTheMomentsOfTheBeamAndSpreadsAsItDoes) {
 }
 
 IrradianceMap Slope() {
-  IrradianceMap map;
-  map.width = 64;
-  map.height = 48;
-  map.pitch_m = 20e-6;
+  IrradianceMap map{.width = 64, .height = 48, .pitch_m = 20e-6};
   for (int row = 0; row < 48; ++row) {
     for (int column = 0; column < 64; ++column)
       map.irradiance_W_m2.push_back(static_cast<float>(1 + column + 2 * row));

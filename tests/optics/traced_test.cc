@@ -131,9 +131,7 @@ TEST(TracedLight, OfManyReadingsHasTheBitsOfOne) {
 }
 
 IrradianceMap DarkMap(int pixels, double pitch_m) {
-  IrradianceMap map;
-  map.width = map.height = pixels;
-  map.pitch_m = pitch_m;
+  IrradianceMap map{.width = pixels, .height = pixels, .pitch_m = pitch_m};
   map.irradiance_W_m2.assign(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels), 0.0f);
   return map;
 }

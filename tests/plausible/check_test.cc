@@ -15,12 +15,8 @@ std::vector<Reading> Readings(int count = 200) {
   std::vector<Reading> readings;
   for (int i = 0; i < count; ++i) {
     const bool back = i >= count / 2;
-    Reading r;
-    r.reading = i;
-    r.time = Time(FromSeconds(i));
-    r.pass = back ? 1 : 0;
-    r.direction = back ? -1 : 1;
-    r.position = back ? count - 1 - i : i;
+    Reading r{.reading = i, .time = Time(FromSeconds(i)), .pass = back ? 1 : 0, .direction = back ? -1 : 1,
+              .position = back ? count - 1 - i : i};
     r.reference_rad = r.position * 1.8 * units::deg;
     r.measured_rad = r.reference_rad + 1e-4 * std::sin(17.0 * i);
     readings.push_back(r);
@@ -81,14 +77,10 @@ std::vector<Reading> Geared(double way_deg, double step_deg) {
   std::vector<Reading> readings;
   for (int i = 0; i < 400; ++i) {
     if (i % 5 == 3 || i % 7 == 2) continue;
-    Reading r;
-    r.reading = r.position = i;
-    r.time = Time(FromSeconds(i));
-    r.direction = 1;
-    r.head_rad = 0.0;
-    r.reference_rad = std::round(i * way_deg / step_deg) * step_deg * units::deg;
-    r.measured_rad = i * way_deg / 90.0 * units::deg + 10.0 * units::arcsec * std::sin(17.0 * i);
-    readings.push_back(r);
+    readings.push_back({.reading = i, .time = Time(FromSeconds(i)), .direction = 1, .position = i,
+                        .reference_rad = std::round(i * way_deg / step_deg) * step_deg * units::deg,
+                        .measured_rad = i * way_deg / 90.0 * units::deg + 10.0 * units::arcsec * std::sin(17.0 * i),
+                        .head_rad = 0.0});
   }
   return readings;
 }
@@ -103,10 +95,7 @@ TEST(Plausible, DoesNotTakeTheDistanceOfRowsForAResolution) {
 std::vector<Reading> Voltages() {
   std::vector<Reading> readings;
   for (int i = 0; i < 72; ++i) {
-    Reading r;
-    r.reading = r.position = i;
-    r.time = Time(FromSeconds(i));
-    r.target_rad = i * 5.0 * units::deg;
+    Reading r{.reading = i, .time = Time(FromSeconds(i)), .position = i, .target_rad = i * 5.0 * units::deg};
     r.reference_rad = -r.target_rad;
     for (int c = 0; c < kChannels; ++c) r.mean_V[c] = std::sin(3.0 * i + c);
     readings.push_back(r);

@@ -62,8 +62,8 @@ struct Reading {
   double interferometer_rad = kNaN;  // hob, optional: transmission error as the interferometer saw it
 
   /// What a bench reads that has no field above: SI, by the name of its column (Quantity in reading_column.h).
-  std::vector<std::pair<std::string, double>> quantities;
-  std::map<std::string, std::string> extra;  // columns of an imported file that we do not know, kept as text
+  std::vector<std::pair<std::string, double>> quantities = {};
+  std::map<std::string, std::string> extra = {};  // columns of an imported file that we do not know, kept as text
 };
 
 /// Writes readings.csv of formats.md: units in the header, empty = not available, `readings` in time order. A

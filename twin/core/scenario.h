@@ -53,18 +53,18 @@ struct EffectSettings {
 /// Structure without a name: a tabulated signal. An [[empirical]] block. By time it says what any reading between
 /// those that showed it had; by reading it repeats what one run had and predicts no other.
 struct EmpiricalSettings {
-  std::string signature;        // what it looks like, in words
-  std::string channel;          // to which the signal is added
-  std::string by = "reading";   // what it is tabulated by: "reading" or "time"
-  std::vector<int> reading;     // by reading: running numbers, each once; elsewhere the signal is zero
-  std::vector<double> time_s;   // by time: ascending, straight between, at the ends on; by reading: when
-                                // these were taken, or nothing. A record that was taken at other times has no such
-                                // signal
-  std::vector<double> value_m;  // one a reading, on a channel that reads a position ...
-  std::vector<double> value_rad;  // ... or an angle ...
-  std::vector<double> value;      // ... or something else, in the unit of its column; the other lists are empty
-  std::string provenance;
-  std::string location;  // "file.toml:31", for messages
+  std::string signature = {};       // what it looks like, in words
+  std::string channel = {};         // to which the signal is added
+  std::string by = "reading";       // what it is tabulated by: "reading" or "time"
+  std::vector<int> reading = {};    // by reading: running numbers, each once; elsewhere the signal is zero
+  std::vector<double> time_s = {};  // by time: ascending, straight between, at the ends on; by reading: when
+                                    // these were taken, or nothing. A record that was taken at other times has no
+                                    // such signal
+  std::vector<double> value_m = {};    // one a reading, on a channel that reads a position ...
+  std::vector<double> value_rad = {};  // ... or an angle ...
+  std::vector<double> value = {};  // ... or something else, in the unit of its column; the other lists are empty
+  std::string provenance = {};
+  std::string location = {};  // "file.toml:31", for messages
 };
 
 struct Scenario {

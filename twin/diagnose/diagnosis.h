@@ -30,13 +30,13 @@ struct Rival {
 };
 
 struct Cause {
-  std::string effect, where;
+  std::string effect = {}, where = {};
   double probability = kNaN;   // capped (see engine/family.h)
   double log_evidence = kNaN;  // log Bayes factor against its absence
   double rho = kNaN;           // length of its fitted signature after projection, in units of noise
-  std::vector<ParameterEstimate> parameters;
-  std::vector<Rival> indistinguishable_from;
-  std::string next_measurement;  // what would tell it from its rivals; empty if nothing is needed
+  std::vector<ParameterEstimate> parameters = {};
+  std::vector<Rival> indistinguishable_from = {};
+  std::string next_measurement = {};  // what would tell it from its rivals; empty if nothing is needed
 };
 
 /// Structure that no cause of the catalogue explains.
@@ -51,8 +51,8 @@ struct Gain {
   double noise_floor_m = kNaN;             // what a perfect model would leave
   double fraction_removed = kNaN;          // of the removable variance
   std::array<double, 2> interval95 = {kNaN, kNaN};  // of fraction_removed, bootstrap over blocks
-  double another_run = kNaN;        // what is expected of a run taken at another time (held_out.h)
-  bool has_tables_of_run = false;   // which tell nothing of another, and are left out of that
+  double another_run = kNaN;                        // what is expected of a run taken at another time (held_out.h)
+  bool has_tables_of_run = false;                   // which tell nothing of another, and are left out of that
   bool positive = false;                            // the gain is above zero at 95 %
   int folds = 0;
 };
@@ -80,17 +80,17 @@ struct Harmonic {
 struct Diagnosis {
   Verdict verdict = Verdict::kNone;
   double alarm_p = kNaN;
-  std::vector<Cause>
-      causes;  // most probable first; a tie lists all its members; simultaneous causes follow each other
-  UnknownPart unknown;
-  std::vector<std::string> noise;  // repairs of the noise model, in words: "tails like Student's t with 5 dof"
-  Gain gain;
-  std::vector<Invisible> invisible;
-  std::vector<Detectable> detectable;
-  std::vector<Harmonic> harmonics;  // angle devices only, ascending order
-  int readings = 0;                 // used
-  int left_out = 0;                 // NaN, saturated, no light, ...
-  std::vector<std::string> notes;   // missing columns and what cannot be named without them, and the like
+  std::vector<Cause> causes =
+      {};  // most probable first; a tie lists all its members; simultaneous causes follow each other
+  UnknownPart unknown = {};
+  std::vector<std::string> noise = {};  // repairs of the noise model, in words: "tails like Student's t with 5 dof"
+  Gain gain = {};
+  std::vector<Invisible> invisible = {};
+  std::vector<Detectable> detectable = {};
+  std::vector<Harmonic> harmonics = {};  // angle devices only, ascending order
+  int readings = 0;                      // used
+  int left_out = 0;                      // NaN, saturated, no light, ...
+  std::vector<std::string> notes = {};   // missing columns and what cannot be named without them, and the like
 };
 
 /// Some of the readings' structure has no name, whether it dominates (Verdict::kUnknown) or stands beside causes.
