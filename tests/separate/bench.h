@@ -26,10 +26,7 @@ inline LayoutOptions Layouts(int n, Clamping clamping) {
 }
 
 inline SeparateOptions Options(int n, Clamping clamping, Estimator estimator = Estimator::kRigorous) {
-  SeparateOptions options;
-  options.estimator = estimator;
-  options.layout = Layouts(n, clamping);
-  return options;
+  return {.estimator = estimator, .layout = Layouts(n, clamping)};
 }
 
 /// Errors of both tables at their n positions, ascending own angle.
@@ -65,11 +62,8 @@ inline std::vector<Motion> EmptyMotions(int n, const std::vector<int>& shifts, i
   const double step_rad = 2.0 * units::kPi / n;
   for (std::size_t s = 0; s < shifts.size(); ++s) {
     for (int k = 0; k < passes * n; ++k) {
-      Motion m;
-      m.reading = static_cast<int>(motions.size());
-      m.setup = static_cast<int>(s);
-      m.pass = k / n;
-      m.position = k % n;
+      Motion m{.reading = static_cast<int>(motions.size()), .setup = static_cast<int>(s), .pass = k / n,
+               .position = k % n};
       m.target_rad = m.position * step_rad;
       m.reference_rad = shifts[s] * step_rad - m.target_rad;
       m.status = ReadingStatus::kOk;
@@ -102,9 +96,8 @@ inline void FillExact(std::vector<Motion>& motions, const Truth& truth, const La
   const Layout layout = FindLayout(motions, geometry, options);
   for (const Sample& sample : layout.samples) {
     const SetUp& setup = layout.design.setups[static_cast<std::size_t>(sample.setup)];
-    PoseErrors errors;
-    errors.target = ErrorsAt(truth.target, sample.target);
-    errors.reference = ErrorsAt(truth.reference, sample.reference);
+    PoseErrors errors{.target = ErrorsAt(truth.target, sample.target),
+                      .reference = ErrorsAt(truth.reference, sample.reference)};
     motions[sample.motion].SetValues(
         MotionOf(GratingPose(layout.design.StopAt(setup, sample.target), errors, geometry)));
   }

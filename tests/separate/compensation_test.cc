@@ -6,6 +6,7 @@
 #include "tests/separate/index_spectrum.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/night.h"
+#include "tests/support/noise.h"
 #include "twin/report/compensation_text.h"
 #include "twin/separate/line_search.h"
 
@@ -76,11 +77,10 @@ TEST(Compensate, AddsNothingWhereNothingIs) {
 /// the sine of order 72 of 72 places shows a ten-thousandth of.
 TEST(Compensate, TakesNoOrderThatThePlacesHardlyShow) {
   std::vector<IndexReading> readings;
-  std::mt19937_64 random(5);
-  std::normal_distribution<double> noise(0.0, 0.3 * arcsec);
+  test::Noise noise(0.3 * arcsec, 5);
   for (int i = 0; i < 72; ++i) {
     const double error_rad = 30.0 * arcsec * std::cos(i * 5.0 * deg + 0.7);
-    readings.push_back({0, i * 5.0 * deg - error_rad, -error_rad + noise(random)});
+    readings.push_back({0, i * 5.0 * deg - error_rad, -error_rad + noise()});
   }
   const Compensation compensation = Compensate(MeansByPlace(readings));
   ASSERT_THAT(compensation.Orders(LineFate::kCompensated), ElementsAre(1));
@@ -285,10 +285,9 @@ TEST(MeansByPlace, KeepsSetUpsApartThatHaveNoPlaceInCommon) {
 }
 
 TEST(MeansByPlace, StatesTheNoiseOfOneReading) {
-  std::mt19937_64 random(5);
-  std::normal_distribution<double> normal(0.0, 0.3 * arcsec);
+  test::Noise normal(0.3 * arcsec, 5);
   std::vector<IndexReading> readings;
-  for (int k = 0; k < 2000; ++k) readings.push_back({k % 2, (k / 4 % 100) * deg, 1e-5 * (k % 2) + normal(random)});
+  for (int k = 0; k < 2000; ++k) readings.push_back({k % 2, (k / 4 % 100) * deg, 1e-5 * (k % 2) + normal()});
   // 2000 readings less 100 places and one constant: 1.6 % of one standard deviation.
   EXPECT_NEAR(MeansByPlace(readings).u_reading_rad, 0.3 * arcsec, 0.016 * 3.0 * 0.3 * arcsec);
 }

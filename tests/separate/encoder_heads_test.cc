@@ -32,13 +32,9 @@ struct Ring {
       const double shown =
           shaft + ValueOf(reference, shaft) + reference_noise_arcsec * arcsec * stream.Normal();
       for (std::size_t j = 0; j < heads_deg.size(); ++j) {
-        Reading r;
-        r.reading = static_cast<int>(readings.size());
-        r.time = Time(FromSeconds(i));
-        r.setup = static_cast<int>(j);
-        r.position = i;
-        r.head_rad = heads_deg[j] * deg;
-        r.reference_rad = shown;
+        Reading r{.reading = static_cast<int>(readings.size()), .time = Time(FromSeconds(i)),
+                  .setup = static_cast<int>(j), .position = i, .reference_rad = shown,
+                  .head_rad = heads_deg[j] * deg};
         const double at = shaft - r.head_rad;
         r.measured_rad = at + ValueOf(ring, at) + noise_arcsec * arcsec * stream.Normal();
         if (missing && missing(i, static_cast<int>(j))) r.measured_rad = kNaN, r.status = ReadingStatus::kMissing;
@@ -79,10 +75,7 @@ TEST(SeparateHeads, AtAnyAnglesGiveEveryOrderWithHeadsThatFailAndAShaftThatScatt
 }
 
 TEST(SeparateHeads, StateTheVarianceOfTheClosedForm) {
-  Ring bench;
-  bench.heads_deg = {0.0, 35.0, 110.0};
-  bench.noise_arcsec = 1.0;
-  bench.turns = 40;
+  Ring bench{.heads_deg = {0.0, 35.0, 110.0}, .turns = 40, .noise_arcsec = 1.0};
   const SeveralHeads found = SeparateHeads(bench.Readings());
   for (const int order : {1, 2, 7, 12, 30}) {
     const double closed = 2.0 * ShiftVariance(360, bench.heads_deg, order) * 360.0 / (72 * 40);  // re and im
@@ -95,12 +88,8 @@ TEST(SeparateHeads, CoverRingAndReferenceOverSeeds) {
   constexpr int kSeeds = 30;
   double ring = 0.0, reference = 0.0, published = 0.0;
   for (int seed = 0; seed < kSeeds; ++seed) {
-    Ring bench;
-    bench.heads_deg = {0.0, 90.0, 180.0, 270.0};
-    bench.noise_arcsec = 0.05;
-    bench.reference_noise_arcsec = 0.3;
-    bench.turns = 2;
-    bench.seed = static_cast<std::uint64_t>(seed);
+    Ring bench{.heads_deg = {0.0, 90.0, 180.0, 270.0}, .turns = 2, .noise_arcsec = 0.05,
+               .reference_noise_arcsec = 0.3, .seed = static_cast<std::uint64_t>(seed)};
     const auto readings = bench.Readings();
     const SeveralHeads found = SeparateHeads(readings);
     ring += MeanOrderChi2(found.ring, bench.ring) / kSeeds;
@@ -114,9 +103,7 @@ TEST(SeparateHeads, CoverRingAndReferenceOverSeeds) {
 }
 
 TEST(EqualDivision, IsNoisierThanAllHeadsByTheRootOfTheOthers) {
-  Ring bench;
-  bench.noise_arcsec = 0.1;
-  bench.turns = 20;
+  Ring bench{.turns = 20, .noise_arcsec = 0.1};
   const auto readings = bench.Readings();
   const SeveralHeads rigorous = SeparateHeads(readings), published = EqualDivision(readings);
   // One head less the mean of N has (N - 1) / N of its variance, all together 1 / N of it.
@@ -127,9 +114,7 @@ TEST(EqualDivision, IsNoisierThanAllHeadsByTheRootOfTheOthers) {
 }
 
 TEST(EqualDivision, ErrsWithHeadsElsewhereAndSaysSo) {
-  Ring bench;
-  bench.heads_deg = {0.0, 80.0, 185.0, 270.0};
-  bench.noise_arcsec = 0.01;
+  Ring bench{.heads_deg = {0.0, 80.0, 185.0, 270.0}, .noise_arcsec = 0.01};
   const auto readings = bench.Readings();
   const SeveralHeads published = EqualDivision(readings);
   EXPECT_GT(WorstOrder_arcsec(published.ring, bench.ring), 0.05) << "2 arcsec x the mean of exp(j head), 0.06";
@@ -185,10 +170,7 @@ struct Coast {
     for (const double speed : speeds_rad_s) {
       for (const int sense : senses) {
         for (int i = 0; i <= lines * turns; ++i) {
-          Reading r;
-          r.reading = static_cast<int>(readings.size());
-          r.pass = pass;
-          r.direction = sense;
+          Reading r{.reading = static_cast<int>(readings.size()), .pass = pass, .direction = sense};
           r.reference_rad = r.measured_rad = 0.1 + sense * units::turn * i / lines;
           const double stamp_s = begin_s + Time_s(r.reference_rad, speed, sense) + noise_s * stream.Normal();
           r.time = Time(FromSeconds(stamp_s));
@@ -251,10 +233,7 @@ TEST(SeparateByTime, CoversTheRingOverSeedsAndTellsTheNoiseOfATime) {
   constexpr int kSeeds = 15;
   double rigorous = 0.0, published = 0.0, noise_ns = 0.0;
   for (int seed = 0; seed < kSeeds; ++seed) {
-    Coast bench;
-    bench.noise_s = 5e-9;
-    bench.tau_s = 2000.0;
-    bench.seed = static_cast<std::uint64_t>(seed);
+    Coast bench{.tau_s = 2000.0, .noise_s = 5e-9, .seed = static_cast<std::uint64_t>(seed)};
     const auto readings = bench.Readings();
     const TimeReversal found = SeparateByTime(readings);
     rigorous += MeanOrderChi2(found.ring, bench.ring) / kSeeds;

@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <functional>
-#include <random>
 
+#include "tests/support/noise.h"
 #include "twin/benches/rotary_4dof/columns.h"
 #include "twin/benches/rotary_4dof/estimators/far_readings.h"
 #include "twin/benches/rotary_4dof/estimators/probe_separation.h"
@@ -38,8 +38,7 @@ struct Spun {
 };
 
 std::vector<Reading> Made(const Spun& of, const Curve& artefact_um) {
-  std::mt19937_64 random(of.seed);
-  std::normal_distribution<double> noise(0.0, of.noise_um);
+  twinbench::test::Noise noise(of.noise_um, of.seed);
   std::vector<Reading> readings;
   for (int setup = 0; setup < (of.both ? 2 : 1); ++setup) {
     for (int k = 0; k < of.turns * of.angles; ++k) {
@@ -51,7 +50,7 @@ std::vector<Reading> Made(const Spun& of, const Curve& artefact_um) {
       for (std::size_t i = 0; i < of.at_rad.size(); ++i) {
         const double f = of.at_rad[i], axis_um = AxisX_um(a) * std::cos(f) + AxisY_um(a) * std::sin(f);
         ProbeRadial_m(static_cast<int>(i))(r) =
-            (artefact_um(a - f) + 7.0 * std::cos(a - f) + (setup == 0 ? axis_um : -axis_um) + noise(random)) * um;
+            (artefact_um(a - f) + 7.0 * std::cos(a - f) + (setup == 0 ? axis_um : -axis_um) + noise()) * um;
       }
     }
   }
@@ -143,11 +142,8 @@ TEST(ProbeMotion, StatesWhatItScattersBy) {
   double of_x = 0.0, of_artefact = 0.0, stated_x = 0.0, stated_artefact = 0.0;
   constexpr int kTimes = 60;
   for (unsigned seed = 1; seed <= kTimes; ++seed) {
-    const RadialMotion m = Separated({.at_rad = {0.0, 100.0 * units::deg, 213.0 * units::deg},
-                                      .turns = 4,
-                                      .angles = 60,
-                                      .noise_um = 0.02,
-                                      .seed = seed},
+    const RadialMotion m = Separated({.at_rad = {0.0, 100.0 * units::deg, 213.0 * units::deg}, .turns = 4,
+                                      .angles = 60, .noise_um = 0.02, .seed = seed},
                                      [](double) { return 0.0; });
     for (Eigen::Index k = 0; k < 60; ++k) {
       of_x += std::pow(m.x->contour[k] / um - AxisX_um(m.x->angle_rad[k]), 2) / (60.0 * kTimes);
@@ -166,13 +162,12 @@ TEST(ProbeMotion, KeepsOrdersThatStandOutOfNoise) {
   double of_u2 = 0.0, of_points_um = 0.0;
   constexpr int kTimes = 40;
   for (unsigned seed = 1; seed <= kTimes; ++seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> noise(0.0, 0.04);
+    twinbench::test::Noise noise(0.04, seed);
     const Eigen::VectorXd angle_rad = Eigen::VectorXd::LinSpaced(720, 0.0, units::turn * 719.0 / 720.0);
     Eigen::MatrixXd turns(3, 720);
     for (Eigen::Index t = 0; t < 3; ++t)
       for (Eigen::Index k = 0; k < 720; ++k)
-        turns(t, k) = (0.8 * std::cos(2.0 * angle_rad[k]) + noise(random)) * um;
+        turns(t, k) = (0.8 * std::cos(2.0 * angle_rad[k]) + noise()) * um;
     const ErrorMotion plain = OfTurns(angle_rad, turns), standing = OfStandingOrders(plain);
     const auto value = EvaluateErrorMotion(standing, PlotCentre::kLeastSquares, {100, seed}).synchronous;
     of_u2 += std::pow((value.value / um - 1.6) / (value.u / um), 2) / kTimes;

@@ -169,9 +169,8 @@ TEST(GratingPose, PutsTheSpotsWhereTheIndependentOraclePutsThem) {
     const bool reclamp = pose.is_reclamped;
     const Stop stop{pose.target_rad, pose.reference_rad, reclamp ? 0.0 : -pose.shift_rad,
                     reclamp ? pose.shift_rad : 0.0};
-    PoseErrors errors;
-    errors.target = Eigen::Map<const Vector6>(pose.target.data());
-    errors.reference = ToRotorFrame(Eigen::Map<const Vector6>(pose.reference.data()), stop.reference_rad);
+    PoseErrors errors{.target = Eigen::Map<const Vector6>(pose.target.data()),
+                      .reference = ToRotorFrame(Eigen::Map<const Vector6>(pose.reference.data()), stop.reference_rad)};
     const Vector4 spots_m = measure::PredictSpots(MotionOf(GratingPose(stop, errors, Bench())), Bench());
     // The oracle prints nine digits of a micrometre.
     EXPECT_LT((spots_m - Eigen::Map<const Vector4>(pose.spots_m.data())).cwiseAbs().maxCoeff(), 2e-15) << reclamp;

@@ -67,9 +67,7 @@ TEST(FitHarmonics, StatesAnUncertaintyThatMatchesItsScatterBetweenThePositions) 
 
 TEST(FitHarmonics, CountsWhatItDoesNotModel) {
   Stream stream(3, "test.harmonics");
-  TrueCurve curve;
-  curve.amplitude_rad = {5 * arcsec, 0.0, 2 * arcsec};
-  curve.phase_rad = {0.3, 0.0, 1.0};
+  TrueCurve curve{.amplitude_rad = {5 * arcsec, 0.0, 2 * arcsec}, .phase_rad = {0.3, 0.0, 1.0}};
   const HarmonicModel model = FitHarmonics(Sampled(curve, 72, 0.0, stream), 2);
   EXPECT_NEAR(model.residual_rms_rad / arcsec, 2.0 / std::sqrt(2.0), 1e-9);
   EXPECT_NEAR(model.u_unmodelled_rad / arcsec, std::sqrt(4.0 / 2 * 72 / (72 - 5)), 1e-9);

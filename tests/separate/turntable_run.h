@@ -68,10 +68,8 @@ inline TurntableStop ReadStop(const TrueBench& bench, const Seat& seat, int setu
   const double x = bench.Index(turntable_deg, seat.shift_deg) + 7.0 * arcsec * setup;
   const double y = seat.tilt_rad * std::cos(turntable_deg * deg - seat.azimuth_rad) - 4.0 * arcsec * setup;
   const double c = std::cos(bench.gamma_rad), s = std::sin(bench.gamma_rad);
-  TurntableStop stop;
-  stop.setup = setup;
-  stop.turntable_rad = turntable_deg * deg;
-  stop.multitooth_rad = (seat.shift_deg - turntable_deg) * deg;
+  TurntableStop stop{.setup = setup, .turntable_rad = turntable_deg * deg,
+                     .multitooth_rad = (seat.shift_deg - turntable_deg) * deg};
   stop.x_rad = c * x + s * y + bench.u_x_rad * noise.Normal();  // the crosshair's axes, turned by gamma
   stop.y_rad = c * y - s * x + bench.u_y_rad * noise.Normal();
   return stop;

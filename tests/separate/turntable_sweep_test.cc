@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <functional>
-#include <random>
 
+#include "tests/support/noise.h"
 #include "twin/benches/turntable_autocollimator/estimators/collimator_sweep.h"
 #include "twin/core/units.h"
 
@@ -22,8 +22,7 @@ struct SweepOf {
 };
 
 std::vector<Reading> Made(const SweepOf& of) {
-  std::mt19937_64 random(of.seed);
-  std::normal_distribution<double> noise(0.0, of.noise_arcsec);
+  twinbench::test::Noise noise(of.noise_arcsec, of.seed);
   std::vector<Reading> readings;
   for (const int direction : {1, -1}) {
     if (direction < 0 && !of.both_ways) break;
@@ -35,8 +34,8 @@ std::vector<Reading> Made(const SweepOf& of) {
       r.pass = direction > 0 ? 0 : 1;
       r.target_rad = angle_arcsec * arcsec;
       r.autocollimator_yaw_rad =
-          (of.x_arcsec(angle_arcsec) + noise(random) + (direction < 0 ? of.backward_arcsec : 0.0)) * arcsec;
-      if (of.y_arcsec) r.autocollimator_tilt_rad = (of.y_arcsec(angle_arcsec) + noise(random)) * arcsec;
+          (of.x_arcsec(angle_arcsec) + noise() + (direction < 0 ? of.backward_arcsec : 0.0)) * arcsec;
+      if (of.y_arcsec) r.autocollimator_tilt_rad = (of.y_arcsec(angle_arcsec) + noise()) * arcsec;
     }
   }
   return readings;
