@@ -51,7 +51,8 @@ struct Shaped {
 const Shaped& Cyclic() {
   static const Shaped cyclic = {"cyclic", 2, [](const AxisAt& axis, double pitch_m, double* shown) {
                                   const double wave_rad = units::turn * axis.at_m / pitch_m;
-                                  shown[0] = std::cos(wave_rad), shown[1] = std::sin(wave_rad);
+                                  shown[0] = std::cos(wave_rad);
+                                  shown[1] = std::sin(wave_rad);
                                 }};
   return cyclic;
 }
