@@ -23,27 +23,33 @@ twinbench_headers(twinbench_headers_unhurried OPTIONS ${TWINBENCH_UNHURRIED})
 #                [PRIVATE_LIBRARIES ...])
 #
 # One folder, one static library. ROOMS are the rooms it may include; tests/layers checks that the includes agree.
-# KERNELS are sources whose loops set the pace of a run: compiled at -O3, each by itself. The thread sanitizer does not look into
-# them: which of a function's clones is taken is decided before it is up, and calling it then is a crash. libFuzzer does not
-# count their branches, which tell it nothing. UNHURRIED: no loop here sets a pace.
+# KERNELS are sources whose loops set the pace of a run: compiled at -O3. The thread sanitizer does not look into them: which of a
+# function's clones is taken is decided before it is up, and calling it then is a crash. libFuzzer does not count their branches,
+# which tell it nothing. UNHURRIED: no loop here sets a pace.
 function(twinbench_room name)
   cmake_parse_arguments(ROOM "UNHURRIED" "" "SOURCES;KERNELS;ROOMS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
-  add_library(twinbench_${name} STATIC ${ROOM_SOURCES} ${ROOM_KERNELS})
-  set(kernel_options "$<$<CONFIG:Release>:-O3>")
-  if(TWINBENCH_FUZZ)
-    set(kernel_options "-O3;-fno-sanitize=fuzzer-no-link")
+  list(TRANSFORM ROOM_ROOMS PREPEND twinbench_)
+  add_library(twinbench_${name} STATIC ${ROOM_SOURCES})
+  list(LENGTH ROOM_SOURCES sources)
+  if(sources GREATER CMAKE_UNITY_BUILD_BATCH_SIZE)  # batches of one size: a few sources left over would read all headers again
+    math(EXPR batches "(${sources} + ${CMAKE_UNITY_BUILD_BATCH_SIZE} / 2) / ${CMAKE_UNITY_BUILD_BATCH_SIZE}")
+    math(EXPR batch "(${sources} + ${batches} - 1) / ${batches}")
+    set_target_properties(twinbench_${name} PROPERTIES UNITY_BUILD_BATCH_SIZE ${batch})
   endif()
-  set_source_files_properties(${ROOM_KERNELS} PROPERTIES
-    COMPILE_OPTIONS "${kernel_options};-fno-sanitize=thread" SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
+  if(ROOM_KERNELS)
+    add_library(twinbench_${name}_kernels OBJECT ${ROOM_KERNELS})
+    target_include_directories(twinbench_${name}_kernels PRIVATE ${PROJECT_SOURCE_DIR})
+    target_compile_options(twinbench_${name}_kernels PRIVATE
+      $<IF:$<BOOL:${TWINBENCH_FUZZ}>,-O3;-fno-sanitize=fuzzer-no-link,$<$<CONFIG:Release>:-O3>> -fno-sanitize=thread)
+    target_link_libraries(twinbench_${name}_kernels PRIVATE ${ROOM_ROOMS} ${ROOM_LIBRARIES} ${ROOM_PRIVATE_LIBRARIES})
+    target_sources(twinbench_${name} PRIVATE $<TARGET_OBJECTS:twinbench_${name}_kernels>)
+  endif()
   target_include_directories(twinbench_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/twinbench>)
   target_compile_features(twinbench_${name} INTERFACE cxx_std_20)
   set_target_properties(twinbench_${name} PROPERTIES EXPORT_NAME ${name})
   set_property(GLOBAL APPEND PROPERTY TWINBENCH_ROOMS twinbench_${name})
-  foreach(room IN LISTS ROOM_ROOMS)
-    target_link_libraries(twinbench_${name} PUBLIC twinbench_${room})
-  endforeach()
-  target_link_libraries(twinbench_${name} PUBLIC ${ROOM_LIBRARIES} PRIVATE ${ROOM_PRIVATE_LIBRARIES})
+  target_link_libraries(twinbench_${name} PUBLIC ${ROOM_ROOMS} ${ROOM_LIBRARIES} PRIVATE ${ROOM_PRIVATE_LIBRARIES})
   if(ROOM_UNHURRIED)
     twinbench_unhurried(twinbench_${name})
   else()
@@ -66,7 +72,7 @@ function(twinbench_bench name)
   cmake_parse_arguments(BENCH "" "" "TEXT;PROCEDURE;TWIN;SOURCES" ${ARGN})
   list(TRANSFORM BENCH_TEXT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   target_sources(twinbench_bench_formats PRIVATE ${BENCH_TEXT})
-  twinbench_room(${name}_procedure SOURCES ${BENCH_PROCEDURE} ROOMS core procedure)
+  twinbench_room(${name}_procedure UNHURRIED SOURCES ${BENCH_PROCEDURE} ROOMS core procedure)
   twinbench_room(${name}_twin SOURCES ${BENCH_TWIN} ROOMS ${name}_procedure model sim
     PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
   twinbench_room(${name} SOURCES ${BENCH_SOURCES} ROOMS ${name}_twin plausible separate uncertainty plan diagnose report

@@ -67,9 +67,21 @@ MatrixXd OrthonormalBasisOf(const MatrixXd& a, double threshold) {
   return qr.householderQ() * MatrixXd::Identity(a.rows(), qr.rank());
 }
 
+MatrixXd OrthonormalColumnsOf(const MatrixXd& a) {
+  if (!CanBeDecomposed(a)) return NoNumbers(a.rows(), a.cols());
+  return a.householderQr().householderQ() * MatrixXd::Identity(a.rows(), a.cols());
+}
+
 MatrixXd SolveLeastSquares(const MatrixXd& a, const MatrixXd& b) {
   if (!CanBeDecomposed(a)) return NoNumbers(a.cols(), b.cols());
   return a.colPivHouseholderQr().solve(b);
+}
+
+std::optional<Eigen::Vector3d> SolveThree(const Eigen::MatrixX3d& a, const VectorXd& b) {
+  if (a.rows() == 0 || !a.allFinite()) return std::nullopt;
+  const auto qr = a.colPivHouseholderQr();
+  if (qr.rank() < 3) return std::nullopt;
+  return qr.solve(b);
 }
 
 MatrixXd PseudoInverseOf(const MatrixXd& a) {
@@ -87,6 +99,35 @@ VectorXd RotatedByQ(const MatrixXd& a, const VectorXd& v) {
 MatrixXd SolveSquare(const MatrixXd& a, const MatrixXd& b) {
   if (!CanBeDecomposed(a)) return NoNumbers(a.cols(), b.cols());
   return a.partialPivLu().solve(b);
+}
+
+VectorXd SolveSymmetric(const MatrixXd& a, const VectorXd& b) {
+  if (!CanBeDecomposed(a)) return NoNumbers(a.cols(), 1);
+  return a.ldlt().solve(b);
+}
+
+MatrixXd SolveSymmetric(const MatrixXd& a, const MatrixXd& b) {
+  if (!CanBeDecomposed(a)) return NoNumbers(a.cols(), b.cols());
+  return a.ldlt().solve(b);
+}
+
+MatrixXd InverseOfSymmetric(const MatrixXd& a) {
+  return SolveSymmetric(a, MatrixXd(MatrixXd::Identity(a.rows(), a.rows())));
+}
+
+VectorXd SolvePositive(const MatrixXd& a, const VectorXd& b) {
+  if (!CanBeDecomposed(a)) return NoNumbers(a.cols(), 1);
+  return a.llt().solve(b);
+}
+
+MatrixXd SolvePositive(const MatrixXd& a, const MatrixXd& b) {
+  if (!CanBeDecomposed(a)) return NoNumbers(a.cols(), b.cols());
+  return a.llt().solve(b);
+}
+
+MatrixXd CholeskyFactorOf(const MatrixXd& a) {
+  if (!CanBeDecomposed(a)) return NoNumbers(a.rows(), a.rows());
+  return a.llt().matrixL();
 }
 
 std::optional<MatrixXd> InverseOfPositive(const MatrixXd& a, double least_condition) {

@@ -33,8 +33,14 @@ Eigen::MatrixXd NullSpaceOf(const Eigen::MatrixXd& a, double threshold);
 /// @param threshold  Pivots up to this part of the largest are zero.
 Eigen::MatrixXd OrthonormalBasisOf(const Eigen::MatrixXd& a, double threshold);
 
+/// Orthonormal columns, each of the span of the columns of `a` up to it, which has full rank.
+Eigen::MatrixXd OrthonormalColumnsOf(const Eigen::MatrixXd& a);
+
 /// Least squares of full rank by pivoted Householder reflections: minimises |a x - b| for each column of b.
 Eigen::MatrixXd SolveLeastSquares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// Least squares of three unknowns, by the same; nothing if the columns of `a` do not determine them.
+std::optional<Eigen::Vector3d> SolveThree(const Eigen::MatrixX3d& a, const Eigen::VectorXd& b);
 
 /// The matrix that takes observations to the least-squares coefficients of the columns of `a`, which has full rank.
 Eigen::MatrixXd PseudoInverseOf(const Eigen::MatrixXd& a);
@@ -44,6 +50,19 @@ Eigen::VectorXd RotatedByQ(const Eigen::MatrixXd& a, const Eigen::VectorXd& v);
 
 /// x of a x = b for a square, regular matrix.
 Eigen::MatrixXd SolveSquare(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// x of a x = b, and the inverse of `a`, by L D L^T: a symmetric matrix without negative eigenvalues, of which only the lower half is
+/// read.
+Eigen::VectorXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+Eigen::MatrixXd InverseOfSymmetric(const Eigen::MatrixXd& a);
+
+/// x of a x = b for a positive definite matrix, by its Cholesky factor; noise if it is not.
+Eigen::VectorXd SolvePositive(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+Eigen::MatrixXd SolvePositive(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// L of a = L L^T, as far as `a` is positive definite: from the first pivot that is not, what stood there. Only its lower half is read.
+Eigen::MatrixXd CholeskyFactorOf(const Eigen::MatrixXd& a);
 
 /// Inverse of a positive definite matrix, of which only the lower half is read.
 /// @return nothing if it is not positive definite, or its reciprocal condition is not above the least.

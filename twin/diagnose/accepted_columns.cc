@@ -1,6 +1,7 @@
 #include "twin/diagnose/accepted_columns.h"
 
 #include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench::diagnose {
 
@@ -24,7 +25,7 @@ Eigen::MatrixXd RelativeCovariance(const Projector& projector, const Eigen::Matr
   const Eigen::MatrixXd scaled = S * prior_precision.cwiseSqrt().cwiseInverse().asDiagonal();
   Eigen::MatrixXd normal = scaled.transpose() * projector.Apply(scaled);
   normal.diagonal().array() += 1.0;
-  return normal.llt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+  return SolvePositive(normal, Eigen::MatrixXd(Eigen::MatrixXd::Identity(normal.rows(), normal.cols())));
 }
 
 Eigen::VectorXd FitAmplitudes(const Projector& projector, const Eigen::MatrixXd& S, const Eigen::MatrixXd& y,
@@ -35,7 +36,7 @@ Eigen::VectorXd FitAmplitudes(const Projector& projector, const Eigen::MatrixXd&
   const Eigen::MatrixXd projected = projector.Apply(scaled);
   Eigen::MatrixXd normal = scaled.transpose() * projected;
   normal.diagonal().array() += 1.0;
-  return sd.cwiseProduct(normal.ldlt().solve(projected.transpose() * y));
+  return sd.cwiseProduct(SolveSymmetric(normal, Eigen::MatrixXd(projected.transpose() * y)));
 }
 
 LeftOver FitAll(const LinearRun& run, const NoiseModel& noise, const std::vector<Accepted>& accepted) {

@@ -1,10 +1,10 @@
 #include "twin/diagnose/asked_again.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/robust_scale.h"
 #include "twin/diagnose/engine/fit_within.h"
 
@@ -108,8 +108,7 @@ void StateUncertainties(const Projector& projector, const Eigen::VectorXd& weigh
   const Eigen::MatrixXd white = weight.asDiagonal() * asked.slopes * asked.sd.asDiagonal();
   Eigen::MatrixXd normal = white.transpose() * projector.Apply(white);
   normal.diagonal().array() += variance;  // no parameter is known worse than it was thought of
-  const Eigen::MatrixXd cov =
-      variance * normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+  const Eigen::MatrixXd cov = variance * InverseOfSymmetric(normal);
   for (std::size_t k = 0; k < movable.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
     asked.effects[movable[k].effect].finding.u[movable[k].parameter] = std::sqrt(cov(at, at)) * asked.sd[at];

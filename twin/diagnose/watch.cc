@@ -1,12 +1,12 @@
 #include "twin/diagnose/watch.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "twin/core/distributions.h"
 #include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/sequential_fit.h"
 
 namespace twinbench::diagnose {
@@ -108,7 +108,7 @@ struct Innovation {
       d.variance = covariance(channel, channel) * sigma[channel] * sigma[channel];
     } else {
       const Eigen::VectorXd w = series.weight.cwiseQuotient(sigma);
-      const Eigen::VectorXd solved = covariance.ldlt().solve(w);
+      const Eigen::VectorXd solved = SolveSymmetric(covariance, w);
       d.variance = 1.0 / w.dot(solved);
       d.value = d.variance * solved.dot(error);
     }
@@ -122,8 +122,8 @@ class RunningNoiseScale {
  public:
   double value() const { return std::sqrt(sum_ / rows_); }
   void Add(const Innovation& innovation) {
-    const Eigen::LLT<Eigen::MatrixXd> root(innovation.covariance);
-    const Eigen::VectorXd independent = root.matrixL().solve(innovation.error);
+    const Eigen::VectorXd independent =
+        CholeskyFactorOf(innovation.covariance).triangularView<Eigen::Lower>().solve(innovation.error);
     for (const double z : independent) {
       sum_ += std::min(z * z, kMostOfOneRow * sum_ / rows_);
       rows_ += 1.0;

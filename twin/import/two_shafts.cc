@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/reading.h"
 #include "twin/core/units.h"
 #include "twin/import/common.h"
@@ -69,7 +69,7 @@ double SlopeOf(const TwoShafts& shafts) {
     products += row.transpose() * a_rad[i];
   }
   const Eigen::Index used = HasTurns(shafts) ? terms : 2;
-  return squares.topLeftCorner(used, used).ldlt().solve(products.head(used))[1];
+  return SolveSymmetric(squares.topLeftCorner(used, used), Eigen::VectorXd(products.head(used)))[1];
 }
 
 /// A jump from one row to the next that hardly any others have - a tooth that slipped, a reversal - tells nothing of a

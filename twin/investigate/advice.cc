@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 #include "twin/investigate/expected_information.h"
 #include "twin/investigate/free_sizes.h"
@@ -23,13 +22,12 @@ constexpr double kAsGoodAsGone = 1e-9;  // of the largest direction
 /// Columns of all signatures side by side, as coordinates in which W is 1.
 Eigen::MatrixXd Coordinates(const TakenRun& run, const Eigen::MatrixXd& columns) {
   const Eigen::MatrixXd gram = Product(run, columns, columns);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (gram + gram.transpose()));
-  const double largest = std::max(solver.eigenvalues().maxCoeff(), 0.0);
+  const auto [values, vectors] = EigenOfSymmetric(0.5 * (gram + gram.transpose()));
+  const double largest = std::max(values.maxCoeff(), 0.0);
   Eigen::Index kept = 0;
-  for (const double value : solver.eigenvalues()) kept += value > kAsGoodAsGone * largest ? 1 : 0;
+  for (const double value : values) kept += value > kAsGoodAsGone * largest ? 1 : 0;
   if (largest == 0.0) return Eigen::MatrixXd::Zero(1, columns.cols());
-  return solver.eigenvalues().tail(kept).cwiseSqrt().asDiagonal() *
-         solver.eigenvectors().rightCols(kept).transpose();
+  return values.tail(kept).cwiseSqrt().asDiagonal() * vectors.rightCols(kept).transpose();
 }
 
 /// What one hypothesis takes from the run's readings, and one standard uncertainty of its sizes each way.
@@ -39,8 +37,7 @@ Eigen::MatrixXd Signature(const JointFit& fit, const TakenRun& run, const Means&
   Eigen::MatrixXd signature(left.size(), 1 + slopes.cols());
   signature.col(0) = run.left - left;
   if (slopes.cols() > 0) {
-    const Eigen::MatrixXd root = fit.cov.llt().matrixL();
-    signature.rightCols(slopes.cols()) = slopes * root;
+    signature.rightCols(slopes.cols()) = slopes * CholeskyFactorOf(fit.cov);
   }
   return signature;
 }

@@ -1,9 +1,9 @@
 #include "twin/investigate/expected_information.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/core/stream.h"
 
 namespace twinbench::investigate {
@@ -16,22 +16,22 @@ class Gaussian {
  public:
   explicit Gaussian(const Expectation& e)
       : mean_(e.mean),
-        root_((Eigen::MatrixXd::Identity(e.mean.size(), e.mean.size()) + e.spread * e.spread.transpose()).llt()),
-        half_log_det_(root_.matrixLLT().diagonal().array().log().sum()) {}
+        root_(CholeskyFactorOf(Eigen::MatrixXd::Identity(e.mean.size(), e.mean.size()) + e.spread * e.spread.transpose())),
+        half_log_det_(root_.diagonal().array().log().sum()) {}
 
   Eigen::VectorXd Draw(Stream& stream) const {
     Eigen::VectorXd normal(mean_.size());
     for (double& value : normal) value = stream.Normal();
-    return mean_ + root_.matrixL() * normal;
+    return mean_ + root_.triangularView<Eigen::Lower>() * normal;
   }
   double LogDensity(const Eigen::VectorXd& y) const {
-    const Eigen::VectorXd white = root_.matrixL().solve(y - mean_);
+    const Eigen::VectorXd white = root_.triangularView<Eigen::Lower>().solve(y - mean_);
     return -0.5 * white.squaredNorm() - half_log_det_;
   }
 
  private:
   Eigen::VectorXd mean_;
-  Eigen::LLT<Eigen::MatrixXd> root_;
+  Eigen::MatrixXd root_;
   double half_log_det_;
 };
 

@@ -1,12 +1,12 @@
 #include "twin/investigate/fit_certainty.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
 
 #include "twin/core/happened_once.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::investigate {
@@ -29,7 +29,7 @@ double LogShareLeft(const Eigen::MatrixXd& normal, const Eigen::VectorXd& breadt
   if (breadth.size() == 0) return 0.0;
   const Eigen::MatrixXd widened = Eigen::MatrixXd::Identity(normal.rows(), normal.cols()) +
                                   breadth.asDiagonal() * normal * breadth.asDiagonal();
-  return -widened.llt().matrixLLT().diagonal().array().log().sum();
+  return -CholeskyFactorOf(widened).diagonal().array().log().sum();
 }
 
 /// Sizes that the readings do not tell from one of their bounds.

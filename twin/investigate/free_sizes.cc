@@ -1,11 +1,11 @@
 #include "twin/investigate/free_sizes.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "twin/core/happened_once.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/signal_effect.h"
 #include "twin/core/units.h"
 
@@ -105,7 +105,7 @@ Eigen::VectorXd Breadth(const Hypothesis& hypothesis, const std::vector<Size>& s
 
 Eigen::MatrixXd CovarianceOf(const Eigen::MatrixXd& normal, const Eigen::VectorXd& breadth) {
   const Eigen::MatrixXd before = breadth.array().square().inverse().matrix().asDiagonal();
-  return (normal + before).llt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+  return SolvePositive(normal + before, Eigen::MatrixXd(Eigen::MatrixXd::Identity(normal.rows(), normal.cols())));
 }
 
 }  // namespace twinbench::investigate

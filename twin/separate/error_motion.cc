@@ -1,6 +1,5 @@
 #include "twin/separate/error_motion.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -101,8 +100,8 @@ Eigen::MatrixXd Contours(const ErrorMotion& motion, ErrorMotionDraws& draws) {
   const double largest = motion.cov.diagonal().maxCoeff();
   Eigen::MatrixXd drawn = Eigen::MatrixXd::Zero(normal.rows(), normal.cols());
   if (largest > 0.0) {
-    const Eigen::LLT<Eigen::MatrixXd> root(motion.cov + kRounding * largest * Eigen::MatrixXd::Identity(motion.cov.rows(), motion.cov.cols()));
-    drawn = root.matrixL() * normal;
+    const Eigen::MatrixXd root = CholeskyFactorOf(motion.cov + kRounding * largest * Eigen::MatrixXd::Identity(motion.cov.rows(), motion.cov.cols()));
+    drawn = root.triangularView<Eigen::Lower>() * normal;
   }
   return drawn.colwise() + motion.contour;
 }

@@ -1,10 +1,10 @@
 #include "twin/benches/circular_motion/columns.h"
 
-#include <Eigen/QR>
 #include <cmath>
 #include <map>
 
 #include "twin/benches/circular_motion/format.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 
 namespace twinbench::benches::circular {
@@ -51,9 +51,9 @@ void AboutItsCentre(std::vector<Reading>& readings) {
       plane.row(k) << 2.0 * kCommandedX_m(r), 2.0 * kCommandedY_m(r), 1.0;
       squares[k] = std::pow(Radius_m(r), 2);
     }
-    const auto solver = plane.colPivHouseholderQr();
-    if (solver.rank() < 3) continue;
-    const Eigen::Vector3d found = solver.solve(squares);
+    const std::optional<Eigen::Vector3d> solved = SolveThree(plane, squares);
+    if (!solved) continue;
+    const Eigen::Vector3d& found = *solved;
     const double radius2_m2 = found[2] + found.head<2>().squaredNorm();
     const bool is_round = ((plane * found - squares).array().abs() < 2.0 * kRound * radius2_m2).all();
     if (!is_round || found.head<2>().norm() < kOff * std::sqrt(radius2_m2)) continue;

@@ -1,12 +1,12 @@
 #include "twin/diagnose/engine/alone.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <set>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/engine/answer.h"
 #include "twin/diagnose/engine/posterior.h"
 #include "twin/diagnose/engine/prior.h"
@@ -42,12 +42,12 @@ Fitted FittedAt(int grid_point, const Family& family, const LinearRun& run, cons
   const Eigen::MatrixXd white = noise.Whiten(run, family.ColumnsAt(grid_point)) * scale.asDiagonal();
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(amplitudes, amplitudes);
   const Eigen::MatrixXd gram = white.transpose() * projector.Apply(white);
-  const Eigen::LDLT<Eigen::MatrixXd> normal(gram + one);
-  const Eigen::VectorXd sizes = normal.solve(white.transpose() * projected);
+  const Eigen::MatrixXd normal = gram + one;
+  const Eigen::VectorXd sizes = SolveSymmetric(normal, Eigen::VectorXd(white.transpose() * projected));
   Fitted fitted{family.ShapeAt(grid_point), scale.asDiagonal() * sizes,
                 Eigen::MatrixXd::Zero(amplitudes + shapes, amplitudes + shapes),
                 std::sqrt(std::max(0.0, sizes.dot(gram * sizes)))};
-  fitted.cov.topLeftCorner(amplitudes, amplitudes) = scale.asDiagonal() * normal.solve(one) * scale.asDiagonal();
+  fitted.cov.topLeftCorner(amplitudes, amplitudes) = scale.asDiagonal() * InverseOfSymmetric(normal) * scale.asDiagonal();
   for (Eigen::Index k = 0; k < shapes; ++k) {
     const Shape& shape = family.shapes[static_cast<std::size_t>(k)];
     fitted.cov(amplitudes + k, amplitudes + k) = std::pow(Resolution(shape, fitted.shape[k]), 2);

@@ -1,8 +1,8 @@
 #include "twin/diagnose/engine/estimate.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/engine/base.h"
 #include "twin/diagnose/engine/refine.h"
 #include "twin/diagnose/engine/shape_spread.h"
@@ -70,9 +70,7 @@ Eigen::MatrixXd CovarianceOf(const Projector& projector, const Eigen::MatrixXd& 
   Eigen::MatrixXd normal = S.transpose() * S - H.transpose() * H;
   normal.diagonal() = normal.diagonal().cwiseMax(0.0) + precision;
   const Eigen::VectorXd unit = normal.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = unit.asDiagonal() * normal * unit.asDiagonal();
-  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(S.cols(), S.cols());
-  return unit.asDiagonal() * scaled.ldlt().solve(one) * unit.asDiagonal();
+  return unit.asDiagonal() * InverseOfSymmetric(unit.asDiagonal() * normal * unit.asDiagonal()) * unit.asDiagonal();
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "twin/diagnose/engine/overtones.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -78,10 +77,9 @@ Eigen::VectorXd Following(const Waveform& waveform, const Eigen::VectorXd& funda
 /// Log Bayes factor of "mean + spread * N(0, 1)" in white data against nothing.
 double LogBayesFactor(const Eigen::VectorXd& data, const Eigen::VectorXd& mean, const Eigen::MatrixXd& spread) {
   const Eigen::VectorXd off = data - mean, along = spread.transpose() * off;
-  const Eigen::LLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(spread.cols(), spread.cols()) +
-                                          spread.transpose() * spread);
-  const double chi2 = off.squaredNorm() - along.dot(inner.solve(along));
-  return 0.5 * (data.squaredNorm() - chi2) - inner.matrixLLT().diagonal().array().log().sum();
+  const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(spread.cols(), spread.cols()) + spread.transpose() * spread;
+  const double chi2 = off.squaredNorm() - along.dot(SolvePositive(inner, along));
+  return 0.5 * (data.squaredNorm() - chi2) - CholeskyFactorOf(inner).diagonal().array().log().sum();
 }
 
 /// One wave, what the readings leave beside all terms, and how overtones would show there: all white, in units of the

@@ -1,6 +1,5 @@
 #include "twin/benches/circular_motion/estimators/iso230_4.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,6 +7,7 @@
 #include "twin/benches/circular_motion/estimators/path_noise.h"
 #include "twin/benches/circular_motion/estimators/radii.h"
 #include "twin/core/distributions.h"
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench::separate::circular {
 namespace {
@@ -140,7 +140,7 @@ Iso230_4Value MeanOf(const Radii& radii, const SharedUncertainty& shared) {
   if (radii.Count() == 0) return {};
   const Eigen::MatrixXd circle = CircleOf(radii);
   const Eigen::MatrixXd weighted = radii.stands_for.asDiagonal() * circle;
-  return Weighted(radii, weighted * (circle.transpose() * weighted).ldlt().solve(VectorXd::Unit(circle.cols(), 2)), shared);
+  return Weighted(radii, weighted * SolveSymmetric(circle.transpose() * weighted, VectorXd(VectorXd::Unit(circle.cols(), 2))), shared);
 }
 
 /// The readings of a pass by their angle within a turn.

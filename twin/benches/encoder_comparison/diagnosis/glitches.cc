@@ -14,9 +14,9 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-constexpr int kBeside = 7;     // readings on either side
+constexpr int kBesideOne = 7;     // readings on either side
 constexpr int kLongest = 5;    // glitch
-constexpr double kFar = 12.0;  // in medians of absolute distances: eight deviations of normal noise
+constexpr double kFarOff = 12.0;  // in medians of absolute distances: eight deviations of normal noise
 constexpr double kHalfFar = 6.0;
 constexpr double kMostShare = 0.05;
 
@@ -47,7 +47,7 @@ std::vector<double> Farness(const LinearRun& run, const Eigen::VectorXd& relativ
   const double range = UsualRange(run);
   std::vector<double> away, scatter;
   for (int i = 0; i < run.schedule.Readings(); ++i) {
-    std::vector<double> around = Around(run, i, i - kBeside, i + kBeside);
+    std::vector<double> around = Around(run, i, i - kBesideOne, i + kBesideOne);
     const double middle = around.empty() ? run.residual[i] : Median(around);
     for (double& x : around) x = std::abs(x - middle);
     away.push_back(std::abs(run.residual[i] - middle) / std::max(1.0, relative_noise[i]));
@@ -74,9 +74,9 @@ bool GoesOnAsUsual(const Schedule& s, int begin, int end, double usual_step_rad)
 /// begins) with very few that are very far off there is one side only.
 bool Returns(const LinearRun& run, const std::vector<double>& farness, int begin, int end) {
   constexpr std::size_t kFewest = 3;
-  constexpr double kAgree = 0.5, kVeryFar = 5.0 * kFar;
-  const std::vector<double> before = Around(run, begin, begin - kBeside, begin - 1),
-                            behind = Around(run, begin, end, end + kBeside - 1);
+  constexpr double kAgree = 0.5, kVeryFar = 5.0 * kFarOff;
+  const std::vector<double> before = Around(run, begin, begin - kBesideOne, begin - 1),
+                            behind = Around(run, begin, end, end + kBesideOne - 1);
   const auto is_very_far = [&](int i) { return farness[static_cast<std::size_t>(i)] > kVeryFar; };
   bool are_very_far = end - begin <= static_cast<int>(kFewest);
   for (int i = begin; i < end; ++i) are_very_far = are_very_far && is_very_far(i);
@@ -110,7 +110,7 @@ bool ComeBack(const std::vector<int>& begins, const Schedule& s, double usual_st
 
 double MiddleBeside(const Eigen::VectorXd& rows, const std::vector<int>& left_out, int i) {
   std::vector<double> values;
-  for (int k = std::max(0, i - kBeside); k <= std::min(static_cast<int>(rows.size()) - 1, i + kBeside); ++k) {
+  for (int k = std::max(0, i - kBesideOne); k <= std::min(static_cast<int>(rows.size()) - 1, i + kBesideOne); ++k) {
     if (!std::ranges::binary_search(left_out, k)) values.push_back(rows[k]);
   }
   return Median(std::move(values));
@@ -145,7 +145,7 @@ void TellFar(const Glitches& glitches, DiagnosisRun& result) {
   Diagnosis& d = result.diagnosis;
   const auto readings = static_cast<double>(result.run.schedule.Readings());
   NoiseCause far;
-  far.log_bayes = 0.5 * kFar * kFar * static_cast<double>(glitches.rows.size());
+  far.log_bayes = 0.5 * kFarOff * kFarOff * static_cast<double>(glitches.rows.size());
   far.outliers = glitches.rows;
   double squares = glitches.size_rad.squaredNorm();
   const auto other = std::ranges::find(d.causes, "outliers", &Cause::effect);
@@ -226,7 +226,7 @@ Glitches FindGlitches(const LinearRun& run, const Eigen::VectorXd& relative_nois
   std::vector<int> begins;
   for (int i = 0; i < s.Readings(); ++i) {
     int end = i;
-    while (end < s.Readings() && farness[static_cast<std::size_t>(end)] > kFar) ++end;
+    while (end < s.Readings() && farness[static_cast<std::size_t>(end)] > kFarOff) ++end;
     if (end == i) continue;
     const int longest = i == 0 ? 1 : kLongest;  // what fades away from the beginning on is no glitch
     if (end - i <= longest && GoesOnAsUsual(s, i, end, usual_step_rad) && Returns(run, farness, i, end)) {
@@ -235,7 +235,7 @@ Glitches FindGlitches(const LinearRun& run, const Eigen::VectorXd& relative_nois
     }
     i = end;
   }
-  const auto half_far = std::ranges::count_if(farness, [](double f) { return f > kHalfFar && f <= kFar; });
+  const auto half_far = std::ranges::count_if(farness, [](double f) { return f > kHalfFar && f <= kFarOff; });
   const auto count = std::ssize(found.rows);
   if (2 * half_far > count || static_cast<double>(count) > kMostShare * s.Readings()) return {};
   if (!RecurrenceOf(begins, run).empty() || ComeBack(begins, s, usual_step_rad)) return {};

@@ -1,10 +1,10 @@
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <string>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/engine/candidates.h"
 #include "twin/diagnose/engine/projector.h"
 
@@ -64,10 +64,9 @@ std::vector<Harmonic> HarmonicTable(const EncoderRun& encoder, const NoiseModel&
   const Eigen::MatrixXd S = noise.Whiten(run, Waves(encoder.context.device_rad, orders));
   const Eigen::MatrixXd white = noise.Whiten(run, Eigen::MatrixXd(run.residual)), projected = projector.Apply(S);
   const Eigen::MatrixXd normal = S.transpose() * projected;
-  const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
-  const Eigen::MatrixXd inverse = solver.solve(Eigen::MatrixXd::Identity(2 * orders, 2 * orders));
+  const Eigen::MatrixXd inverse = InverseOfSymmetric(normal);
   if (!AreToldApart(normal, inverse)) return {};
-  const Eigen::VectorXd x = solver.solve(projected.transpose() * white.col(0));
+  const Eigen::VectorXd x = SolveSymmetric(normal, Eigen::VectorXd(projected.transpose() * white.col(0)));
   const Eigen::VectorXd left = projector.Apply(white - S * x).col(0);
   const double scale2 = left.squaredNorm() / std::max(1.0, projector.DegreesOfFreedom() - 2.0 * orders);
   const Eigen::MatrixXd cov = scale2 * inverse;

@@ -1,6 +1,5 @@
 #include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -38,8 +37,7 @@ class Period {
       free.conservativeResize(Eigen::NoChange, free.cols() + 2);
       free.rightCols(2) = model::Wave(angle_rad);
     }
-    free_ = Eigen::HouseholderQR<Eigen::MatrixXd>(free).householderQ() *
-            Eigen::MatrixXd::Identity(free.rows(), free.cols());
+    free_ = OrthonormalColumnsOf(free);
     error_ = Projected(periods * error_rad(thinned));
   }
 

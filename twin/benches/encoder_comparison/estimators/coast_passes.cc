@@ -1,11 +1,11 @@
 #include "twin/benches/encoder_comparison/estimators/coast_passes.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <map>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/core/reading_column.h"
 #include "twin/core/units.h"
 
@@ -139,7 +139,7 @@ std::vector<CoastTurn> TurnsOf(const CoastPasses& coast, const CoastPass& pass, 
 
 Eigen::VectorXd OffSmoothCourse(const CoastPasses& coast, const CoastPass& pass, int degree) {
   const Eigen::MatrixXd columns = TimeColumns(pass, degree);
-  const Eigen::LDLT<Eigen::MatrixXd> normal(columns.transpose() * columns);
+  const Eigen::MatrixXd normal = columns.transpose() * columns;
   const Eigen::VectorXd angle_rad = LineAngles(coast, pass);
   Eigen::VectorXd off_rad = angle_rad, repeating = Eigen::VectorXd::Zero(coast.lines);
   constexpr int kRounds = 6;  // each leaves of what repeats the part that a polynomial can follow: a hundredth
@@ -148,7 +148,7 @@ Eigen::VectorXd OffSmoothCourse(const CoastPasses& coast, const CoastPass& pass,
     Eigen::VectorXd left = off_rad;
     for (Eigen::Index i = 0; i < left.size(); ++i)
       left[i] -= repeating[PlaceOf(pass.line[static_cast<std::size_t>(i)], coast.lines)];
-    course += normal.solve(columns.transpose() * left);
+    course += SolveSymmetric(normal, Eigen::VectorXd(columns.transpose() * left));
     off_rad = angle_rad - columns * course;
     repeating = Repeating(pass, coast.lines, off_rad);
   }

@@ -1,10 +1,10 @@
 #include "twin/benches/encoder_comparison/estimators/time_reversal.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "twin/benches/encoder_comparison/estimators/turn_orders.h"
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench::separate::encoder {
 namespace {
@@ -61,7 +61,7 @@ TimeReversal SeparateByTime(const std::vector<Reading>& readings, const CoastOpt
   const TurnModel model = ModelOf(turns);
   const Eigen::MatrixXcd orders = OrdersOfTurns(turns);
   const Eigen::MatrixXd weighted = model.weight.asDiagonal() * model.columns;
-  const Eigen::MatrixXd cofactor = (model.columns.transpose() * weighted).inverse();
+  const Eigen::MatrixXd cofactor = SolveSquare(model.columns.transpose() * weighted, Eigen::MatrixXd::Identity(model.columns.cols(), model.columns.cols()));
   const Eigen::MatrixXcd x = (cofactor * weighted.transpose()).cast<harmonics::Complex>() * orders;
   const Eigen::MatrixXcd rest = orders - model.columns.cast<harmonics::Complex>() * x;
   const auto free = static_cast<double>(2 * (model.columns.rows() - model.columns.cols()));  // re and im

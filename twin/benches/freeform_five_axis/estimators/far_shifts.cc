@@ -1,12 +1,13 @@
 #include "twin/benches/freeform_five_axis/estimators/far_shifts.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/core/robust_scale.h"
 
 namespace twinbench::benches::freeform::estimators {
@@ -24,10 +25,10 @@ struct Left {
 };
 
 Left LeftOf(const MatrixXd& slopes, const VectorXd& shifts_um) {
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(slopes);
-  const MatrixXd basis = qr.householderQ() * MatrixXd::Identity(slopes.rows(), qr.rank());
+  const double rounding = std::numeric_limits<double>::epsilon() * static_cast<double>(std::min(slopes.rows(), slopes.cols()));
+  const MatrixXd basis = OrthonormalBasisOf(slopes, rounding);
   Left left;
-  left.dof = slopes.rows() - qr.rank();
+  left.dof = slopes.rows() - basis.cols();
   left.own = (1.0 - basis.rowwise().squaredNorm().array()).matrix();
   const VectorXd residuals_um = shifts_um - basis * (basis.transpose() * shifts_um);
   left.deviations_um = (left.own.array() > kOwnShare).select(residuals_um.array() / left.own.array().max(kOwnShare).sqrt(), 0.0);

@@ -1,7 +1,5 @@
 #include "twin/benches/freeform_five_axis/estimators/likely_sizes.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -46,9 +44,8 @@ class Squares {
   double LogLikelihood(const VectorXd& sizes) const {
     MatrixXd normal = normal_;
     normal.diagonal().tail(believed_) += sizes.cwiseAbs2().cwiseInverse();
-    const Eigen::LLT<MatrixXd> factor(normal);
-    const double left_um2 = squares_um2_ - shown_.dot(factor.solve(shown_));
-    const double volume = factor.matrixLLT().diagonal().array().log().sum() + sizes.array().log().sum();
+    const double left_um2 = squares_um2_ - shown_.dot(SolvePositive(normal, shown_));
+    const double volume = CholeskyFactorOf(normal).diagonal().array().log().sum() + sizes.array().log().sum();
     return -0.5 * dof_ * std::log(std::max(left_um2, kDigits * squares_um2_)) - volume;
   }
 
@@ -69,9 +66,9 @@ double LikelySize(const MatrixXd& free, const MatrixXd& believed, const VectorXd
   };
   const MatrixXd own = rest(believed);
   const double squares_um2 = rest(shifts_um).squaredNorm();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(own.transpose() * own);
-  const VectorXd strength = parts.eigenvalues().cwiseMax(0.0);
-  const VectorXd shown2 = (parts.eigenvectors().transpose() * (own.transpose() * shifts_um)).cwiseAbs2();
+  const auto [values, vectors] = EigenOfSymmetric(own.transpose() * own);
+  const VectorXd strength = values.cwiseMax(0.0);
+  const VectorXd shown2 = (vectors.transpose() * (own.transpose() * shifts_um)).cwiseAbs2();
   double best = 0.0, most = -0.5 * dof * std::log(squares_um2) + least_gain;
   for (double size = 1e-2; size < 1e4; size *= 1.25) {
     const VectorXd with = 1.0 + size * size * strength.array();

@@ -1,10 +1,10 @@
 #include "twin/benches/hob_transmission/estimators/hob_orders.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "twin/benches/hob_transmission/estimators/turn_fit.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 
 namespace twinbench::separate::hob {
@@ -53,10 +53,10 @@ std::vector<HobOrder> TakeHobOrders(const TransmissionOptions& options, Pass& pa
   const double dof = static_cast<double>(columns.rows() - unknowns - 2 * options.max_order - 1);
   if (seen.empty() || !(dof > 0.0)) return {};
   const Eigen::MatrixXd waves = beside.rightCols(unknowns);
-  const Eigen::LDLT<Eigen::MatrixXd> normal(waves.transpose() * waves);
-  const Eigen::VectorXd x_rad = normal.solve(waves.transpose() * beside.col(0));
+  const Eigen::MatrixXd normal = waves.transpose() * waves;
+  const Eigen::VectorXd x_rad = SolveSymmetric(normal, Eigen::VectorXd(waves.transpose() * beside.col(0)));
   const double variance = (beside.col(0) - waves * x_rad).squaredNorm() / dof;
-  const Eigen::MatrixXd cofactor = normal.solve(Eigen::MatrixXd::Identity(unknowns, unknowns));
+  const Eigen::MatrixXd cofactor = InverseOfSymmetric(normal);
   std::vector<HobOrder> taken;
   for (std::size_t k = 0; k < seen.size(); ++k) {
     const Eigen::Index at = kDrift + 2 * static_cast<Eigen::Index>(k);
