@@ -2,16 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
 
+#include "tests/support/noise.h"
 #include "twin/core/reading.h"
 
 namespace twinbench {
 
 /// A reading that follows from its number, so that the one that comes back can be checked.
 inline Reading AnyReading(int number) {
-  std::mt19937_64 random(static_cast<std::uint64_t>(number));
-  std::normal_distribution<double> normal;
+  test::Noise normal(1.0, static_cast<std::uint64_t>(number));
   Reading r;
   r.reading = number;
   r.time = Time(Duration(1'000'000'000'000'000'001LL + number));  // 31 years: a double of seconds would lose these
@@ -23,9 +22,9 @@ inline Reading AnyReading(int number) {
   r.n_samples = number % 5 ? 100 : 0;
   for (double* value : {&r.target_rad, &r.reference_rad, &r.dwell_s, &r.temperature_degC, &r.autocollimator_yaw_rad,
                         &r.autocollimator_tilt_rad, &r.measured_rad, &r.velocity_rad_s})
-    *value = normal(random);
-  for (double& mean_V : r.mean_V) mean_V = normal(random);
-  for (double& std_V : r.std_V) std_V = std::abs(normal(random));
+    *value = normal();
+  for (double& mean_V : r.mean_V) mean_V = normal();
+  for (double& std_V : r.std_V) std_V = std::abs(normal());
   return r;
 }
 

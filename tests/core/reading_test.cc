@@ -2,6 +2,7 @@
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
 #include "tests/support/memory_log.h"
+#include "tests/support/noise.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/units.h"
 
@@ -65,14 +66,13 @@ class ReadingsOfABench : public testing::TestWithParam<std::string> {};
 
 TEST_P(ReadingsOfABench, AreKnownByTheirColumnsAndComeBackToTheSameBits) {
   const std::vector<ReadingColumn>& columns = FormatOf(GetParam()).columns;
-  std::mt19937_64 random(4);
-  std::normal_distribution<double> normal;
+  test::Noise normal(1.0, 4);
   std::vector<Reading> readings(20);
   for (Reading& r : readings) {
     r.reading = static_cast<int>(&r - readings.data());
     if (GetParam() == kEncoderBench) r.direction = r.reading % 3 - 1;
     for (const ReadingColumn& column : columns) {
-      if (column.number) column.number(r) = normal(random);
+      if (column.number) column.number(r) = normal();
     }
   }
   std::vector<Reading> again = ParseReadings(TextOf(readings, GetParam()));
@@ -93,9 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Every, ReadingsOfABench, testing::ValuesIn(BenchNames()
 TEST(ReadingsCsv, KeepTimesToTheNanosecond) {
   for (const std::int64_t ns : {std::int64_t{0}, std::int64_t{1}, std::int64_t{-1}, std::int64_t{883'000'000'000},
                                 std::int64_t{9'199'999'999'999'999'999}}) {
-    Reading reading;
-    reading.time = Time(Duration(ns));
-    reading.target_rad = reading.reference_rad = 0.0;
+    Reading reading{.time = Time(Duration(ns)), .target_rad = 0.0, .reference_rad = 0.0};
     reading.mean_V.fill(0.0);
     EXPECT_EQ(ParseReadings(TextOf({reading})).front().time.time_since_epoch().count(), ns);
   }

@@ -1,7 +1,7 @@
-#include <random>
 
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
+#include "tests/support/noise.h"
 #include "twin/core/compensation_table.h"
 #include "twin/core/csv.h"
 #include "twin/core/sampled_curve.h"
@@ -64,12 +64,11 @@ TEST(TableErrors, HaveUnitsInTheirColumnsAndZerosForAbsentOnes) {
 }
 
 TEST(TableErrors, AreReadBackToTheSameBits) {
-  std::mt19937_64 random(2);
-  std::normal_distribution<double> normal;
+  test::Noise normal(1.0, 2);
   TableErrors errors;
   for (int i = 0; i < 100; ++i) {
-    errors.position_rad.push_back(normal(random));
-    for (auto& column : errors.value) column.push_back(1e-5 * normal(random));
+    errors.position_rad.push_back(normal());
+    for (auto& column : errors.value) column.push_back(1e-5 * normal());
   }
   const TemporaryFolder folder;
   WriteTableErrors(errors, folder.File("t.csv"));

@@ -85,11 +85,7 @@ inline double SquareOfFirst(const Scenario& s) {
 
 /// As many trials as said.
 inline uncertainty::MonteCarloOptions Trials(int trials, const std::vector<uncertainty::Joint>& joints = {}) {
-  uncertainty::MonteCarloOptions options;
-  options.most_trials = trials;
-  options.digits = 3;
-  options.joints = joints;
-  return options;
+  return {.most_trials = trials, .digits = 3, .joints = joints};
 }
 
 }  // namespace twinbench::test
