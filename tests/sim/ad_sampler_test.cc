@@ -181,16 +181,6 @@ TEST(TakeBlock, AveragesTheHumAsTheClosedFormSays) {
   }
 }
 
-TEST(TakeBlock, AveragesWholePeriodsOfHumAway) {
-  AdInput input = Levels(1.0, 1.0, 1.0, 1.0);
-  input.hum = {.amplitude_V = 0.3, .frequency_Hz = 50.0, .phase_rad = 1.0};
-  const AdBlock block = Take(input, {.n_samples = 1250, .noise_free = true});  // 20 ms
-  for (const ChannelBlock& c : block.channel) {
-    EXPECT_NEAR(c.mean_V, 1.0, 1e-12);
-    EXPECT_NEAR(c.std_V, 0.3 / std::sqrt(2.0) * std::sqrt(1250.0 / 1249.0), 1e-12);
-  }
-}
-
 TEST(TakeBlock, StepsWhereTheVoltagePassesTheThreshold) {
   AdInput input = Levels(0.5, 1.0, 1.5, -1.5);
   for (ChannelInput& c : input.channel) {

@@ -103,11 +103,7 @@ TEST(EncoderTwin, HasNoMoreReadingsAtAStopThanFitIntoIt) {
 
 TEST(EncoderTwin, AddsAnEmpiricalSignalToTheReadingsItNames) {
   Scenario scenario = EncoderScenario();
-  EmpiricalSettings signal;
-  signal.channel = "angle";
-  signal.reading = {5};
-  signal.value_rad = {0.25};
-  scenario.empiricals.push_back(signal);
+  scenario.empiricals.push_back({.channel = "angle", .reading = {5}, .value_rad = {0.25}});
   const auto readings = RunEncoderTwin(scenario).readings;
   EXPECT_NEAR(readings[5].measured_rad - readings[5].reference_rad, 0.25, 1e-12);
   EXPECT_NEAR(readings[6].measured_rad - readings[6].reference_rad, 0.0, 1e-12);

@@ -69,20 +69,6 @@ TEST(Speckle, IsNormalAndOfItsOwnOnEveryChannel) {
   EXPECT_NEAR(product, 0.0, 5.0 / std::sqrt(double(kSeeds)));
 }
 
-TEST(Speckle, ComesBackWithTheAngle) {
-  Scenario scenario = Quiet();
-  RotaryOf(scenario).grating = Rough();
-  Twin twin(scenario);
-  RotaryBench bench = twin.Bench();
-  const auto look_V = [&](double yaw_rad) {
-    bench.goniometer.MoveTo(yaw_rad, 0.0);
-    return bench.adc.Acquire(4, false).channel[1].mean_V;  // a yaw alone does not lift a spot so much
-  };
-  const double first_V = look_V(0.0), away_V = look_V(200.0 * units::arcsec);
-  EXPECT_NEAR(look_V(0.0), first_V, 1e-12);
-  EXPECT_GT(std::abs(away_V - first_V), 0.1 * 2000.0 * kRms_m);
-}
-
 TEST(Ruling, ShowsWhereABeamMeetsTheGratingBesideItsMiddle) {
   Scenario scenario = Quiet();
   RotaryOf(scenario).laser.position_m.x() = 2e-3;
@@ -240,15 +226,6 @@ TEST(LowPass, NarrowsAndCorrelatesTheLightsNoise) {
     products += (block.raw[kChannels * s] - mean) * (block.raw[kChannels * (s - 1)] - mean) / (kScans - 1);
   const double variance = block.channel[0].std_V * block.channel[0].std_V / (lsb_V * lsb_V);
   EXPECT_NEAR(products / variance, std::exp(-scan_s / lag_s), 0.03);
-}
-
-TEST(LowPass, LeavesABenchAtRestAsItIs) {
-  Scenario scenario = Quiet();
-  RotaryOf(scenario).amplifier.offset_V = {0.1, -0.2, 0.3, -0.4};
-  const Acquisition open = Twin(scenario).Bench().adc.Acquire(100, false);
-  RotaryOf(scenario).chain.low_pass_Hz = 1000.0;
-  const Acquisition passed = Twin(scenario).Bench().adc.Acquire(100, false);
-  for (std::size_t c = 0; c < kChannels; ++c) EXPECT_EQ(open.channel[c].mean_V, passed.channel[c].mean_V);
 }
 
 /// A sine of 137 Hz behind 100 Hz, at its place on the clock, and what the pole makes of it.

@@ -102,9 +102,7 @@ TEST(RotaryFollow, SaysWhatARichTwinShowsReclampedAndThroughAWedgedWindowToo) {
 
 /// A lopsided beam as a camera would have seen it.
 std::string BeamFile() {
-  optics::IrradianceMap map;
-  map.width = map.height = 64;
-  map.pitch_m = 25.0 * units::um;
+  optics::IrradianceMap map{.width = 64, .height = 64, .pitch_m = 25.0 * units::um};
   for (int row = 0; row < map.height; ++row) {
     for (int column = 0; column < map.width; ++column) {
       const double x = map.U(column) / (0.2 * units::mm), y = map.V(row) / (0.15 * units::mm);

@@ -103,12 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Bench, EveryTwin, testing::ValuesIn(kQuickBenches),
                          [](const auto& tested) { return tested.param.name; });
 
 EmpiricalSettings ByTime() {
-  EmpiricalSettings table;
-  table.channel = "psd_b_y";
-  table.by = "time";
-  table.time_s = {10.0, 20.0, 40.0};
-  table.value_m = {1e-6, 3e-6, -1e-6};
-  return table;
+  return {.channel = "psd_b_y", .by = "time", .time_s = {10.0, 20.0, 40.0}, .value_m = {1e-6, 3e-6, -1e-6}};
 }
 
 TEST(Empirical, GoesStraightBetweenItsTimesAndStaysOutside) {
