@@ -82,10 +82,9 @@ Hidden HiddenBy(const json& truth) {
 }
 
 Case ReadCase(const std::string& folder, const std::string& bench, const std::vector<std::string>& excluded) {
-  Case hidden_case;
-  hidden_case.hidden = HiddenBy(test::ReadTruthFile(folder + "/truth.json"));
-  hidden_case.scenario = LoadScenario(test::ScenarioPath(bench + ".toml"));
-  hidden_case.readings = ReadReadingsCsv(folder + "/readings.csv", bench);
+  Case hidden_case{.hidden = HiddenBy(test::ReadTruthFile(folder + "/truth.json")),
+                   .scenario = LoadScenario(test::ScenarioPath(bench + ".toml")),
+                   .readings = ReadReadingsCsv(folder + "/readings.csv", bench)};
   hidden_case.options.excluded = excluded;
   return hidden_case;
 }

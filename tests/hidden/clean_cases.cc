@@ -24,10 +24,8 @@ struct NoiseShape {
   double stated = 1.0;  // stated / actual standard deviation
 };
 
-const std::array<NoiseShape, kNoises> kShapes = {{{"Gaussian"},
-                                                  {"Student t, 5 dof", true},
-                                                  {"AR(1) 0.2", false, 0.2},
-                                                  {"AR(1) 0.3", false, 0.3},
+const std::array<NoiseShape, kNoises> kShapes = {{{"Gaussian"}, {"Student t, 5 dof", true},
+                                                  {"AR(1) 0.2", false, 0.2}, {"AR(1) 0.3", false, 0.3},
                                                   {"25 % larger than stated", false, 0.0, 1.0 / 1.25},
                                                   {"25 % smaller than stated", false, 0.0, 1.0 / 0.75},
                                                   {"t5, AR(1) 0.2, 25 % larger than stated", true, 0.2, 1.0 / 1.25}}};

@@ -160,13 +160,9 @@ std::vector<std::string> ChannelsIn(const std::string& signature) {
 }
 
 Outcome Judge(const Hidden& hidden, const Diagnosis& diagnosis) {
-  Outcome outcome;
-  outcome.hidden = hidden;
-  outcome.grade = GradeOf(hidden, diagnosis);
-  outcome.verdict = diagnosis.verdict;
-  outcome.answer = AnswerOf(diagnosis);
-  outcome.gain = diagnosis.gain.fraction_removed;
-  outcome.sure_wrong = IsSurelyWrong(hidden, diagnosis);
+  Outcome outcome{.hidden = hidden, .grade = GradeOf(hidden, diagnosis), .verdict = diagnosis.verdict,
+                  .answer = AnswerOf(diagnosis), .gain = diagnosis.gain.fraction_removed,
+                  .sure_wrong = IsSurelyWrong(hidden, diagnosis)};
   AddParameters(diagnosis, outcome);
   return outcome;
 }

@@ -35,15 +35,15 @@ inline constexpr double kSure = 0.8;  // a name is stated as good as certain fro
 
 /// One diagnosis against what was hidden.
 struct Outcome {
-  std::string set, name;
-  Hidden hidden;
+  std::string set = {}, name = {};
+  Hidden hidden = {};
   Grade grade = Grade::kRefused;
   diagnose::Verdict verdict = diagnose::Verdict::kNone;
-  std::string answer;  // causes with their probabilities and signature of the unknown, in words
-  double gain = kNaN;  // share of the removable variance of held-out readings
+  std::string answer = {};  // causes with their probabilities and signature of the unknown, in words
+  double gain = kNaN;       // share of the removable variance of held-out readings
   bool sure_wrong =
       false;  // stated as sure: a name that is not there and that these readings can tell from what is
-  std::vector<ParameterCheck> parameters;
+  std::vector<ParameterCheck> parameters = {};
 
   bool RightOrTie() const { return grade == Grade::kRight || grade == Grade::kTie; }
 };

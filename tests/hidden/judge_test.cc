@@ -22,20 +22,13 @@ Diagnosis Answer(Verdict verdict, const std::vector<std::array<std::string, 2>>&
   Diagnosis d;
   d.verdict = verdict;
   for (const auto& [effect, where] : causes) {
-    diagnose::Cause cause;
-    cause.effect = effect;
-    cause.where = where;
-    cause.probability = probability;
-    d.causes.push_back(cause);
+    d.causes.push_back({.effect = effect, .where = where, .probability = probability});
   }
   return d;
 }
 
 Diagnosis AnswerUnknown(const std::string& signature) {
-  Diagnosis d;
-  d.verdict = Verdict::kUnknown;
-  d.unknown = {0.9, signature};
-  return d;
+  return {.verdict = Verdict::kUnknown, .unknown = {0.9, signature}};
 }
 
 Diagnosis Named(const std::vector<std::array<std::string, 2>>& causes, double probability = 0.95) {
@@ -64,10 +57,7 @@ TEST(Judge, WrongNamesAreSureFromEightTenthsUnlessNothingTellsThemFromTheTruth) 
 }
 
 TEST(Judge, AnUnknownNeedsItsLockAndExactlyItsChannels) {
-  Hidden hidden;
-  hidden.unlisted = "etalon";
-  hidden.locks = {"spot"};
-  hidden.channels = {"psd_b_x"};
+  Hidden hidden{.unlisted = "etalon", .locks = {"spot"}, .channels = {"psd_b_x"}};
   const std::pair<const char*, Grade> signatures[] = {
       {"periodic, synchronous with spot, on psd_b_x", Grade::kUnknown},
       {"wander | periodic, synchronous with spot, on psd_b_x", Grade::kUnknown},

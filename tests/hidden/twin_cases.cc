@@ -114,8 +114,7 @@ std::vector<std::string> AlikeByShape(const std::string& effect) {
   const std::vector<std::vector<std::string>> sets = {{"psd_distance", "stray_light", "background"},
                                                       {"eccentricity", "signal_offset", "tilt"},
                                                       {"bar_gain", "bar_nonlinearity"},
-                                                      {"focal_length", "spot_size"},
-                                                      {"qpd_gain", "leakage"},
+                                                      {"focal_length", "spot_size"}, {"qpd_gain", "leakage"},
                                                       {"interpolation", "gear_mesh", "periodic"},
                                                       {"ellipticity", "amplitude_mismatch", "quadrature_error"}};
   for (const auto& set : sets) {

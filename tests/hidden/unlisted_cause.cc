@@ -39,9 +39,7 @@ void AddWithLength(double rho, const std::string& bench, const Eigen::MatrixXd& 
 
 Case MakeUnlisted(Design design, const UnlistedCause& cause, double rho, std::uint64_t seed,
                   const SignatureScale& scale) {
-  Case made;
-  made.scenario = Believed(design);
-  made.readings = TakeReadings(Drawn(design, seed));
+  Case made{.scenario = Believed(design), .readings = TakeReadings(Drawn(design, seed))};
   Stream stream(seed, "hidden.unlisted");
   const UnlistedSignal drawn = cause.draw({made.readings, stream, stream});
   AddWithLength(rho, BenchOf(design), drawn.signal, scale, seed, made.readings);

@@ -13,12 +13,13 @@ using diagnose::Cause, diagnose::Diagnosis, diagnose::Verdict;
 
 Cause Found(const std::string& effect, double probability,
             const std::vector<diagnose::ParameterEstimate>& parameters = {}) {
-  Cause cause;
-  cause.effect = effect;
-  cause.probability = probability;
-  cause.parameters = parameters;
-  return cause;
+  return {.effect = effect, .probability = probability, .parameters = parameters};
 }
+/// With a parameter whose unit is a degree.
+Cause FoundDeg(const std::string& effect, const std::string& parameter, double value_deg) {
+  return Found(effect, 0.9, {{parameter, "deg", units::deg, value_deg * units::deg, 0.0}});
+}
+
 Cause Wave(const std::string& effect, double probability, double amplitude_deg, double order = kNaN,
            double u_deg = 0.0) {
   Cause cause = Found(effect, probability,
@@ -27,10 +28,7 @@ Cause Wave(const std::string& effect, double probability, double amplitude_deg, 
   return cause;
 }
 Diagnosis Said(const std::vector<Cause>& causes, Verdict verdict = Verdict::kNamed) {
-  Diagnosis d;
-  d.verdict = verdict;
-  d.causes = causes;
-  return d;
+  return {.verdict = verdict, .causes = causes};
 }
 void MakeTie(std::vector<Cause>& causes) {
   for (Cause& cause : causes) {
@@ -40,26 +38,13 @@ void MakeTie(std::vector<Cause>& causes) {
   }
 }
 Expected Order(double order, double size_deg, double share) {
-  Expected expected;
-  expected.order = order;
-  expected.size = size_deg;
-  expected.unit = "deg";
-  expected.share = share;
-  return expected;
+  return {.order = order, .size = size_deg, .unit = "deg", .share = share};
 }
 Expected Effect(const std::string& effect, double size, const std::string& unit) {
-  Expected expected;
-  expected.effects = {effect};
-  expected.size = size;
-  expected.unit = unit;
-  expected.share = 1.0;
-  return expected;
+  return {.effects = {effect}, .size = size, .unit = unit, .share = 1.0};
 }
 Truth Of(const std::vector<Expected>& causes) {
-  Truth truth;
-  truth.causes = causes;
-  truth.nothing_else = true;
-  return truth;
+  return {.causes = causes, .nothing_else = true};
 }
 bool IsRight(const Truth& truth, const Diagnosis& said) {
   return Judge(truth, said).is_right;
@@ -96,12 +81,9 @@ TEST(ShelfJudge, WantsTheSizeWithinFivePerCentOrThreeUncertainties) {
 TEST(ShelfJudge, TakesTheWholeReversalForASizeOfPlay) {
   Truth truth = Of({Effect("backlash", 0.02, "mm")});
   truth.causes[0].effects.push_back("hysteresis");
-  EXPECT_TRUE(
-      IsRight(truth, Said({Found("backlash", 0.9, {{"width", "mm", units::deg, -0.02 * units::deg, 0.0}})})));
-  EXPECT_TRUE(
-      IsRight(truth, Said({Found("hysteresis", 0.9, {{"lag", "mm", units::deg, 0.01 * units::deg, 0.0}})})));
-  EXPECT_FALSE(
-      IsRight(truth, Said({Found("hysteresis", 0.9, {{"lag", "mm", units::deg, 0.02 * units::deg, 0.0}})})));
+  EXPECT_TRUE(IsRight(truth, Said({FoundDeg("backlash", "width", -0.02)})));
+  EXPECT_TRUE(IsRight(truth, Said({FoundDeg("hysteresis", "lag", 0.01)})));
+  EXPECT_FALSE(IsRight(truth, Said({FoundDeg("hysteresis", "lag", 0.02)})));
 }
 
 TEST(ShelfJudge, TakesOtherSizesWhereCausesStandForEachOther) {
@@ -109,10 +91,8 @@ TEST(ShelfJudge, TakesOtherSizesWhereCausesStandForEachOther) {
   truth.causes[0].effects.push_back("backlash");
   truth.causes[0].others = {{3.0, "deg"}, {0.1, "s"}};
   EXPECT_TRUE(IsRight(truth, Said({Found("latency", 0.9, {{"delay", "s", 1.0, 0.1, 0.0}})})));
-  EXPECT_TRUE(
-      IsRight(truth, Said({Found("backlash", 0.9, {{"width", "deg", units::deg, 3.0 * units::deg, 0.0}})})));
-  EXPECT_EQ(Judge(truth, Said({Found("backlash", 0.9, {{"width", "deg", units::deg, 1.2 * units::deg, 0.0}})})).why,
-            "backlash has the size 1.2 for 3 deg");
+  EXPECT_TRUE(IsRight(truth, Said({FoundDeg("backlash", "width", 3.0)})));
+  EXPECT_EQ(Judge(truth, Said({FoundDeg("backlash", "width", 1.2)})).why, "backlash has the size 1.2 for 3 deg");
 }
 
 TEST(ShelfJudge, WantsNothingElseStatedAsSure) {
@@ -129,9 +109,7 @@ TEST(ShelfJudge, WantsNothingElseStatedAsSure) {
 }
 
 TEST(ShelfJudge, TakesAnUnmodelledPartForACauseThatTheCatalogueLacks) {
-  Expected shifting;
-  shifting.words = {"^direction times order 72 "};
-  shifting.share = 0.5;
+  Expected shifting{.words = {"^direction times order 72 "}, .share = 0.5};
   Diagnosis said = Said({Wave("periodic", 0.82, 0.09, 72)});
   said.unknown = {0.97,
                   "tone at 3 Hz, function of time | direction times order 72 synchronous with reference angle, odd "
@@ -202,10 +180,8 @@ TEST(ShelfJudge, KnowsTheOrdersOfFaultsOfTheSignals) {
 TEST(ShelfJudge, AsksADriftForWhatItComesTo) {
   Truth truth = Of({Effect("drift", 0.01, "mm")});
   truth.causes[0].over_s = 90.0;
-  EXPECT_TRUE(
-      IsRight(truth, Said({Found("drift", 0.9, {{"rate", "deg_per_h", 1.0, 0.01 * units::deg / 90.0, 0.0}})})));
-  EXPECT_FALSE(
-      IsRight(truth, Said({Found("drift", 0.9, {{"rate", "deg_per_h", 1.0, 0.02 * units::deg / 90.0, 0.0}})})));
+  EXPECT_TRUE(IsRight(truth, Said({FoundDeg("drift", "rate", 0.01 / 90.0)})));
+  EXPECT_FALSE(IsRight(truth, Said({FoundDeg("drift", "rate", 0.02 / 90.0)})));
 }
 
 TEST(ShelfTruth, IsThereForEveryRecording) {

@@ -7,15 +7,16 @@ namespace twinbench::shelf {
 
 /// One cause. A linear axis counts as `twinbench import` takes it: 360 mm are a turn, a millimetre is a degree.
 struct Expected {
-  std::vector<std::string> effects;  // of the catalogue, any of them; of an order every effect with that order too
+  std::vector<std::string> effects =
+      {};  // of the catalogue, any of them; of an order every effect with that order too
   /// Of an unmodelled part, any of them, what the catalogue has no name for; behind "^" what the part begins with.
-  std::vector<std::string> words;
-  double order = kNaN;    // periods per turn
-  std::string parameter;  // whose size it is, where it is not the effect's first
-  double size = kNaN;     // NaN: not asked for; of an order, its amplitude; of a play, forward less backward
-  std::string unit;
+  std::vector<std::string> words = {};
+  double order = kNaN;         // periods per turn
+  std::string parameter = {};  // whose size it is, where it is not the effect's first
+  double size = kNaN;          // NaN: not asked for; of an order, its amplitude; of a play, forward less backward
+  std::string unit = {};
   /// Where several causes stand for each other: other sizes that are as right, in their units.
-  std::vector<std::pair<double, std::string>> others;
+  std::vector<std::pair<double, std::string>> others = {};
   double at_deg = kNaN;  // of a scale: where on the axis it is that large
   double over_s = kNaN;  // of a drift: in how long it comes to its size
   double share = 0.0;    // of the variance of the error; 0: not known
@@ -26,11 +27,11 @@ struct Expected {
 };
 
 struct Truth {
-  std::vector<Expected> causes;
+  std::vector<Expected> causes = {};
   /// What may be named besides.
-  std::vector<std::pair<double, double>> orders;  // and amplitude, deg
-  double any_order_below_deg = 0.0;               // the rows hold many
-  std::vector<std::string> effects, words;
+  std::vector<std::pair<double, double>> orders = {};  // and amplitude, deg
+  double any_order_below_deg = 0.0;                    // the rows hold many
+  std::vector<std::string> effects = {}, words = {};
   bool has_rest = false;      // structure without a name: an unmodelled part may say anything
   bool nothing_else = false;  // any other cause is none
 };
