@@ -152,9 +152,7 @@ std::string Repeated(const std::string& text, int times) {
   return all;
 }
 
-std::string BoundsError(const std::string& text) {
-  return MessageOf([&] { RequireModestKeys(text, "a.toml"); });
-}
+std::string BoundsError(const std::string& text) { return MessageOf([&] { RequireModestKeys(text, "a.toml"); }); }
 
 TEST(TomlBounds, RefuseKeysOfManyPartsHoweverTheyAreWrittenAndOfManyLetters) {
   constexpr int kMany = 100000;

@@ -53,9 +53,7 @@ std::string Sql(const std::string& directory, const char* sql) {
   return message;
 }
 
-std::string OpenError(const std::string& directory) {
-  return MessageOf([&] { RunRecord::Open(directory); });
-}
+std::string OpenError(const std::string& directory) { return MessageOf([&] { RunRecord::Open(directory); }); }
 
 TEST(RunRecord, GivesBackWhatItWasGivenAlsoAReadingWithoutNumbers) {
   const TemporaryFolder folder;

@@ -131,9 +131,7 @@ std::vector<Place> ReadPlaces(const std::string& text) {
   return places;
 }
 
-std::string RecordError(const std::string& text) {
-  return MessageOf([&] { ReadPlaces(text); });
-}
+std::string RecordError(const std::string& text) { return MessageOf([&] { ReadPlaces(text); }); }
 
 TEST(RecordList, IsReplacedAsAWholeAndWhatATableLeavesOutKeepsItsDefault) {
   const std::vector<Place> places =

@@ -27,9 +27,7 @@ bool SameBits(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
-double NormalDistribution(double x) {
-  return 0.5 * std::erfc(-x / std::sqrt(2.0));
-}
+double NormalDistribution(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
 /// Largest distance between the empirical distribution and the one stated, times sqrt(n).
 double KolmogorovStatistic(std::vector<double> values, double (*distribution)(double)) {

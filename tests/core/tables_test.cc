@@ -16,9 +16,7 @@ CsvTable ParseTable(const std::string& text) {
   return ParseCsv(in, "t.csv");
 }
 
-std::string TableError(const std::string& text) {
-  return MessageOf([&] { ParseTable(text); });
-}
+std::string TableError(const std::string& text) { return MessageOf([&] { ParseTable(text); }); }
 
 TEST(Csv, SkipsCommentsCountsTheirLinesAndTakesFilesOfOtherSystemsAndEmptyFields) {
   const CsvTable table = ParseTable("# made by hand\na,b\n\n# a comment\n1,2\n");

@@ -141,9 +141,7 @@ const DesignNames& NamesOf(Design design) {
   return names[static_cast<std::size_t>(design)];
 }
 
-double UniformIn(Stream& stream, double lower, double upper) {
-  return lower + (upper - lower) * stream.Uniform();
-}
+double UniformIn(Stream& stream, double lower, double upper) { return lower + (upper - lower) * stream.Uniform(); }
 
 double LogUniformIn(Stream& stream, double lower, double upper) {
   return lower * std::pow(upper / lower, stream.Uniform());
@@ -171,9 +169,7 @@ Scenario Drawn(Design design, std::uint64_t seed) {
   return scenario;
 }
 
-std::vector<Reading> TakeReadings(const Scenario& actual) {
-  return test::ReadingsOf(actual);
-}
+std::vector<Reading> TakeReadings(const Scenario& actual) { return test::ReadingsOf(actual); }
 
 void AddTo(const std::string& bench, const Eigen::MatrixXd& signal, std::vector<Reading>& readings) {
   for (std::size_t i = 0; i < readings.size(); ++i)

@@ -29,9 +29,7 @@ struct DesignNames {
   std::string name, bench;
 };
 const DesignNames& NamesOf(Design design);
-inline const std::string& BenchOf(Design design) {
-  return NamesOf(design).bench;
-}
+inline const std::string& BenchOf(Design design) { return NamesOf(design).bench; }
 
 /// What is believed of the bench.
 Scenario Believed(Design design);

@@ -14,9 +14,7 @@ namespace twinbench::hidden {
 namespace {
 
 /// Of benches whose catalogue begins with the size.
-bool SizeComesFirst(const std::string& bench) {
-  return bench == kCircularBench || bench == kFreeformBench;
-}
+bool SizeComesFirst(const std::string& bench) { return bench == kCircularBench || bench == kFreeformBench; }
 
 /// Parameters that are scaled with a size.
 std::string PartnerOf(const std::string& size) {

@@ -67,9 +67,7 @@ Grade GradeOf(const Hidden& hidden, const Diagnosis& d) {
   return hidden.unlisted.empty() ? GradeListed(hidden, d) : GradeUnlisted(hidden, d);
 }
 
-bool Names(const Diagnosis& d) {
-  return d.verdict == Verdict::kNamed || d.verdict == Verdict::kTie;
-}
+bool Names(const Diagnosis& d) { return d.verdict == Verdict::kNamed || d.verdict == Verdict::kTie; }
 
 bool IsSurelyWrong(const Hidden& hidden, const Diagnosis& d) {
   return Names(d) && std::ranges::any_of(d.causes, [&](const Cause& cause) {
@@ -126,9 +124,7 @@ double ParameterCheck::Error() const {
   return period > 0.0 ? std::remainder(value - truth, period) : value - truth;
 }
 
-bool ParameterCheck::Covers() const {
-  return std::abs(Error()) <= 1.96 * u;
-}
+bool ParameterCheck::Covers() const { return std::abs(Error()) <= 1.96 * u; }
 
 std::vector<std::string> Split(const std::string& text, const std::string& separator) {
   std::vector<std::string> parts;

@@ -93,9 +93,7 @@ TEST(Share, HasTheIntervalOfClopperAndPearson) {
 
 // Whether the suite's own measures can fail.
 
-std::string SaidBy(const ::testing::AssertionResult& result) {
-  return result ? "" : result.message();
-}
+std::string SaidBy(const ::testing::AssertionResult& result) { return result ? "" : result.message(); }
 
 const std::vector<KnownWrong> kKnown = {{"twin", "b", "its tie has four members"}, {"other", "z", "not asked"}};
 

@@ -17,9 +17,7 @@ namespace {
 
 const std::string kPath = TWINBENCH_TEST_DATA "/known_wrong.txt";
 
-std::string Key(const std::string& set, const std::string& name) {
-  return set + " | " + name;
-}
+std::string Key(const std::string& set, const std::string& name) { return set + " | " + name; }
 
 std::string WordsOf(const Outcome& o) {
   return fmt::format("hides {} (rho {:.0f}): {}", InWords(o.hidden), o.hidden.rho, o.answer);

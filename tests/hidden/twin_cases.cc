@@ -90,9 +90,7 @@ bool NeedsAllKnown(const std::string& effect) {
 }
 
 /// Effects that a circle cannot tell from errors of the tables, which are free: controls_test.cc.
-bool IsTheTables(const std::string& effect) {
-  return effect == "grating_form" || effect == "encoder_subdivision";
-}
+bool IsTheTables(const std::string& effect) { return effect == "grating_form" || effect == "encoder_subdivision"; }
 
 /// Designs that can show an effect at all: a device at rest is not late, and one that is read
 /// once a stop does not show how it comes to rest.
@@ -228,9 +226,7 @@ std::vector<Placement> Placements(const std::string& bench) {
   return placements;
 }
 
-std::vector<Design> PlainDesigns(const std::string& bench) {
-  return DesignsFor("", bench);
-}
+std::vector<Design> PlainDesigns(const std::string& bench) { return DesignsFor("", bench); }
 
 std::string CaseName(const Placement& placement, std::uint64_t seed) {
   return fmt::format("{}:{}:{}:{}", NamesOf(placement.design).name, placement.effect, placement.where, seed);

@@ -21,9 +21,7 @@ namespace {
 constexpr int kThreads = 2;  // and as many of ctest's places: CMakeLists.txt
 
 /// One size a place: rho 20.
-TwinOptions OneSize() {
-  return {.magnitudes = 1, .seeds = 1, .rho_from = 20.0, .rho_to = 20.0};
-}
+TwinOptions OneSize() { return {.magnitudes = 1, .seeds = 1, .rho_from = 20.0, .rho_to = 20.0}; }
 
 /// One plan of each effect; which place or design differs from effect to effect.
 std::vector<Plan> OneOfEachEffect(const std::string& bench) {

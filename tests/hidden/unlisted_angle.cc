@@ -8,9 +8,7 @@
 namespace twinbench::hidden {
 namespace {
 
-std::string AnyAxis(const Draw& draw) {
-  return draw.Whole(0, 1) == 0 ? "x" : "y";
-}
+std::string AnyAxis(const Draw& draw) { return draw.Whole(0, 1) == 0 ? "x" : "y"; }
 
 UnlistedSignal OnEither(const Draw& draw, const std::vector<std::string>& locks, const Eigen::VectorXd& series) {
   return OnColumn(draw.Whole(0, 1), 2, locks, series);

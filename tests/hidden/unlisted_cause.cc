@@ -144,13 +144,9 @@ const std::vector<UnlistedCause> kOfRotary = {
 
 }  // namespace
 
-double Draw::Hours(std::size_t i) const {
-  return ToSeconds(readings[i].time - readings[0].time) / units::hour;
-}
+double Draw::Hours(std::size_t i) const { return ToSeconds(readings[i].time - readings[0].time) / units::hour; }
 
-double Draw::StepHours(std::size_t i) const {
-  return i == 0 ? 0.0 : Hours(i) - Hours(i - 1);
-}
+double Draw::StepHours(std::size_t i) const { return i == 0 ? 0.0 : Hours(i) - Hours(i - 1); }
 
 double Draw::Spot_m(std::size_t i, std::size_t channel) const {
   return readings[i].mean_V[channel] / kSensitivity_V_m;

@@ -8,9 +8,7 @@
 /// What the tests of this room share: the reference bench, and readings made straight from motions.
 namespace twinbench::measure {
 
-inline BenchGeometry Bench() {
-  return NominalGeometry(test::RotaryScenario());
-}
+inline BenchGeometry Bench() { return NominalGeometry(test::RotaryScenario()); }
 
 /// Imperfections of the detectors that a calibration should find.
 struct Detectors {

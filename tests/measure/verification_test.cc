@@ -33,9 +33,7 @@ Record ThreeStops(const Eigen::Vector2d& mount_rad = Eigen::Vector2d::Zero()) {
   return record;
 }
 
-Verification Summarise(const Record& record) {
-  return SummariseVerification(record.motions, record.readings, 1.0);
-}
+Verification Summarise(const Record& record) { return SummariseVerification(record.motions, record.readings, 1.0); }
 
 TEST(SummariseVerification, HasTheClosedFormsOfThreeStops) {
   const Verification v = Summarise(ThreeStops());
@@ -90,9 +88,7 @@ Motion Resting(double factor, double time_s) {
   return m;
 }
 
-Motion Lost(double time_s) {
-  return At(time_s, ReadingStatus::kNoLight);
-}
+Motion Lost(double time_s) { return At(time_s, ReadingStatus::kNoLight); }
 
 void ExpectRelative(const Vector4& found, const Vector4& expected) {
   EXPECT_LT((found.cwiseQuotient(expected) - Vector4::Ones()).cwiseAbs().maxCoeff(), 1e-12);  // rounding

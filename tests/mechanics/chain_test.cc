@@ -9,9 +9,7 @@
 namespace twinbench::mechanics {
 namespace {
 
-double Tilt(const Vector12& q, int table) {
-  return q.segment<2>(kPerTable * table + 3).norm();
-}
+double Tilt(const Vector12& q, int table) { return q.segment<2>(kPerTable * table + 3).norm(); }
 
 TEST(StaticDeflection, FollowsTheFirstOrderFormula) {
   const Vector12 q = StaticDeflection(EccentricStack(), 0.3, -1.0);

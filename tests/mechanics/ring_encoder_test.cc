@@ -11,9 +11,7 @@ namespace {
 constexpr double kRadius_m = 0.05;
 constexpr double kRounding_rad = 1e-14;  // some operations on angles of a few turns in double
 
-Ring GoodRing() {
-  return {.radius_m = kRadius_m, .lines = 18000};
-}
+Ring GoodRing() { return {.radius_m = kRadius_m, .lines = 18000}; }
 
 /// All errors at once, some hundred times what a real ring has.
 Ring BadRing() {
@@ -172,9 +170,7 @@ TEST(RingEncoder, RefusesWhatIsNoRing) {
   }
 }
 
-SignalState Faults() {
-  return {.offset_sin = 0.1, .offset_cos = -0.15, .ratio = 0.2, .quadrature_rad = 0.3};
-}
+SignalState Faults() { return {.offset_sin = 0.1, .offset_cos = -0.15, .ratio = 0.2, .quadrature_rad = 0.3}; }
 
 TEST(EncoderSignal, FindsThePhaseThatShowsAnAngle) {
   for (const double clip : {HUGE_VAL, 1.0, 0.8}) {

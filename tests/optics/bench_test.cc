@@ -9,9 +9,7 @@ namespace {
 
 using Eigen::AngleAxisd, Eigen::Isometry3d, Eigen::Translation3d, Eigen::Vector3d;
 
-Isometry3d Rz(double angle) {
-  return Isometry3d(AngleAxisd(angle, Vector3d::UnitZ()));
-}
+Isometry3d Rz(double angle) { return Isometry3d(AngleAxisd(angle, Vector3d::UnitZ())); }
 
 Isometry3d Pose(const test::OracleError& e) {
   return Translation3d(e[3], e[4], e[5]) * AngleAxisd(e[2], Vector3d::UnitZ()) *
@@ -132,9 +130,7 @@ TEST(RotaryOptics, RefusesMissingParameters) {
 
 using Eigen::Isometry3d, Eigen::Vector3d;
 
-Isometry3d AtHeight(double z_m) {
-  return Isometry3d(Eigen::Translation3d(0.0, 0.0, z_m));
-}
+Isometry3d AtHeight(double z_m) { return Isometry3d(Eigen::Translation3d(0.0, 0.0, z_m)); }
 
 PolarisedLight LightAt(const Ray& ray) {
   return {ray, LinearField(ray.direction, Vector3d(1.0, 0.3, 0.0), 1.0), 0};

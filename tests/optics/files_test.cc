@@ -102,9 +102,7 @@ TEST(IrradianceMaps, CannotBeWrittenWhereThereIsNoFolder) {
 }
 
 /// Corners that float holds exactly, so that both forms of the file keep every bit.
-TriangleMesh Box() {
-  return BoxMesh({-1.5, -2.0, -0.25}, {1.5, 2.0, 0.25});
-}
+TriangleMesh Box() { return BoxMesh({-1.5, -2.0, -0.25}, {1.5, 2.0, 0.25}); }
 
 std::string TextOf(const TriangleMesh& mesh) {
   std::ostringstream out;

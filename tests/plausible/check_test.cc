@@ -24,9 +24,7 @@ std::vector<Reading> Readings(int count = 200) {
   return readings;
 }
 
-Scenario Angles() {
-  return ParseScenario("bench = \"encoder_comparison\"\n", "test", "");
-}
+Scenario Angles() { return ParseScenario("bench = \"encoder_comparison\"\n", "test", ""); }
 
 std::string Lines(const std::vector<Reading>& readings, const Scenario& scenario = Angles()) {
   const std::string lines = InLines(Check(readings, scenario));
@@ -214,9 +212,7 @@ Rows EverySecond(const Rows& readings) {
   return half;
 }
 
-Rows FirstHalf(const Rows& readings) {
-  return {readings.begin(), readings.begin() + std::ssize(readings) / 2};
-}
+Rows FirstHalf(const Rows& readings) { return {readings.begin(), readings.begin() + std::ssize(readings) / 2}; }
 
 Rows EachTime(Rows readings, double times) {
   for (Reading& r : readings) r.time = Time(FromSeconds(times * ToSeconds(r.time)));
@@ -257,9 +253,7 @@ TEST(Mangled, ReadingsOfAnyBenchAreRefusedOrSaidAndGoodOnesAreNot) {
       {"a thousand times",
        [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return 1e3 * x; }); }},
       {"negative", [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return -x; }); }},
-      {"stuck", Stuck},
-      {"shuffled", Shuffled},
-      {"twice", [](const Rows& r, const Scenario&) { return Twice(r); }},
+      {"stuck", Stuck}, {"shuffled", Shuffled}, {"twice", [](const Rows& r, const Scenario&) { return Twice(r); }},
       {"every second", [](const Rows& r, const Scenario&) { return EverySecond(r); }},
       {"the first half", [](const Rows& r, const Scenario&) { return FirstHalf(r); }},
       {"times in ms", [](const Rows& r, const Scenario&) { return EachTime(r, 1e3); }},

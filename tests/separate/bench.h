@@ -10,9 +10,7 @@
 /// What the tests of this room share: the reference bench, designs, motions made straight from table errors.
 namespace twinbench::separate {
 
-inline BenchGeometry Bench() {
-  return measure::NominalGeometry(test::RotaryScenario());
-}
+inline BenchGeometry Bench() { return measure::NominalGeometry(test::RotaryScenario()); }
 
 /// Without Abbe levers: dy has nothing to do with the wobble.
 inline BenchGeometry FlatBench() {
@@ -21,9 +19,7 @@ inline BenchGeometry FlatBench() {
   return flat;
 }
 
-inline LayoutOptions Layouts(int n, Clamping clamping) {
-  return {n, clamping, {}};
-}
+inline LayoutOptions Layouts(int n, Clamping clamping) { return {n, clamping, {}}; }
 
 inline SeparateOptions Options(int n, Clamping clamping, Estimator estimator = Estimator::kRigorous) {
   return {.estimator = estimator, .layout = Layouts(n, clamping)};
@@ -52,9 +48,7 @@ inline TableErrors RandomErrors(int n, Stream& stream) {
   return e;
 }
 
-inline Truth RandomTruth(int n, Stream& stream) {
-  return {RandomErrors(n, stream), RandomErrors(n, stream)};
-}
+inline Truth RandomTruth(int n, Stream& stream) { return {RandomErrors(n, stream), RandomErrors(n, stream)}; }
 
 /// Full circles of motions with zero values: every shift is a set-up, every pass goes through all stops.
 inline std::vector<Motion> EmptyMotions(int n, const std::vector<int>& shifts, int passes, const Matrix4& cov) {
@@ -79,9 +73,7 @@ inline std::vector<Motion> EmptyMotions(int n, const std::vector<int>& shifts, i
 }
 
 /// 0.3 um on every PSD axis.
-inline Matrix4 ReadingCovariance() {
-  return Vector4(1.7e-6, 0.9e-6, 4.5e-6, 0.54e-6).cwiseAbs2().asDiagonal();
-}
+inline Matrix4 ReadingCovariance() { return Vector4(1.7e-6, 0.9e-6, 4.5e-6, 0.54e-6).cwiseAbs2().asDiagonal(); }
 
 inline Vector6 ErrorsAt(const TableErrors& e, int position) {
   Vector6 v;

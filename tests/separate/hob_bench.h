@@ -89,8 +89,6 @@ inline std::vector<Mounting> Heads(const std::vector<double>& head_deg, double t
   return setups;
 }
 
-inline double DistanceArcsec(Complex a_rad, Complex b_rad) {
-  return std::abs(a_rad - b_rad) / kArcsec;
-}
+inline double DistanceArcsec(Complex a_rad, Complex b_rad) { return std::abs(a_rad - b_rad) / kArcsec; }
 
 }  // namespace twinbench::separate::hob

@@ -19,15 +19,9 @@ using units::um;
 
 using Curve = std::function<double(double)>;  // of an angle [rad], in um
 
-double AxisX_um(double a) {
-  return 0.5 * std::cos(2.0 * a) + 0.3 * std::sin(5.0 * a);
-}
-double AxisY_um(double a) {
-  return 0.4 * std::cos(3.0 * a + 0.6);
-}
-double Artefact_um(double a) {
-  return 0.8 * std::cos(3.0 * a) + 0.35 * std::sin(4.0 * a + 0.2);
-}
+double AxisX_um(double a) { return 0.5 * std::cos(2.0 * a) + 0.3 * std::sin(5.0 * a); }
+double AxisY_um(double a) { return 0.4 * std::cos(3.0 * a + 0.6); }
+double Artefact_um(double a) { return 0.8 * std::cos(3.0 * a) + 0.35 * std::sin(4.0 * a + 0.2); }
 
 struct Spun {
   std::vector<double> at_rad;  // of the probes

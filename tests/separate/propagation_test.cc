@@ -14,9 +14,7 @@ namespace {
 constexpr double kSigma_rad = 1e-6;
 
 /// Equal, independent noise on ez, ex, ey [rad] and, in units of 1 m, on dy.
-Matrix4 EqualNoise() {
-  return kSigma_rad * kSigma_rad * Matrix4::Identity();
-}
+Matrix4 EqualNoise() { return kSigma_rad * kSigma_rad * Matrix4::Identity(); }
 
 TableEstimate TargetOf(int n, const std::vector<int>& shifts, Clamping clamping, const BenchGeometry& geometry = Bench()) {
   const auto motions = EmptyMotions(n, shifts, 1, EqualNoise());

@@ -36,9 +36,7 @@ IndexingOptions Options(double u_rad, double gamma_rad = 0.0) {
   return options;
 }
 
-Eigen::VectorXd WithoutMean(const Eigen::VectorXd& values) {
-  return values.array() - values.mean();
-}
+Eigen::VectorXd WithoutMean(const Eigen::VectorXd& values) { return values.array() - values.mean(); }
 
 Eigen::VectorXd TrueTurntable(const TrueBench& bench, int n) {
   Eigen::VectorXd truth(n);

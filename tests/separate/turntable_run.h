@@ -99,9 +99,7 @@ inline TrueBench PublishedBench(double u_rad, Stream& truth) {
 }
 
 /// Two tilts of 60 and 100 arcsec, the same teeth.
-inline std::vector<Seat> TwoTilts() {
-  return {{0.0, 60.0 * arcsec, 0.4}, {0.0, 100.0 * arcsec, 2.1}};
-}
+inline std::vector<Seat> TwoTilts() { return {{0.0, 60.0 * arcsec, 0.4}, {0.0, 100.0 * arcsec, 2.1}}; }
 
 /// Circles read with the published instruments.
 struct PublishedCircles {
@@ -121,8 +119,6 @@ inline std::vector<TurntableStop> ReadIdeal(const std::vector<Seat>& seats, int 
   return ReadCircles({}, seats, n, none);
 }
 
-inline AutocollimatorNoise Stated(double u_rad) {
-  return {u_rad, u_rad, 0};
-}
+inline AutocollimatorNoise Stated(double u_rad) { return {u_rad, u_rad, 0}; }
 
 }  // namespace twinbench::separate::turntable

@@ -43,12 +43,8 @@ Expected Order(double order, double size_deg, double share) {
 Expected Effect(const std::string& effect, double size, const std::string& unit) {
   return {.effects = {effect}, .size = size, .unit = unit, .share = 1.0};
 }
-Truth Of(const std::vector<Expected>& causes) {
-  return {.causes = causes, .nothing_else = true};
-}
-bool IsRight(const Truth& truth, const Diagnosis& said) {
-  return Judge(truth, said).is_right;
-}
+Truth Of(const std::vector<Expected>& causes) { return {.causes = causes, .nothing_else = true}; }
+bool IsRight(const Truth& truth, const Diagnosis& said) { return Judge(truth, said).is_right; }
 
 TEST(ShelfJudge, WantsEveryCauseAboveATwentiethOfTheVariance) {
   const Truth truth = Of({Order(1, 0.2, 0.9), Order(3, 0.06, 0.06), Order(5, 0.02, 0.04)});

@@ -51,12 +51,8 @@ std::string InLines(const KnownCases& known) {
   return text;
 }
 
-KnownCases ReadKnownCases() {
-  return ParseKnownCases(BytesOfFile(kPath), kPath);
-}
+KnownCases ReadKnownCases() { return ParseKnownCases(BytesOfFile(kPath), kPath); }
 
-void WriteKnownCases(const KnownCases& known) {
-  WriteFileAtOnce(kPath, kHead + InLines(known));
-}
+void WriteKnownCases(const KnownCases& known) { WriteFileAtOnce(kPath, kHead + InLines(known)); }
 
 }  // namespace twinbench::shelf

@@ -26,9 +26,7 @@ TEST(KnownCases, RefuseALineThatSaysSomethingElse) {
 class Shelf : public ::testing::TestWithParam<std::string> {};
 
 /// A case that is about as slow as the limit is not to change its mark with every run.
-bool IsSlow(double cpu_s, bool was_slow) {
-  return cpu_s > (was_slow ? 2.0 : 3.0);
-}
+bool IsSlow(double cpu_s, bool was_slow) { return cpu_s > (was_slow ? 2.0 : 3.0); }
 
 TEST_P(Shelf, IsDiagnosedAsWellAsItWas) {
   const std::string name = GetParam();

@@ -76,9 +76,7 @@ Size InSI(double size, const std::string& unit) {
   return {size * found->second.first, 0.0, found->second.second};
 }
 
-bool IsSameOrder(double a, double b) {
-  return std::abs(a - b) <= std::max(0.05, 0.01 * std::abs(b));
-}
+bool IsSameOrder(double a, double b) { return std::abs(a - b) <= std::max(0.05, 0.01 * std::abs(b)); }
 
 double OrderOf(const Cause& cause) {
   const std::map<std::string, double> fixed = {{"eccentricity", 1.0},     {"signal_offset", 1.0},

@@ -220,9 +220,7 @@ TEST(TakeBlock, LosesTheBlockWhenTheFifoRunsOver) {
   EXPECT_EQ(Take(input, {.n_samples = 100000}, 0, adc).status, ReadingStatus::kOk);
 }
 
-bool SameNumber(double a, double b) {
-  return a == b || (std::isnan(a) && std::isnan(b));
-}
+bool SameNumber(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 bool SameBits(const AdBlock& a, const AdBlock& b) {
   bool same = a.raw == b.raw && a.saturated == b.saturated;

@@ -12,9 +12,7 @@ using units::deg;
 
 constexpr double kTiny_rad = 1e-11;  // rounding of angles of some turns
 
-double Error_rad(const Reading& reading) {
-  return reading.measured_rad - reading.reference_rad;
-}
+double Error_rad(const Reading& reading) { return reading.measured_rad - reading.reference_rad; }
 
 TEST(AngleSchedule, GoesThroughTheSameStopsInBothDirections) {
   const auto readings = procedure::AngleSchedule(EncoderOf(EncoderScenario()).encoder_procedure);

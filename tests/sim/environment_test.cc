@@ -22,9 +22,7 @@ FixtureSettings CubeAt(const Vector3& position_m) {
 }
 
 /// Half way from the grating to PSD A, in the order's light.
-Vector3 BeforePsdA() {
-  return 0.060 * Vector3(kSine, kCosine, 0.0);
-}
+Vector3 BeforePsdA() { return 0.060 * Vector3(kSine, kCosine, 0.0); }
 
 Acquisition ReadWith(const std::vector<FixtureSettings>& fixtures, const char* beam = "chief_ray") {
   Scenario scenario = test::RotaryScenario();
@@ -102,9 +100,7 @@ TEST(Fixture, OfAMeshFileStandsInTheLightLikeABox) {
   EXPECT_EQ(ReadWith({mesh}).status, ReadingStatus::kOk);
 }
 
-Time At(double t_s) {
-  return Time{} + FromSeconds(t_s);
-}
+Time At(double t_s) { return Time{} + FromSeconds(t_s); }
 
 TEST(Environment, AddsDriftAndSwingToItsLevelOrInterpolatesARecord) {
   EnvironmentSettings settings;

@@ -8,9 +8,7 @@
 namespace twinbench::sim {
 namespace {
 
-Time AtNs(std::int64_t ns) {
-  return Time(Duration(ns));
-}
+Time AtNs(std::int64_t ns) { return Time(Duration(ns)); }
 
 TEST(EventQueue, RunsAnEventThatIsAddedForNowAfterThoseThatWaitAlsoFromInsideAnEvent) {
   EventQueue queue;

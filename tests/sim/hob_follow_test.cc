@@ -153,9 +153,7 @@ Scenario QuietMachine() {
   return s;
 }
 
-std::vector<Reading> HobReadings(const Scenario& scenario) {
-  return test::RunBench(scenario).readings;
-}
+std::vector<Reading> HobReadings(const Scenario& scenario) { return test::RunBench(scenario).readings; }
 
 /// table - ratio x hob, its mean over the readings taken out.
 std::vector<double> Differences_arcsec(const std::vector<Reading>& readings, double ratio) {

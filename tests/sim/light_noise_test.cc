@@ -145,9 +145,7 @@ TEST_P(Means, ScatterAsTheSpectrumSays) {
 
 INSTANTIATE_TEST_SUITE_P(FromATenthToFourPeriodsOfTheCorner, Means, testing::Values(0.0, 0.1, 1.0, 4.0));
 
-int Blocks() {
-  return test::ByNight(1500, 400);
-}
+int Blocks() { return test::ByNight(1500, 400); }
 
 /// Mean of squares of the means of blocks of so many scans on one channel, minutes apart.
 double SquareOfMeans_V2(int scans, int channel) {
@@ -230,9 +228,7 @@ TEST(LowPass, NarrowsAndCorrelatesTheLightsNoise) {
 
 /// A sine of 137 Hz behind 100 Hz, at its place on the clock, and what the pole makes of it.
 constexpr double kTone_Hz = 137.0, kCorner_Hz = 100.0;
-double LongTone_V(double t_s, double phase_rad) {
-  return std::sin(units::turn * kTone_Hz * t_s + phase_rad);
-}
+double LongTone_V(double t_s, double phase_rad) { return std::sin(units::turn * kTone_Hz * t_s + phase_rad); }
 
 // Mean over a block, of the output less what a pole shows that has seen the sine for ever.
 double MeanError_V(double phase_rad, bool remembers) {

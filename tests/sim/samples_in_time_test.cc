@@ -101,9 +101,7 @@ TEST(SamplesInTime, ABlockAtRestIsSteadyAndASpotThatLeavesDuringOneLosesIt) {
   EXPECT_EQ(bench.adc.Acquire(100000, false).status, ReadingStatus::kNoLight);
 }
 
-double Yaw_arcsec(Twin& twin) {
-  return twin.Bench().autocollimator.Read().yaw_rad / units::arcsec;
-}
+double Yaw_arcsec(Twin& twin) { return twin.Bench().autocollimator.Read().yaw_rad / units::arcsec; }
 
 TEST(SamplesInTime, PlayIsCrossedBeforeTheRotorFollows) {
   const double half_rad = 10.0 * units::arcsec;

@@ -24,16 +24,10 @@ Scenario QuietTurntable() {
   return s;
 }
 
-std::vector<Reading> TurntableReadings(const Scenario& scenario) {
-  return test::RunBench(scenario).readings;
-}
+std::vector<Reading> TurntableReadings(const Scenario& scenario) { return test::RunBench(scenario).readings; }
 
-double X_arcsec(const Reading& r) {
-  return r.autocollimator_yaw_rad / arcsec;
-}
-double Y_arcsec(const Reading& r) {
-  return r.autocollimator_tilt_rad / arcsec;
-}
+double X_arcsec(const Reading& r) { return r.autocollimator_yaw_rad / arcsec; }
+double Y_arcsec(const Reading& r) { return r.autocollimator_tilt_rad / arcsec; }
 
 // The reading is half the tangent of the doubled angle: at 100 arcsec 3e-5 arcsec more than the angle.
 constexpr double kTangent_arcsec = 1e-4;

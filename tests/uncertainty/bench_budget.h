@@ -79,9 +79,7 @@ inline uncertainty::Evaluate Computing(const std::string& name, const std::funct
   return [=](const Scenario& s) { return std::vector<uncertainty::Quantity>{{name, value(s), u, dof}}; };
 }
 
-inline double SquareOfFirst(const Scenario& s) {
-  return std::pow(1e3 * Input(s, 0), 2);
-}
+inline double SquareOfFirst(const Scenario& s) { return std::pow(1e3 * Input(s, 0), 2); }
 
 /// As many trials as said.
 inline uncertainty::MonteCarloOptions Trials(int trials, const std::vector<uncertainty::Joint>& joints = {}) {

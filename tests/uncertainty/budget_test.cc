@@ -161,9 +161,7 @@ TEST(StatedQuantities, AreThoseWithAnUncertaintyInEachOfItsForms) {
 }
 
 /// Deviations of four readings of unit variance from their mean: cov = 1 - 1/4 everywhere, rank 3.
-Eigen::MatrixXd OfDeviations() {
-  return Eigen::MatrixXd::Identity(4, 4) - Eigen::MatrixXd::Constant(4, 4, 0.25);
-}
+Eigen::MatrixXd OfDeviations() { return Eigen::MatrixXd::Identity(4, 4) - Eigen::MatrixXd::Constant(4, 4, 0.25); }
 
 TEST(Joint, HasARootWithoutTheDirectionsThatAreNone) {
   const Eigen::MatrixXd root = RootOf(OfDeviations());
