@@ -20,10 +20,7 @@ Scenario WithPlay() {
 }
 
 diagnose::Cause WithOdds(const std::string& effect, double probability) {
-  diagnose::Cause cause;
-  cause.effect = effect;
-  cause.probability = probability;
-  return cause;
+  return {.effect = effect, .probability = probability};
 }
 
 /// A play, and a settling whose sizes the diagnosis did not state: it cannot be told from the play if it is slow.

@@ -102,11 +102,7 @@ TEST(InvestigateAProgram, TellsWhatABenchHidesThatSharesNothingWithTheTwin) {
 using diagnose::Cause;
 
 Cause Named(const std::string& effect, double probability) {
-  Cause cause;
-  cause.effect = effect;
-  cause.where = "y";
-  cause.probability = probability;
-  return cause;
+  return {.effect = effect, .where = "y", .probability = probability};
 }
 
 /// A drift that the answer names, beside a creep that it is too sure of to list.
