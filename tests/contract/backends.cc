@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "hw_bridge/replay/replay_bench.h"
 #include "tests/contract/rotary_bench.h"
 #include "tests/core/input_error.h"

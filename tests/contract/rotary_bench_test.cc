@@ -1,7 +1,5 @@
 #include "tests/contract/rotary_bench.h"
 
-#include <gmock/gmock.h>
-
 #include "tests/support/rotary_scenario.h"
 
 /// The contract of twin/core/devices.h. Every backend of a rotary bench goes through the same tests; a new one adds

@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/support/served_run.h"
 
 /// Same scenario, same seed, same result, whatever the bench is reached by.
