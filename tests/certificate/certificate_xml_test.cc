@@ -1,8 +1,5 @@
 #include "twin/report/certificate/certificate_xml.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <fstream>
 #include <pugixml.hpp>
 
