@@ -1,9 +1,4 @@
-#include <gtest/gtest.h>
-
-#include <functional>
-#include <map>
 #include <regex>
-#include <set>
 #include <utility>
 
 #include "tests/layers/source_files.h"

@@ -1,8 +1,4 @@
-#include <gtest/gtest.h>
-
-#include <map>
 #include <regex>
-#include <set>
 
 #include "tests/layers/source_files.h"
 
