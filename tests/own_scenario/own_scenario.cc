@@ -1,12 +1,8 @@
 #include "tests/own_scenario/own_scenario.h"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <fstream>
-#include <map>
-#include <set>
 
 #include "tests/hidden/judge.h"
 #include "tests/hidden/written_file.h"
