@@ -4,6 +4,23 @@
 namespace twinbench::test {
 namespace {
 
+TEST(HeldClockOfTheBench, RestartedAsAnotherRunItHasTheBitsOfThatRunOfTheTwinAndThenItsOwnAgain) {
+  Scenario third = test::RotaryScenario();
+  third.repeat = 3;
+  sim::Twin other(third);
+  ServedTwin served(OnFreePorts(1.0), test::RotaryScenario());
+  TcpClient scpi(served.at().scpi_port);
+  BufferClient adc(served.at().iiod_port, 500);
+  scpi.Ask("CLOC:HOLD ON;:SIM:PACE OFF;REST;*OPC?");
+  const Scans own = adc.Read(100);
+  EXPECT_EQ(scpi.AskNumber("SIM:REST 3;CLOC:NOW?"), 0);
+  EXPECT_EQ(adc.Read(100).raw, other.Bench().adc.Acquire(100, true).raw);
+  EXPECT_EQ(scpi.AskNumber("SIM:REST;CLOC:NOW?"), 0);
+  const Scans again = adc.Read(100);
+  EXPECT_EQ(again.raw, own.raw);
+  EXPECT_EQ(again.stamps_ns, own.stamps_ns);
+}
+
 TEST(HeldClockOfTheBench, ScansAreStampedAtTheirInstants) {
   Scenario scenario = test::RotaryScenario();
   RotaryOf(scenario).adc.rate_Hz = 3e5;  // 75 kHz a channel: 13333.3 ns from scan to scan
