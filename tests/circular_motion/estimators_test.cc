@@ -39,6 +39,12 @@ TEST(PublishedCircle, FindsTheCentreAndLeavesItsTangentialPart) {
   EXPECT_NEAR(radial_um, 0.003480009885231894, 1e-6);
 }
 
+TEST(RigorousCircle, LeavesNothingOfAnOffset) {
+  const CircleMounting mounting{{20.0 * um, -12.0 * um}};
+  for (const CirclePoint& p : OffCentre({20.0 * um, -12.0 * um}))
+    EXPECT_LT(Deviation_m(p, {}, mounting, {1.0, 1.0, 1.0, 0.0}).norm(), 1e-15);
+}
+
 /// The run of an independent implementation and what it was made with.
 struct OracleRun {
   Scenario scenario;
