@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tools/live/feed.h"
 #include "tools/live/gate.h"
 #include "twin/core/secret_token.h"
@@ -30,34 +28,27 @@ TEST(Gate, LetsInWhoeverHasTheToken) {
   EXPECT_EQ(StatusOf(by_name), 0);
 }
 
+/// A good request in which one thing is another one.
+void ExpectForbidden(std::string Request::*thing, const std::vector<const char*>& others) {
+  for (const char* other : others) {
+    Request request = Good("POST", "/stop");
+    request.*thing = other;
+    EXPECT_EQ(StatusOf(request), 403) << other;
+  }
+}
+
 TEST(Gate, RefusesEveryTokenButTheRightOne) {
-  for (const char* query : {"", "?token=", "?token=0123456789abcde", "?token=0123456789abcdef0", "?token=0123456789abcdeF",
-                            "?other=0123456789abcdef", "?x=1&token=0123456789abcdef", "?token=0123456789abcdef&x=1"}) {
-    Request request = Good("POST", "/stop");
-    request.target = std::string("/stop") + query;
-    EXPECT_EQ(StatusOf(request), 403) << query;
-  }
+  ExpectForbidden(&Request::target, {"/stop", "/stop?token=", "/stop?token=0123456789abcde", "/stop?token=0123456789abcdef0",
+                                     "/stop?token=0123456789abcdeF", "/stop?other=0123456789abcdef",
+                                     "/stop?x=1&token=0123456789abcdef", "/stop?token=0123456789abcdef&x=1"});
 }
 
-TEST(Gate, RefusesPagesOfOtherOriginsWhateverTheyKnow) {
-  for (const char* origin : {"http://evil.example", "null", "https://127.0.0.1:8080", "http://127.0.0.1:8081", "http://localhost:8080"}) {
-    Request request = Good("POST", "/stop");
-    request.origin = origin;
-    EXPECT_EQ(StatusOf(request), 403) << origin;
-  }
-  for (const char* site : {"cross-site", "same-site"}) {
-    Request request = Good();
-    request.fetch_site = site;
-    EXPECT_EQ(StatusOf(request), 403) << site;
-  }
-}
-
-TEST(Gate, RefusesNamesThatWereMadeToLeadHere) {
-  for (const char* host : {"evil.example:8080", "", "127.0.0.1", "127.0.0.1:8081", "127.0.0.1:8080.evil.example"}) {
-    Request request = Good();
-    request.host = host;
-    EXPECT_EQ(StatusOf(request), 403) << host;
-  }
+TEST(Gate, RefusesPagesOfOtherOriginsWhateverTheyKnowAndNamesThatWereMadeToLeadHere) {
+  ExpectForbidden(&Request::origin, {"http://evil.example", "null", "https://127.0.0.1:8080", "http://127.0.0.1:8081",
+                                     "http://localhost:8080"});
+  ExpectForbidden(&Request::fetch_site, {"cross-site", "same-site"});
+  ExpectForbidden(&Request::host,
+                  {"evil.example:8080", "", "127.0.0.1", "127.0.0.1:8081", "127.0.0.1:8080.evil.example"});
 }
 
 TEST(Gate, StopsPausesAndResumesByPostAlone) {
@@ -97,19 +88,13 @@ TEST(Feed, GivesWholeEventsOnceAndInOrder) {
   EXPECT_EQ(next, feed.end());
 }
 
-TEST(Feed, KeepsTheNewestAndGoesOnWithThem) {
+TEST(Feed, KeepsTheNewestAndHasNothingForAPageThatIsAheadOfIt) {
   Feed feed(2);
   for (const char* json : {"1", "2", "3"}) feed.Add("reading", json);
-  std::uint64_t next = 0;
+  std::uint64_t next = 0, ahead = 500;  // ahead: of a program that ran before at the same port
   EXPECT_EQ(feed.From(next, 1000), "id: 1\nevent: reading\ndata: 2\n\nid: 2\nevent: reading\ndata: 3\n\n");
   EXPECT_EQ(next, 3u);
-}
-
-TEST(Feed, HasNothingForAPageThatIsAheadOfIt) {
-  Feed feed(2);
-  feed.Add("reading", "1");
-  std::uint64_t next = 500;  // of a program that ran before at the same port
-  EXPECT_EQ(feed.From(next, 1000), "");
+  EXPECT_EQ(feed.From(ahead, 1000), "");
 }
 
 }  // namespace

@@ -1,8 +1,5 @@
 #include "tools/live/server.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
 #include <thread>
 
 #include "tests/core/input_error.h"
