@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <set>
-
 #include "tests/tools/program.h"
 
 // A bench is a folder: one that the program does not ship (runout.cc) is run, separated, scored and diagnosed by
