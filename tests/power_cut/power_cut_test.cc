@@ -1,8 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "tests/power_cut/numbered.h"
 #include "tests/power_cut/write_log.h"
 #include "tests/support/night.h"

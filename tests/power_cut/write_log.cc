@@ -1,6 +1,5 @@
 #include "tests/power_cut/write_log.h"
 
-#include <algorithm>
 #include <fstream>
 
 #include "twin/core/errors.h"
