@@ -1,8 +1,6 @@
 #include "tests/own_scenario/own_scenario.h"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gmock/gmock.h>
 
 #include <iostream>
 
