@@ -69,25 +69,25 @@ TEST(Recovery, ARunThatIsTakenUpByAnotherProgramIsTheUndisturbedOne) {
   }
 }
 
-/// The twin's devices, of which nobody knows that they are simulated.
-RotaryBench RealBench(sim::Twin& twin) {
+/// A run on the twin's devices, of which nobody knows that they are simulated.
+struct RealRun {
+  RealRun() { bench.simulation = nullptr; }
+  std::string End(Course course) { return EndOn(bench, scenario, log, course); }
+  Scenario scenario = test::RestlessBench();
+  sim::Twin twin{scenario};
   RotaryBench bench = twin.Bench();
-  bench.simulation = nullptr;
-  return bench;
-}
+  MemoryLog log;
+};
 
 /// Moves of the table under test from when a real bench's run is taken up to its next block.
 /// @param elsewhere  What somebody did with the tables meanwhile.
 int MovesUntilTheNextBlock(const std::function<void(RotaryBench&)>& elsewhere) {
-  const Scenario scenario = test::RestlessBench();
-  sim::Twin twin(scenario);
-  RotaryBench real = RealBench(twin);
-  MemoryLog log;
+  RealRun real;
   Course stopped, taken_up;
-  stopped.options.stop_requested = [&] { return log.readings.size() >= 5; };
-  EXPECT_NE(EndOn(real, scenario, log, stopped), "none");
-  elsewhere(real);
-  real.clock.Wait(std::chrono::seconds(60));
+  stopped.options.stop_requested = [&] { return real.log.readings.size() >= 5; };
+  EXPECT_NE(real.End(stopped), "none");
+  elsewhere(real.bench);
+  real.bench.clock.Wait(std::chrono::seconds(60));
   int moves = 0;
   bool is_next = false;
   taken_up.options.target.in_position_rad = taken_up.options.reference.in_position_rad = 5.0 * units::arcsec;
@@ -95,9 +95,9 @@ int MovesUntilTheNextBlock(const std::function<void(RotaryBench&)>& elsewhere) {
     is_next = is_next || request.starts_with("acquire");
     moves += !is_next && device == "target" && request.starts_with("move");
   };
-  taken_up.options.kept = log.readings;
-  taken_up.options.calls_done = log.calls;
-  EXPECT_EQ(EndOn(real, scenario, log, taken_up), "none");
+  taken_up.options.kept = real.log.readings;
+  taken_up.options.calls_done = real.log.calls;
+  EXPECT_EQ(real.End(taken_up), "none");
   return moves;
 }
 
@@ -111,40 +111,34 @@ TEST(Recovery, ARealBenchGoesBackToItsLastStopIfEitherTableWasMovedMeanwhile) {
 
 TEST(Recovery, ARealBenchWhoseSpotsAreElsewhereBehindAFaultKeepsNoReadingMore) {
   for (const double shift_V : {0.0, 0.5}) {
-    const Scenario scenario = test::RestlessBench();
-    sim::Twin twin(scenario);
-    RotaryBench real = RealBench(twin);
-    MemoryLog log;
+    RealRun real;
     bool has_failed = false;
     Course course;
     course.before = [&](const std::string& device, const std::string&, CallAnswer&) {
-      if (device != "adc" || log.readings.size() != 20 || has_failed) return;
+      if (device != "adc" || real.log.readings.size() != 20 || has_failed) return;
       has_failed = true;
       throw DeviceFault(FaultKind::kTimeout, device, "as asked for");
     };
     course.after = [&](const std::string& device, const std::string&, CallAnswer& answer) {
       if (device == "adc" && has_failed) answer.block.channel[0].mean_V += shift_V;
     };
-    EXPECT_EQ(EndOn(real, scenario, log, course), shift_V > 0.0 ? "implausible of psd_a_x" : "none");
-    EXPECT_EQ(log.readings.size() == 20u, shift_V > 0.0);
+    EXPECT_EQ(real.End(course), shift_V > 0.0 ? "implausible of psd_a_x" : "none");
+    EXPECT_EQ(real.log.readings.size() == 20u, shift_V > 0.0);
   }
 }
 
 TEST(Recovery, ATableThatSomebodyElseMovedAtRestIsToldBeforeItsNextMove) {
-  const Scenario scenario = test::RestlessBench();
-  sim::Twin twin(scenario);
-  RotaryBench real = RealBench(twin);
-  MemoryLog log;
+  RealRun real;
   bool was_moved = false;
   Course course;
   course.before = [&](const std::string&, const std::string&, CallAnswer&) {
-    if (log.readings.size() != 20 || was_moved) return;
+    if (real.log.readings.size() != 20 || was_moved) return;
     was_moved = true;
-    twin.Bench().reference.StartMove(twin.Bench().reference.EncoderAngle_rad() + 0.01 * units::deg);
+    real.twin.Bench().reference.StartMove(real.twin.Bench().reference.EncoderAngle_rad() + 0.01 * units::deg);
   };
-  EXPECT_EQ(EndOn(real, scenario, log, course), "none");
-  ASSERT_EQ(log.attempts.size(), 1u);
-  EXPECT_EQ(log.attempts[0].fault, "moved");
+  EXPECT_EQ(real.End(course), "none");
+  ASSERT_EQ(real.log.attempts.size(), 1u);
+  EXPECT_EQ(real.log.attempts[0].fault, "moved");
 }
 
 TEST(Recovery, ARecordOfAnotherSeedIsNotContinued) {
