@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
+#include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/diagnose/engine/answer.h"
 #include "twin/diagnose/tuning.h"
 
@@ -23,13 +24,21 @@ Accepted AcceptedOf(const LargeCause& cause) {
   return accepted;
 }
 
-/// What has no name beside the large causes, as it is fitted with them, each without what an offset takes of it.
+/// What has no name beside the large causes, as it is fitted with them, each without what an offset takes of it. Beside free
+/// sizes a shape may be larger than all that there is to explain, and they smaller by as much, a walk most easily: it is no more
+/// than they leave.
 std::vector<Eigen::VectorXd> UnnamedOf(const LargeCauses& large) {
   const Searched& last = large.Last();
+  const Eigen::VectorXd all = last.encoder.BesideSetUps(large.first->encoder.run.residual);
+  Eigen::VectorXd left = all;
+  for (const LargeCause& cause : large.causes) left -= last.encoder.BesideSetUps(cause.shown);
   std::vector<Eigen::VectorXd> unnamed;
   for (const Term& term : last.analysis.found.terms) {
     const Family& family = last.families[static_cast<std::size_t>(term.family)];
-    if (family.kind == Kind::kUnknown) unnamed.push_back(last.encoder.BesideSetUps(term.columns * term.amplitudes));
+    if (family.kind != Kind::kUnknown) continue;
+    const Eigen::VectorXd shown = last.encoder.BesideSetUps(term.columns * term.amplitudes);
+    const Eigen::VectorXd& most = FollowsWalk(family, term.columns) ? left : all;
+    unnamed.push_back(shown.squaredNorm() > most.squaredNorm() ? left : shown);
   }
   return unnamed;
 }
@@ -53,14 +62,10 @@ double ChanceOf(const LargeCause& cause, double readings) {
 void WeighTheRest(const LargeCauses& large, Diagnosis& d, std::vector<Cause>& causes) {
   if (d.verdict != Verdict::kUnknown) return;
   const std::vector<Eigen::VectorXd> shapes = UnnamedOf(large);
+  const double unnamed = PowerOf(shapes);
   double named = 0.0;
-  Eigen::VectorXd left = large.first->encoder.run.residual;
-  for (const LargeCause& cause : large.causes) {
+  for (const LargeCause& cause : large.causes)
     named += large.first->encoder.BesideSetUps(cause.shown).squaredNorm();
-    left -= cause.shown;
-  }
-  // A walk beside free sizes may be larger than all that there is to explain, and they smaller by as much.
-  const double unnamed = std::min(PowerOf(shapes), large.first->encoder.BesideSetUps(left).squaredNorm());
   if (unnamed <= named) {
     d.verdict = Verdict::kNamed;
     return;
