@@ -232,7 +232,7 @@ std::pair<double, std::string> BestOfSort(const EncoderRun& encoder, const std::
     const test::Fit fit = test::BestFit(family, encoder.run);
     if (fit.left >= left) continue;
     left = fit.left;
-    words = family.describe(fit.grid_point, fit.amplitudes);
+    words = family.describe(fit.grid_point, fit.amplitudes, family.shapes.empty() ? Eigen::VectorXd() : family.ShapeAt(fit.grid_point));
   }
   return {left, words};
 }
@@ -276,6 +276,13 @@ TEST(EncoderUnknown, FindsLinesMapsTonesWanderPassesAndWhatGrowsWithTimeOrSpeed)
     EXPECT_LT(left, structure.left) << structure.kind << " " << structure.sort;
     EXPECT_THAT(words, testing::MatchesRegex(structure.words));
   }
+}
+
+TEST(EncoderUnknown, TellsALineByItsOrderBetweenTheGridPoints) {
+  const std::vector<Family> families = Families(RunWith("stops", [](const Reading&) { return 0.0; }), {});
+  const auto line = std::ranges::find(families, "line", &Family::group);
+  ASSERT_NE(line, families.end());
+  EXPECT_THAT(line->describe(0, Eigen::VectorXd::Ones(line->map.cols()), Eigen::VectorXd::Constant(1, 3.456)), testing::StartsWith("line at 3.456 per turn"));
 }
 
 TEST(EncoderUnknown, FindsAHysteresisAlsoWithoutItsName) {

@@ -67,7 +67,7 @@ std::string SignatureOf(const Term& term, const std::vector<Family>& families, c
   if (posterior.best_unknown < 0) return "";
   const Family& family = families[static_cast<std::size_t>(term.family)];
   if (family.kind == Kind::kUnknown && family.describe)
-    return family.describe(term.grid_point, term.amplitudes) + OtherPlaces(term, families);
+    return family.describe(term.grid_point, term.amplitudes, term.shape) + OtherPlaces(term, families);
   const Family& rival = families[static_cast<std::size_t>(posterior.best_unknown)];
   return rival.effect + " on " + rival.where;
 }

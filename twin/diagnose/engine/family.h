@@ -89,7 +89,8 @@ struct Family {
   bool size_is_of_trace = false;
 
   /// Describes a fitted member of an unknown family in the grammar of docs/diagnosis.md.
-  std::function<std::string(int grid_point, const Eigen::VectorXd& amplitudes)> describe;
+  /// @param shape  As it was refined; empty without shapes.
+  std::function<std::string(int grid_point, const Eigen::VectorXd& amplitudes, const Eigen::VectorXd& shape)> describe;
 
   /// A cause that is a wave of a whole order.
   bool IsWholeOrder() const { return kind == Kind::kNamed && !at && amplitudes.front().name == "cosine"; }

@@ -78,7 +78,7 @@ std::vector<Family> Interactions(const std::vector<AtPoint>& points, const std::
     family.columns = [slope = point.slope, courses](int pair) {
       return ShownOf(slope, courses[static_cast<std::size_t>(pair)]);
     };
-    family.describe = [point, names](int pair, const Eigen::VectorXd& x) {
+    family.describe = [point, names](int pair, const Eigen::VectorXd& x, const Eigen::VectorXd&) {
       return fmt::format("at {}, function of {} together, {}", point.name,
                          names[static_cast<std::size_t>(pair)], SizeInWords(point, x));
     };
@@ -97,10 +97,10 @@ Family Fringes(const AtPoint& point, const Along& along, double shortest, double
   family.columns = [at = family.at, periods](int g) {
     return at(Eigen::VectorXd::Constant(1, periods[static_cast<std::size_t>(g)]));
   };
-  family.describe = [point, name = along.name, unit = along.unit, to_SI = along.to_SI, periods](
-                        int g, const Eigen::VectorXd& x) {
+  family.describe = [point, name = along.name, unit = along.unit, to_SI = along.to_SI](
+                        int, const Eigen::VectorXd& x, const Eigen::VectorXd& period) {
     return fmt::format("at {0}, periodic in {1}, period {2:.3g} {3}, synchronous with {1}, {4}", point.name, name,
-                       periods[static_cast<std::size_t>(g)] / to_SI, unit, SizeInWords(point, x));
+                       period[0] / to_SI, unit, SizeInWords(point, x));
   };
   return family;
 }

@@ -57,11 +57,10 @@ void AddLines(Collector& collect) {
   if (number.empty()) return;
   collect.AddWaves(
       "line", {d.continued_rad, tuning::kFirstLine, step, number, d.moved},
-      [values = order.value, name = angle.name](int g) {
-        return fmt::format("line at {:.3f} per turn synchronous with {}, same in both directions",
-                           values[static_cast<std::size_t>(g)], name);
+      [nearest, name = angle.name](const Eigen::VectorXd& k) {
+        return fmt::format("line at {:.3f} per turn synchronous with {}, same in both directions", AwayFromWhole(k[0], nearest), name);
       },
-      &order,
+      order,
       [design = collect.shared(), nearest](const Eigen::VectorXd& k) {
         return model::Times(model::Wave(AwayFromWhole(k[0], nearest) * design->continued_rad), design->moved);
       });

@@ -65,7 +65,7 @@ Eigen::MatrixXd OnChannel(const Design& design, const Eigen::MatrixXd& samples, 
 }
 
 Family& Collector::New(const std::string& sort, const std::string& where, const std::string& on, int channel,
-                       const Words& words) {
+                       const AnyWords& words) {
   Family& family = families_.emplace_back();
   family.kind = Kind::kUnknown;
   family.effect = family.group = sort;
@@ -76,13 +76,13 @@ Family& Collector::New(const std::string& sort, const std::string& where, const 
   }
   const bool is_mixed = !design_->units.empty();
   if (is_mixed && channel < 0) {
-    family.describe = [on, words](int g, const Eigen::VectorXd&) { return fmt::format("{}, on {}", words(g), on); };
+    family.describe = [on, words](int g, const Eigen::VectorXd&, const Eigen::VectorXd& shape) { return fmt::format("{}, on {}", words(g, shape), on); };
     return family;
   }
   const ChannelUnit unit =
       is_mixed ? design_->units[static_cast<std::size_t>(channel)] : ChannelUnit{design_->unit, design_->to_SI};
-  family.describe = [on, words, unit](int g, const Eigen::VectorXd& x) {
-    return fmt::format("{}, on {}, amplitude {:.2g} {}", words(g), on, x.norm() / unit.to_SI, unit.name);
+  family.describe = [on, words, unit](int g, const Eigen::VectorXd& x, const Eigen::VectorXd& shape) {
+    return fmt::format("{}, on {}, amplitude {:.2g} {}", words(g, shape), on, x.norm() / unit.to_SI, unit.name);
   };
   return family;
 }
@@ -97,6 +97,11 @@ std::shared_ptr<const Base> Collector::BaseOf(int grid, const Series& series) co
 
 void Collector::AddShared(const std::string& sort, const std::shared_ptr<const Base>& base, const Words& words,
                           const Shape* shape, const SeriesAt& at) {
+  AddOnPlaces(sort, base, [words](int g, const Eigen::VectorXd&) { return words(g); }, shape, at);
+}
+
+void Collector::AddOnPlaces(const std::string& sort, const std::shared_ptr<const Base>& base, const AnyWords& words,
+                            const Shape* shape, const SeriesAt& at) {
   last_ = families_.size();
   if (!base || base->grid < 1) return;
   const Eigen::MatrixXd middle = base->series(base->grid / 2);
@@ -146,6 +151,12 @@ void Collector::AddWaves(const std::string& sort, const WaveSeries& waves, const
             shape, at);
 }
 
+void Collector::AddWaves(const std::string& sort, const WaveSeries& waves, const WordsOfShape& words, const Shape& shape,
+                         const SeriesAt& at) {
+  AddOnPlaces(sort, diagnose::BaseOf(waves, static_cast<int>(std::ssize(design_->channels)), design_->rows),
+              [words](int, const Eigen::VectorXd& value) { return words(value); }, &shape, at);
+}
+
 void Collector::AddModulated(const std::string& sort, const Angle& angle, int last, const Eigen::VectorXd& factor,
                              const std::string& words) {
   const int count = std::min(last, angle.last_order);
@@ -161,7 +172,8 @@ void Collector::AddRows(const std::string& sort, const std::string& where, int g
       LargestRms(Scaled(*design_, middle)) * std::sqrt(static_cast<double>(std::ssize(design_->channels)));
   if (!(channel_rms > 0.0)) return;
   const int channel = ChannelNamed(*design_, where), first = std::max(0, channel);
-  Family& family = New(sort, where, where == "all" ? "all channels" : where, channel, words);
+  Family& family = New(sort, where, where == "all" ? "all channels" : where, channel,
+                       [words](int g, const Eigen::VectorXd&) { return words(g); });
   family.grid = grid;
   family.columns = rows;
   const double range = design_->RangeOf(first) / design_->ScaleOf(first);
@@ -192,11 +204,11 @@ void Collector::TakeAnyCourse() {
 void Collector::TellAsShown() {
   for (std::size_t k = last_; k < families_.size(); ++k) {
     Family& family = families_[k];
-    family.describe = [words = family.describe, base = family.base](int g, const Eigen::VectorXd& x) {
+    family.describe = [words = family.describe, base = family.base](int g, const Eigen::VectorXd& x, const Eigen::VectorXd& shape) {
       const Eigen::MatrixXd series = base->series(g);
       const Eigen::MatrixXd shown = series * x.reshaped(series.cols(), x.size() / series.cols());
       const double amplitude = std::sqrt(2.0 / static_cast<double>(shown.rows())) * shown.norm();
-      return words(g, Eigen::VectorXd::Constant(1, amplitude));
+      return words(g, Eigen::VectorXd::Constant(1, amplitude), shape);
     };
   }
 }

@@ -14,6 +14,7 @@
 namespace twinbench::diagnose::unknown {
 
 using Words = std::function<std::string(int grid_point)>;
+using WordsOfShape = std::function<std::string(const Eigen::VectorXd& shape)>;
 
 class Collector {
  public:
@@ -36,6 +37,9 @@ class Collector {
   /// @param shape  Of their grid, with `at`; or null.
   void AddWaves(const std::string& sort, const WaveSeries& waves, const Words& words, const Shape* shape = nullptr,
                 const SeriesAt& at = {});
+  /// The same, told by the shape between the grid points.
+  void AddWaves(const std::string& sort, const WaveSeries& waves, const WordsOfShape& words, const Shape& shape,
+                const SeriesAt& at);
   /// Waves of the whole orders up to `last` of an angle, times a factor of each sample. @param words  "{}" is the
   /// order.
   void AddModulated(const std::string& sort, const Angle& angle, int last, const Eigen::VectorXd& factor,
@@ -63,8 +67,11 @@ class Collector {
  private:
   std::shared_ptr<const Base> BaseOf(int grid, const Series& series) const;
   /// @param channel  Whose unit its size is told in; -1: of several.
+  using AnyWords = std::function<std::string(int grid_point, const Eigen::VectorXd& shape)>;
   Family& New(const std::string& sort, const std::string& where, const std::string& on, int channel,
-              const Words& words);
+              const AnyWords& words);
+  void AddOnPlaces(const std::string& sort, const std::shared_ptr<const Base>& base, const AnyWords& words, const Shape* shape,
+                   const SeriesAt& at);
 
   std::shared_ptr<const Design> design_;
   std::vector<Family> families_;
