@@ -14,7 +14,7 @@
 namespace twinbench::benches::circular {
 namespace {
 
-using separate::circular::FarRadius, separate::circular::TakeOutFar;
+using separate::FarOnCourse, separate::circular::TakeOutFar;
 using units::deg, units::mm, units::um;
 
 constexpr double kFarCircle_m = 120.0 * mm;
@@ -43,11 +43,11 @@ std::vector<Reading> TurnsEachWay(int turns, const More_m& more_m) {
 
 TEST(FarRadii, ASingleOneIsTakenOutWithItsPlace) {
   std::vector<Reading> readings = TurnsEachWay(1, [](int k, int way) { return k == 217 && way < 0 ? -40.0 * um : 0.0; });
-  const std::vector<FarRadius> far = TakeOutFar(readings);
+  const std::vector<FarOnCourse> far = TakeOutFar(readings);
   ASSERT_EQ(far.size(), 1U);
   EXPECT_EQ(far[0].reading, 360 + 217);
-  EXPECT_NEAR(std::remainder(far[0].target_rad / deg + 217.4, 360.0), 0.0, 1e-6);
-  EXPECT_NEAR(far[0].off_m / um, -40.0, 0.8);  // five of its noise with that of its neighbours, 0.14 um
+  EXPECT_NEAR(std::remainder(far[0].angle_rad / deg + 217.4, 360.0), 0.0, 1e-6);
+  EXPECT_NEAR(far[0].off / um, -40.0, 0.8);  // five of its noise with that of its neighbours, 0.14 um
   EXPECT_EQ(readings.size(), 719U);
 }
 

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "tests/import/importing.h"
+#include "twin/benches/evaluated.h"
+#include "twin/core/stream.h"
 #include "twin/import/column_functions.h"
 
 // Logs of the two shafts of a gear train as people have them: other ratios, senses, units, names, times and turns.
@@ -60,6 +63,26 @@ TEST_F(TwoEncoders, AreGuessedByTheNamesOfTheirShafts) {
   EXPECT_EQ(taken.readings.front().direction, 1);
   EXPECT_THAT(taken.story, HasSubstr("taken as one of 1.9375 turns of the input to one of the output"));
   EXPECT_THAT(taken.story, Not(HasSubstr("against each other")));
+}
+
+/// One row that is far off is no order, and is said with its place; a bump that every turn of the table shows is of the gears.
+TEST_F(TwoEncoders, LeaveASingleRowOut) {
+  constexpr int kTurns = 3, kRowsOfATurn = 400, kFarRow = 523, kBumpRow = 77;
+  Stream noise(3, "counts");
+  std::string text = "input_deg,output_deg\n";
+  for (int k = 0; k < kTurns * kRowsOfATurn; ++k) {
+    const double output_deg = 360.0 * k / kRowsOfATurn;
+    const double error_arcsec = 9.0 * std::cos(output_deg * units::deg) + 0.2 * noise.Normal() + (k == kFarRow ? 75.0 : 0.0) +
+                                (k % kRowsOfATurn == kBumpRow ? 20.0 : 0.0);
+    text += fmt::format("{:.7f},{:.7f}\n", 25.0 * output_deg, output_deg + error_arcsec / 3600.0);
+  }
+  const Imported taken = Take(text);
+  const Scenario scenario = ParseScenario("bench = \"" + taken.bench + "\"\n", "train.csv", "", taken.set);
+  const report::Evaluation evaluation = EvaluationOf(scenario, taken.readings, Estimator::kRigorous);
+  ASSERT_EQ(evaluation.results.at("far").size(), 1U);
+  EXPECT_EQ(evaluation.results.at("far").at(0).at("reading"), kFarRow);
+  EXPECT_NEAR(evaluation.results.at("far").at(0).at("off_arcsec").get<double>(), 75.0, 1.5);  // five of 0.24 arcsec, and of the wave
+  EXPECT_THAT(evaluation.summary, HasSubstr("doubtful: reading 523 (table at 470."));
 }
 
 /// An order of one turn of the output has a slope over it.

@@ -350,19 +350,19 @@ ShapesAsRead ShapesOf(const CircleAnalysis& a, const CircularMachineSettings& st
   return shapes;
 }
 
-json FarJson(const std::vector<FarRadius>& far) {
+json FarJson(const std::vector<separate::FarOnCourse>& far) {
   json all = json::array();
-  for (const FarRadius& one : far)
-    all.push_back({{"reading", one.reading}, {"angle_deg", one.target_rad / units::deg}, {"off_um", In(um, one.off_m)}, {"times_scatter", one.times}});
+  for (const separate::FarOnCourse& one : far)
+    all.push_back({{"reading", one.reading}, {"angle_deg", one.angle_rad / units::deg}, {"off_um", In(um, one.off)}, {"times_scatter", one.times}});
   return all;
 }
 
-std::string FarText(const std::vector<FarRadius>& far) {
+std::string FarText(const std::vector<separate::FarOnCourse>& far) {
   std::string text;
-  for (const FarRadius& one : far)
+  for (const separate::FarOnCourse& one : far)
     text += fmt::format("doubtful: the radius of reading {} ({:.6g} deg) lies {:.3g} µm from the curve through its neighbours, {:.2g} times the scatter "
                         "of the others, and no other turn does: left out\n",
-                        one.reading, one.target_rad / units::deg, one.off_m / um, one.times);
+                        one.reading, one.angle_rad / units::deg, one.off / um, one.times);
   return text;
 }
 
@@ -378,7 +378,7 @@ report::Misfit MisfitOf(const CircleAnalysis& a, const std::string& other_ways) 
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& all_readings, Estimator estimator) {
   std::vector<Reading> readings = WithAngles(all_readings);
-  const std::vector<FarRadius> far = TakeOutFar(readings);
+  const std::vector<separate::FarOnCourse> far = TakeOutFar(readings);
   const CircleAnalysis a = Analyse(scenario, readings, estimator);
   report::Evaluation evaluation;
   evaluation.separation = SeparationJson(a);

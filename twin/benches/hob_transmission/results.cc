@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <map>
 #include <optional>
+#include <set>
 
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
 #include "twin/benches/hob_transmission/uncertainty_parts.h"
 #include "twin/report/compensation_text.h"
 #include "twin/report/json_units.h"
+#include "twin/separate/far_on_course.h"
 
 namespace twinbench::benches::hob {
 namespace {
@@ -280,6 +283,45 @@ std::string SummaryOf(const HobAnalysis& a, const HobSettings& settings) {
          ComparisonText(" with the first head alone", a.encoder_against_one_place) + LostText(a);
 }
 
+/// Single samples that no other turn of the table shows are as good as missing. Of one turn alone none is told from a fault of the gears.
+std::vector<separate::FarOnCourse> TakeOutFar(double ratio, std::vector<Reading>& readings) {
+  constexpr double kLeast_rad = 1e-12;
+  std::map<std::pair<int, int>, std::map<int, std::vector<separate::OnCourse>>> that_way;  // set-up and direction; pass
+  for (const Reading& r : readings) {
+    const double error_rad = r.measured_rad - ratio * r.reference_rad;
+    if (r.status == ReadingStatus::kOk && std::isfinite(error_rad) && r.velocity_rad_s != 0.0)
+      that_way[{r.setup, r.direction}][r.pass].push_back({r.reading, r.measured_rad, error_rad});
+  }
+  std::set<int> numbers;
+  std::vector<separate::FarOnCourse> far;
+  for (auto& [way, by_pass] : that_way) {
+    std::vector<std::vector<separate::OnCourse>> passes;
+    for (auto& [number, pass] : by_pass) passes.push_back(std::move(pass));
+    for (const separate::FarOnCourse& one : separate::FarOnCourses(std::move(passes), kLeast_rad, [](double, double) { return true; })) {
+      far.push_back(one);
+      numbers.insert(one.reading);
+    }
+  }
+  std::erase_if(readings, [&](const Reading& r) { return numbers.contains(r.reading); });
+  return far;
+}
+
+std::string FarText(const std::vector<separate::FarOnCourse>& far) {
+  std::string text;
+  for (const separate::FarOnCourse& one : far)
+    text += fmt::format("doubtful: reading {} (table at {:.6g} deg) lies {:.3g} arcsec from the curve through its neighbours, {:.2g} times the "
+                        "scatter of the others, and no other turn does: left out\n",
+                        one.reading, one.angle_rad / units::deg, one.off / units::arcsec, one.times);
+  return text;
+}
+
+nlohmann::json FarJson(const std::vector<separate::FarOnCourse>& far) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const separate::FarOnCourse& one : far)
+    all.push_back({{"reading", one.reading}, {"angle_deg", one.angle_rad / units::deg}, {"off_arcsec", report::Arcsec(one.off)}, {"times_scatter", one.times}});
+  return all;
+}
+
 /// Of all orders together, of e_T + psi.
 report::Misfit MisfitOf(const separate::hob::HeadSeparation& separation) {
   double chi2 = 0.0;
@@ -294,11 +336,14 @@ report::Misfit MisfitOf(const separate::hob::HeadSeparation& separation) {
 
 }  // namespace
 
-report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& all_readings, Estimator estimator) {
+  const HobSettings& settings = HobOf(scenario);
+  std::vector<Reading> readings = all_readings;
+  const std::vector<separate::FarOnCourse> far = TakeOutFar(settings.transmission.Ratio(), readings);
   const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
-  const nlohmann::json separation =
-      analysis.separation ? SeparationJson(analysis, HobOf(scenario)) : nlohmann::json();
-  report::Evaluation evaluation{ResultsOf(analysis, HobOf(scenario)), separation, analysis.not_separated, SummaryOf(analysis, HobOf(scenario))};
+  const nlohmann::json separation = analysis.separation ? SeparationJson(analysis, settings) : nlohmann::json();
+  report::Evaluation evaluation{ResultsOf(analysis, settings), separation, analysis.not_separated, FarText(far) + SummaryOf(analysis, settings)};
+  if (!far.empty()) evaluation.results["far"] = FarJson(far);
   if (analysis.separation) evaluation.misfits = {MisfitOf(*analysis.separation)};
   evaluation.score = [analysis](const nlohmann::json& truth) { return ScoreOf(analysis, truth); };
   return evaluation;
