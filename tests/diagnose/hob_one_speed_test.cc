@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/support/twin_run.h"
+#include "twin/benches/hob_transmission/orders_of_ring.h"
 #include "twin/benches/hob_transmission/orders_of_tones.h"
 #include "twin/core/time.h"
 #include "twin/core/units.h"
@@ -72,6 +73,22 @@ TEST(HobAtOneSpeed, TwoSpeedsTellAToneFromAnOrder) {
   EXPECT_EQ(d.verdict, Verdict::kNamed);
   EXPECT_THAT(NamesInOrder(d), ElementsAre("tone"));
   EXPECT_THAT(d.notes, IsEmpty());
+}
+
+Diagnosis NamedAt(const std::string& effect, const std::string& where, double order) {
+  Diagnosis diagnosis;
+  Cause& cause = diagnosis.causes.emplace_back();
+  cause.effect = effect;
+  cause.where = where;
+  cause.parameters = {{.name = "order", .unit = "1", .value = order}};
+  benches::hob::TellGearsBesideRing(diagnosis);
+  return diagnosis;
+}
+
+TEST(HobRing, IsNoSurerThanGearsThatErrAsOften) {
+  EXPECT_THAT(NamedAt("ellipticity", "hob", 2.0).notes, ElementsAre(HasSubstr("gears that err 2 times per turn of the hob")));
+  EXPECT_THAT(NamedAt("periodic", "hob", 5.0).notes, ElementsAre(HasSubstr("gears that err 5 times per turn of the hob")));
+  EXPECT_THAT(NamedAt("ellipticity", "table", 2.0).notes, IsEmpty());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "twin/benches/hob_transmission/bench.h"
+#include "twin/benches/hob_transmission/orders_of_ring.h"
 #include "twin/benches/hob_transmission/orders_of_tones.h"
 #include "twin/benches/hob_transmission/rounded_orders.h"
 #include "twin/benches/hob_transmission/settings.h"
@@ -269,6 +270,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
   RequireHeads(readings);
   diagnose::DiagnosisRun result = diagnose::DiagnoseByTwin(readings, scenario, options, Comparison(readings, scenario));
   DoubtOrdersOfRounding(readings, result.run, HobOf(scenario).transmission.HobOrder(), result.diagnosis);
+  if (!IsWatched(readings, scenario)) TellGearsBesideRing(result.diagnosis);
   if (!HasClock(readings)) return result;
   std::vector<Reading> samples;
   std::ranges::copy_if(readings, std::back_inserter(samples), IsSample);
