@@ -328,6 +328,15 @@ TEST(Mangled, AnAutocollimatorWhoseAxesAreExchangedIsRefusedAndOneOfOtherSignsDo
   }
 }
 
+TEST(Mangled, AnAutocollimatorThatAnswersOneReadingLateIsDoubted) {
+  Rows late = Good(1);
+  for (std::size_t i = late.size(); i-- > 1;) {
+    late[i].autocollimator_yaw_rad = late[i - 1].autocollimator_yaw_rad;
+    late[i].autocollimator_tilt_rad = late[i - 1].autocollimator_tilt_rad;
+  }
+  EXPECT_THAT(Said(late, Benches()[1]), HasSubstr("answer one reading late"));
+}
+
 TEST(Mangled, AShaftThatStandsWhileItsEncoderCountsIsRefused) {
   const Scenario scenario = LoadScenario(test::ScenarioPath("encoder_comparison.toml"));
   EXPECT_KEPT(Said(Standing(test::RunBench(scenario).readings), scenario));

@@ -14,7 +14,7 @@ struct CourseSpread {
 CourseSpread SpreadAbout(const Channel& channel, const Expected& claim);
 
 /// A course made on purpose that is shown by the very channel that should show nothing of it: the two are exchanged. Shown
-/// with the other sign by its own, one sign is another than the scenario says.
+/// with the other sign by its own, one sign is another than the scenario says; one reading later, the instrument is late.
 void CheckCourse(const Expected& claim, const std::vector<Channel>& channels, std::vector<Finding>& findings);
 
 }  // namespace twinbench::plausible
