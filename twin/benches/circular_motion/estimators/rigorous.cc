@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <set>
@@ -189,6 +190,37 @@ Solved Solve(const Equations& equations) {
           eigen.vectors.leftCols(hidden)};
 }
 
+/// How dear an unknown is where the readings leave the choice: first the mounting, whose zeros are anything, then the machine
+/// takes what is not told apart. Instruments are certified, or checked before they are mounted.
+VectorXd Dearness(const CircleFit& fit) {
+  constexpr double kOfMounting = 0.01, kOfMachine = 0.03;
+  VectorXd dear = VectorXd::Constant(UnknownsOf(fit), kOfMounting);
+  for (std::size_t k = 0; k < fit.fitted.size(); ++k)
+    dear[static_cast<Index>(k)] = CircleUnknowns()[fit.fitted[k]].key.starts_with("machine.") ? kOfMachine : 1.0;
+  return dear;
+}
+
+VectorXd ValuesOf(const CircleFit& fit) {
+  CircleFit copy = fit;
+  VectorXd values(UnknownsOf(fit));
+  for (std::size_t k = 0; k < fit.fitted.size(); ++k)
+    values[static_cast<Index>(k)] = CircleUnknowns()[fit.fitted[k]].in(copy.errors);
+  for (std::size_t j = 0; j < fit.setups.size(); ++j) {
+    for (Index k = 0; k < kOfSetup; ++k) values[fit.UnknownOf(fit.setups[j]) + k] = MountingUnknown(copy.mountings[j], k);
+  }
+  return values;
+}
+
+/// Along the directions that the readings do not show, to where the instruments err least. From the zero of an encoder, which may
+/// be a degree off, a part would be squareness and form of the balls else.
+VectorXd ToLeastErrors(const CircleFit& fit, const Equations& equations, const MatrixXd& hidden) {
+  if (hidden.cols() == 0) return VectorXd::Zero(UnknownsOf(fit));
+  const VectorXd dear = Dearness(fit);
+  const MatrixXd along = dear.asDiagonal() * hidden;
+  const VectorXd now = dear.cwiseProduct(equations.scale).cwiseProduct(ValuesOf(fit));
+  return -(hidden * along.colPivHouseholderQr().solve(now)).cwiseQuotient(equations.scale);
+}
+
 /// "machine.lag_x_s, machine.lag_y_s, encoder.latency_s": those that share the hidden directions.
 void NameHidden(const MatrixXd& hidden, CircleFit& fit) {
   constexpr double kPart = 0.05;
@@ -222,6 +254,28 @@ void SetResiduals(const std::vector<CirclePoint>& points, const CircleConstants&
   if (of_bar > 0) fit.rms_bar_m = std::sqrt(bar / of_bar);
   if (of_encoder > 0) fit.rms_encoder_rad = std::sqrt(encoder / of_encoder);
   if (of_grid > 0) fit.rms_grid_m = std::sqrt(grid / of_grid);
+}
+
+double Chi2Of(const std::vector<CirclePoint>& points, const CircleConstants& known, const CircleFit& fit) {
+  double chi2 = 0.0;
+  for (const CirclePoint& p : points) {
+    const Eigen::Vector2d left_m = p.Values_m() - Shown_m(p, fit.errors, fit.MountingOf(p.setup), known);
+    chi2 += p.Weights().cwiseProduct(left_m).squaredNorm();
+  }
+  return chi2;
+}
+
+/// A step or as many halves of it that the readings are left no worse than that: along what they hardly show it may lead anywhere.
+void AddWithin(double most_chi2, VectorXd change, const std::vector<CirclePoint>& points, const CircleConstants& known,
+               CircleFit& fit) {
+  constexpr int kMostHalves = 16;
+  for (int halves = 0; halves <= kMostHalves; ++halves, change *= 0.5) {
+    CircleFit next = fit;
+    Add(change, next);
+    if (!(Chi2Of(points, known, next) <= most_chi2)) continue;
+    fit = std::move(next);
+    return;
+  }
 }
 
 /// What is left along each pass, in stated uncertainties: a channel after the other.
@@ -299,7 +353,8 @@ Eigen::Matrix2Xd SlopeOfDeviation(const CirclePoint& p, const CircleFit& fit, co
 }
 
 CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstants& known) {
-  constexpr int kRounds = 6, kSetupsFirst = 2;
+  constexpr int kRounds = 8, kSetupsFirst = 2, kLastOnes = 3;
+  constexpr double kMoved = 2.0;  // hidden directions are none to the last digit; what they leave is fitted in the last rounds
   if (points.empty()) throw InputError("readings", "none has a radius", "readings of a bar or a grid");
   CircleFit fit = Begin(points, known);
   const Index unknowns = UnknownsOf(fit);
@@ -311,7 +366,10 @@ CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstan
   for (int k = 0; k <= kRounds; ++k) {
     equations = EquationsAt(points, fit, known, k < kSetupsFirst ? OfWhatTheBarShows(fit) : std::vector<Index>{});
     solved = Solve(equations);
-    if (k < kRounds) Add((solved.inverse * equations.right).cwiseQuotient(equations.scale), fit);
+    if (k == kRounds) break;
+    AddWithin(equations.chi2, (solved.inverse * equations.right).cwiseQuotient(equations.scale), points, known, fit);
+    const double moved_chi2 = kMoved * Chi2Of(points, known, fit);
+    if (k < kRounds - kLastOnes) AddWithin(moved_chi2, ToLeastErrors(fit, equations, solved.hidden), points, known, fit);
   }
   fit.dof = values - unknowns + solved.hidden.cols() + equations.empty;
   fit.chi = std::sqrt(equations.chi2 / static_cast<double>(fit.dof));

@@ -51,8 +51,8 @@ struct CircleFit {
   Eigen::Index UnknownOf(int setup) const;  // the first of its four
 };
 
-/// Gauss-Newton. Directions that the readings do not show stay where they are (the shortest solution) and are
-/// named. Thermal unknowns are left out unless the temperature changed by 0.2 K.
+/// Gauss-Newton. Along directions that the readings do not show the solution is the one with the least errors of the instruments,
+/// then of the machine; they are named. Thermal unknowns are left out unless the temperature changed by 0.2 K.
 ///
 /// Uncertainty: stated noise, larger if more is left over, and by how far that goes on from reading to reading. Not included: calibration of the grid; an error of
 /// machine or instruments that is none of the unknowns; what is not separable.
