@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/import/importing.h"
+#include "twin/benches/evaluated.h"
 #include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/core/stream.h"
 
@@ -113,6 +114,27 @@ TEST_F(AutocollimatorSweep, OfUnevenStepsHasAShortPeriod) {
   const auto& period = *std::ranges::find(found.causes[0].parameters, "period", &diagnose::ParameterEstimate::name);
   EXPECT_NEAR(period.value / units::arcsec, 1.71, 0.001);
   EXPECT_TRUE(found.causes[0].indistinguishable_from.empty());
+}
+
+/// One row that is far off neither widens the scale nor is a ripple.
+TEST_F(AutocollimatorSweep, LeavesASingleRowOut) {
+  constexpr int kFarRow = 161;
+  Stream noise(9, "sweep");
+  std::string text = "reference [arcsec],x [arcsec]\n";
+  for (int k = 0; k < 241; ++k) {
+    const double angle_arcsec = k <= 120 ? 3.0 * k - 180.0 : 180.0 - 3.0 * (k - 120);
+    text += fmt::format("{:.2f},{:.4f}\n", angle_arcsec, 1.004 * angle_arcsec + 0.05 * noise.Normal() + (k == kFarRow ? 4.0 : 0.0));
+  }
+  const Imported taken = Take(text);
+  const report::Evaluation evaluation =
+      EvaluationOf(ParseScenario("bench = \"" + taken.bench + "\"\n", "sweep.csv", "", taken.set), taken.readings, Estimator::kRigorous);
+  ASSERT_EQ(evaluation.results.at("far").size(), 1U) << evaluation.summary;
+  EXPECT_EQ(evaluation.results.at("far").at(0).at("reading"), kFarRow);
+  EXPECT_NEAR(evaluation.results.at("far").at(0).at("off_arcsec").get<double>(), 4.0, 0.3);  // five of 0.06
+  const auto& scale = evaluation.results.at("autocollimator").at("scale");
+  EXPECT_NEAR(scale.at("value").get<double>(), 1.004, 3.0 * scale.at("u").get<double>());
+  EXPECT_LT(scale.at("u").get<double>(), 4e-5);  // 0.05 / (105 sqrt(241)) = 3.1e-5
+  EXPECT_THAT(evaluation.summary, HasSubstr("doubtful: x of reading 161"));
 }
 
 /// The turns of an axis beside what its encoder shows are no sweep of an autocollimator.

@@ -307,10 +307,8 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
       analysis.separation ? SeparationJson(*analysis.separation, scenario) : nlohmann::json();
   report::Evaluation evaluation{ResultsOf(analysis, scenario), separation, analysis.not_separated,
                                 SummaryOf(analysis)};
-  if (const auto sweep = separate::turntable::AnalyseSweep(readings)) {
-    if (analysis.stops.empty()) evaluation.summary.clear();  // nothing was asked of a table
-    AddSweep(*sweep, evaluation);
-  }
+  if (analysis.stops.empty() && separate::turntable::AnalyseSweep(readings)) evaluation.summary.clear();  // nothing was asked of a table
+  if (const auto sweep = separate::turntable::AnalyseSweep(WithoutFarOfSweep(readings, evaluation))) AddSweep(*sweep, evaluation);
   if (analysis.separation) AddTilt(analysis, scenario, evaluation);
   if (analysis.separation) evaluation.misfits = {report::WidenedMisfit("the separation of both tables", analysis.separation->scale)};
   if (analysis.separation && IsWithoutUncertainty(*analysis.separation))

@@ -3,10 +3,14 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
 #include "twin/core/units.h"
 #include "twin/report/json_units.h"
+#include "twin/separate/far_on_course.h"
 
 namespace twinbench::benches::turntable {
 namespace {
@@ -95,7 +99,47 @@ std::string SweepText(const CollimatorSweep& sweep) {
   return text;
 }
 
+/// What one axis shows less the line through all it shows, by passes: a line of steps would be the least that readings differ by.
+std::vector<std::vector<separate::OnCourse>> OffTheLine(const std::vector<Reading>& readings, double Reading::*shown_rad) {
+  std::map<std::pair<int, int>, std::vector<separate::OnCourse>> passes;
+  double count = 0.0, mean_rad = 0.0, mean_shown_rad = 0.0, squares = 0.0, products = 0.0;
+  for (const Reading& r : readings) {
+    if (r.phase != Phase::kCalibration || r.status != ReadingStatus::kOk || !std::isfinite(r.*shown_rad) || !std::isfinite(r.target_rad)) continue;
+    passes[{r.setup, r.pass}].push_back({r.reading, r.target_rad, r.*shown_rad});
+    count += 1.0;
+    const double from_rad = r.target_rad - mean_rad;
+    mean_rad += from_rad / count;
+    mean_shown_rad += (r.*shown_rad - mean_shown_rad) / count;
+    squares += from_rad * (r.target_rad - mean_rad);
+    products += from_rad * (r.*shown_rad - mean_shown_rad);
+  }
+  std::vector<std::vector<separate::OnCourse>> off;
+  for (auto& [of, pass] : passes) {
+    for (separate::OnCourse& one : pass) one.value -= squares > 0.0 ? products / squares * one.angle_rad : 0.0;
+    off.push_back(std::move(pass));
+  }
+  return off;
+}
+
 }  // namespace
+
+std::vector<Reading> WithoutFarOfSweep(std::vector<Reading> readings, report::Evaluation& evaluation) {
+  constexpr double kLeast_rad = 1e-12;
+  std::set<int> numbers;
+  for (const auto& [name, shown_rad] : {std::pair{"x", &Reading::autocollimator_yaw_rad}, {"y", &Reading::autocollimator_tilt_rad}}) {
+    for (const separate::FarOnCourse& far :
+         separate::FarOnCourses(OffTheLine(readings, shown_rad), kLeast_rad, [](double, double) { return false; })) {
+      numbers.insert(far.reading);
+      evaluation.results["far"].push_back(
+          {{"reading", far.reading}, {"axis", name}, {"reference_arcsec", report::Arcsec(far.angle_rad)}, {"off_arcsec", report::Arcsec(far.off)}, {"times_scatter", far.times}});
+      evaluation.summary += fmt::format("doubtful: {} of reading {} (reference at {:.6g} arcsec) lies {:.3g} arcsec from the curve through its neighbours, {:.2g} "
+                                        "times the scatter of the others, and in no other pass: left out\n",
+                                        name, far.reading, far.angle_rad / units::arcsec, far.off / units::arcsec, far.times);
+    }
+  }
+  std::erase_if(readings, [&](const Reading& r) { return numbers.contains(r.reading); });
+  return readings;
+}
 
 void AddSweep(const CollimatorSweep& sweep, report::Evaluation& evaluation) {
   evaluation.results["autocollimator"] = SweepJson(sweep);
