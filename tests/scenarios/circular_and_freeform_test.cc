@@ -1,3 +1,5 @@
+#include <Eigen/QR>
+
 #include "tests/support/angle_benches.h"
 #include "twin/benches/circular_motion/analysis.h"
 #include "twin/report/evaluation.h"
@@ -94,16 +96,15 @@ TEST(CircularBarOnly, TakesTheEncodersZeroForNoErrorOfTheMachine) {
   std::vector<std::string> one = few, wide = few;
   one.emplace_back("circular_procedure.setups=[{radius_mm=110.23}]");
   wide.emplace_back("circular_procedure.setups=[{radius_mm=3000.0}]");
-  for (const Scenario& scenario : {LoadScenario(ScenarioPath("circular_bar_only.toml")), LoadScenario(ScenarioPath("circular_motion.toml"), one),
-                                   LoadScenario(ScenarioPath("circular_motion.toml"), wide)}) {
-    const CircleRun run(scenario);
-    const CircleAnalysis a = Analyse(scenario, CircleReadings(run), Estimator::kRigorous);
+  for (const Scenario& scenario : {LoadScenario(test::ScenarioPath("circular_bar_only.toml")),
+                                   LoadScenario(test::ScenarioPath("circular_motion.toml"), one),
+                                   LoadScenario(test::ScenarioPath("circular_motion.toml"), wide)}) {
+    const CircleAnalysis a = Analyse(scenario, test::RunCircles(scenario).readings, Estimator::kRigorous);
     EXPECT_LT(a.fit.chi, 1.3);
     for (const auto& of : a.deviations) {
-      double low_m = INFINITY, high_m = -INFINITY;
       Eigen::MatrixX3d waves(0, 3);
       Eigen::VectorXd shown_m(0);
-      for (const CirclePoint& p : a.points) {
+      for (const auto& p : a.points) {
         if (p.setup != of.setup || p.feed_m_s != of.feed_m_s || p.direction < 0) continue;
         waves.conservativeResize(waves.rows() + 1, 3);
         shown_m.conservativeResize(waves.rows());
@@ -111,8 +112,7 @@ TEST(CircularBarOnly, TakesTheEncodersZeroForNoErrorOfTheMachine) {
         shown_m[shown_m.size() - 1] = p.Values_m().x();
       }
       const Eigen::VectorXd left_m = shown_m - waves * waves.colPivHouseholderQr().solve(shown_m);
-      low_m = left_m.minCoeff(), high_m = left_m.maxCoeff();
-      EXPECT_NEAR(of.G_ccw.value_m / um, (high_m - low_m) / um, 0.7) << "as the bar shows it about the least-squares circle";
+      EXPECT_NEAR(of.G_ccw.value_m / um, (left_m.maxCoeff() - left_m.minCoeff()) / um, 0.7) << "as the bar shows it about the least-squares circle";
     }
   }
 }
