@@ -5,7 +5,9 @@
 #include "tests/support/night.h"
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
 #include "twin/benches/encoder_comparison/estimators/iso230_2.h"
+#include "twin/core/errors.h"
 #include "twin/core/rounding.h"
+#include "twin/core/scenario.h"
 
 namespace twinbench::separate::encoder {
 namespace {
@@ -273,6 +275,12 @@ TEST(SeparateDeviceUncertainty, CoversOrdersThatTheStopsDoNotTell) {
   EXPECT_NEAR(CoverageOfFalling(150, {.stops = 360, .noise_arcsec = 0.05}).device, 0.8, 0.5) << "orders above 64";
   // The stops tell orders up to 179, and the readings show none above 64.
   EXPECT_NEAR(CoverageOfFalling(64, {.stops = 360, .noise_arcsec = 0.05}).device, 1.0, 0.15);
+}
+
+TEST(SweepsThatFitNoMemory, AreRefusedWhenTheScenarioIsRead) {
+  const std::string sweep = "bench = \"encoder_comparison\"\n[encoder_procedure]\nkind = \"sweep\"\nspeeds_deg_s = ";
+  EXPECT_THROW(ParseScenario(sweep + "[1e-4, 1e-4, 1e-4]\n", "slow.toml", ""), InputError);
+  EXPECT_NO_THROW(ParseScenario(sweep + "[10.0, 30.0]\n", "usual.toml", ""));
 }
 
 /// A spectrum that has come to its end below half the stops is not taken to go on: u was fifteen times what there was.

@@ -98,6 +98,19 @@ void CheckCoast(const ScenarioText& text, const EncoderSettings& own) {
   }
 }
 
+/// @throws InputError if so slow a sweep would have more readings than fit into memory.
+void CheckSweep(const ScenarioText& text, const EncoderProcedureSettings& p) {
+  constexpr double kMostReadings = 1e7;
+  if (p.kind != "sweep") return;
+  double readings = 0.0;
+  for (const double speed_rad_s : p.speeds_rad_s) readings += p.turns * units::turn / speed_rad_s / p.interval_s;
+  readings *= static_cast<double>(p.passes.size() * p.mounting_rad.size());
+  if (readings <= kMostReadings) return;
+  throw InputError(text.Where("encoder_procedure.speeds_deg_s", text.name() + ":1"),
+                   fmt::format("sweeps of {:.4g} turns at these speeds, read every {:.4g} s, are {:.3g} readings", p.turns, p.interval_s, readings),
+                   fmt::format("at most {:.0f}", kMostReadings));
+}
+
 }  // namespace
 
 void AddKeys(Keys& keys, Scenario& s) {
@@ -113,6 +126,7 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
   CheckPasses(text, "encoder_procedure.passes", own.encoder_procedure.passes);
   CheckReadingsOfAStop(text, own.encoder_procedure);
   CheckCoast(text, own);
+  CheckSweep(text, own.encoder_procedure);
 }
 
 }  // namespace twinbench::benches::encoder
