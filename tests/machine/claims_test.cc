@@ -292,12 +292,6 @@ class OpenMachine : public testing::Test {
   const ServedMachineTwin served_{ShortCircles()};
 };
 
-TEST_F(OpenMachine, TakesWhatServeWrites) {
-  const hw::MachineFile file = hw::ParseMachineFile(served_.BenchFile(), "served.toml", {{"x"}, {"y"}});
-  EXPECT_EQ(file.machine.kind, "esp");
-  EXPECT_THAT(file.instruments[0].words.fields, testing::Contains("bar_um"));
-}
-
 TEST_F(OpenMachine, RefusesWhatTheControllerDoesNotAllowAFieldThatTheBenchHasNotOtherAxesAndAnotherDevice) {
   EXPECT_THAT(Refusal(Served("[instrument_1]", "[axis_x]\nlower_mm = -500.0\n[instrument_1]")),
               HasSubstr("the controller allows axis x"));
