@@ -160,9 +160,10 @@ TEST(FaultMatrix, WhatIsPendingAtAResumeIsNotTakenForARecordThatDoesNotFit) {
   const ServedRun run = bench.Run({{kAt, "target,limit"}});  // ends the run
   ASSERT_EQ(run.stopped_by, "limit") << run.said;
   for (const std::string fault :
-       {"adc,drop", "adc,short", "adc,error", "adc,gap", "adc,saturate", "adc,float", "adc,stuck", "adc,hum", "adc,slip",
-        "adc,no_light", "adc,saturate,2", "clock,step", "target,mute", "target,restart", "reference,restart",
-        "target,disconnect", "target,lost_step", "reference,not_in_position", "target,limit", "reference,stall"}) {
+       {"adc,drop", "adc,short", "adc,error", "adc,gap", "adc,saturate", "adc,float", "adc,stuck", "adc,hum",
+        "adc,slip", "adc,no_light", "adc,saturate,2", "clock,step", "target,mute", "target,restart",
+        "reference,restart", "target,disconnect", "target,lost_step", "reference,not_in_position", "target,limit",
+        "reference,stall"}) {
     SCOPED_TRACE(fault);
     const ServedRun resumed = bench.Run({{0, fault}}, &run);  // of this program: before anything is asked
     if (fault == "adc,float") {

@@ -38,9 +38,10 @@ void ExpectForbidden(std::string Request::*thing, const std::vector<const char*>
 }
 
 TEST(Gate, RefusesEveryTokenButTheRightOne) {
-  ExpectForbidden(&Request::target, {"/stop", "/stop?token=", "/stop?token=0123456789abcde", "/stop?token=0123456789abcdef0",
-                                     "/stop?token=0123456789abcdeF", "/stop?other=0123456789abcdef",
-                                     "/stop?x=1&token=0123456789abcdef", "/stop?token=0123456789abcdef&x=1"});
+  ExpectForbidden(&Request::target,
+                  {"/stop", "/stop?token=", "/stop?token=0123456789abcde", "/stop?token=0123456789abcdef0",
+                   "/stop?token=0123456789abcdeF", "/stop?other=0123456789abcdef", "/stop?x=1&token=0123456789abcdef",
+                   "/stop?token=0123456789abcdef&x=1"});
 }
 
 TEST(Gate, RefusesPagesOfOtherOriginsWhateverTheyKnowAndNamesThatWereMadeToLeadHere) {

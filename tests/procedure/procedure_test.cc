@@ -53,7 +53,8 @@ TEST(FullCircle, CountsTurnsOnInsteadOfRewindingBetweenPassesOfTheSameDirection)
 TEST(FullCircle, ApproachesEveryStopInTheDirectionOfItsPass) {
   std::vector<double> moves_rad;
   for (const DeviceCall& call : CarriedOut(FullCircleOnly(4, {0}, {1, -1})).calls)
-    if (call.device == "target" && call.request.starts_with("move ")) moves_rad.push_back(std::stod(call.request.substr(5)));
+    if (call.device == "target" && call.request.starts_with("move "))
+      moves_rad.push_back(std::stod(call.request.substr(5)));
   // Mounting, run-up, 4 stops, run-up, 4 stops.
   ASSERT_EQ(moves_rad.size(), 11u);
   for (std::size_t k = 2; k < 6; ++k) EXPECT_GT(moves_rad[k], moves_rad[k - 1]);

@@ -148,9 +148,10 @@ TEST(HobTransmission, ShowsThirteenAndTenArcsecFindsTheEncoderAndAgreesAtRestWit
 
 TEST(HobTransmission, FindsTheEncoderOverTenSeedsAndAgreesAtRestToTheNoiseWithAPerfectCalibrator) {
   for (int seed = 1; seed <= 10; ++seed) {
-    const HobAnalysis a = Analysed(Shipped("hob_transmission.toml", {"seed=" + std::to_string(seed), "mechanics.fidelity=kinematic",
-                                                                     "interferometer.calibrator=[]", "interferometer.u_calibrator_arcsec=0"}),
-                                   Estimator::kPublished);
+    const HobAnalysis a =
+        Analysed(Shipped("hob_transmission.toml", {"seed=" + std::to_string(seed), "mechanics.fidelity=kinematic",
+                                                   "interferometer.calibrator=[]", "interferometer.u_calibrator_arcsec=0"}),
+                 Estimator::kPublished);
     const auto& first = a.encoder_against_interferometer.front();
     EXPECT_LT(std::abs(first.difference.value) / arcsec, 0.2);  // 0.3 in 72 stops: 0.05 either part
     EXPECT_LT(first.normalised_error, 2.0);                     // 1 is two standard uncertainties

@@ -162,7 +162,8 @@ TEST_F(CertificateCommand, IsWrittenOnlyIfItSatisfiesTheSchema) {
   // Behind what xmllint says.
   for (const auto& [schema, said] : {std::pair{"bad", "does not satisfy bad/dcc.xsd; nothing was written"},
                                      std::pair{"broken", "could not read the schema"}}) {
-    ExpectEnded(Call({"certificate", "run", "--with", "laboratory.toml", "--schema", schema, "-o", "d.xml"}), 2, {said});
+    ExpectEnded(Call({"certificate", "run", "--with", "laboratory.toml", "--schema", schema, "-o", "d.xml"}), 2,
+                {said});
     EXPECT_FALSE(Exists("d.xml"));
   }
 }

@@ -165,7 +165,8 @@ TEST_F(Served, ARehearsalComesBeforeAnyMotion) {
 TEST_F(Served, ARehearsalAsksTheControllersForTheirLimits) {
   const auto server = Serve();
   Say("ROT1:LIM:UPP 100");
-  for (const char* how : {"--rehearse", "--rehearse-only"}) ExpectRehearsalStops({how}, {" to 100 deg", "target would travel"});
+  for (const char* how : {"--rehearse", "--rehearse-only"})
+    ExpectRehearsalStops({how}, {" to 100 deg", "target would travel"});
 }
 
 TEST_F(Served, WithoutNoiseThereAreNoCountsAndATakenPortIsNamed) {
