@@ -30,14 +30,12 @@ double Sum(const std::vector<Wave>& waves, double angle_deg) {
 /// A list without a clock: `stops` once round and the same back.
 template <class Error>
 Record ThereAndBack(int stops, double noise_deg, unsigned seed, Error error_deg) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, noise_deg);
-  Record record;
-  record.kind = "stops";
+  Noise noise(noise_deg, seed);
+  Record record{"stops"};
   for (int k = 0; k < 2 * stops; ++k) {
     const int stop = k < stops ? k : 2 * stops - 1 - k, direction = k < stops ? 1 : -1;
     const double angle_deg = 360.0 * (stop + 1) / stops;
-    record.Add(k, angle_deg, angle_deg + error_deg(angle_deg, stop, direction) + noise(random), direction, k / stops);
+    record.Add(k, angle_deg, angle_deg + error_deg(angle_deg, stop, direction) + noise(), direction, k / stops);
     record.readings.back().extra[kClockColumn] = kNoClock;
   }
   return record;
@@ -47,8 +45,7 @@ Record ThereAndBack(int stops, double noise_deg, unsigned seed, Error error_deg)
 /// @param shown_deg  Of an angle and a direction.
 template <class Shown>
 Record ThereAndBackTwice(int stops, double step_deg, Shown shown_deg) {
-  Record record;
-  record.kind = "stops";
+  Record record{"stops"};
   for (int k = 0; k < 4 * stops; ++k) {
     const int pass = k / stops, at = k % stops, direction = pass % 2 == 0 ? 1 : -1;
     const double angle_deg = step_deg * (direction > 0 ? at : stops - 1 - at);
@@ -61,13 +58,11 @@ Record ThereAndBackTwice(int stops, double step_deg, Shown shown_deg) {
 /// @param error_deg  Of an angle.
 template <class Error>
 Record OnePass(int stops, double step_deg, double noise_deg, unsigned seed, Error error_deg) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, noise_deg);
-  Record record;
-  record.kind = "stops";
+  Noise noise(noise_deg, seed);
+  Record record{"stops"};
   for (int k = 0; k < stops; ++k) {
     const double angle_deg = step_deg * k;
-    record.Add(k, angle_deg, angle_deg + error_deg(angle_deg) + noise(random), 1, 0);
+    record.Add(k, angle_deg, angle_deg + error_deg(angle_deg) + noise(), 1, 0);
     record.readings.back().extra[kClockColumn] = kNoClock;
   }
   return record;
@@ -91,7 +86,7 @@ double SizeOfOrder(const Answer& answer, int order) {
 
 TEST(EncoderDominant, OrdersThatRepeatThereAndBackAreNoWander) {
   const std::vector<Wave> waves = {{1, 0.3, 20.0}, {2, 0.1, 140.0}, {3, 0.04, -70.0}, {4, 0.03, 260.0}};
-  for (const unsigned seed : {1u, 2u, 3u}) {
+  for (const unsigned seed : Seeds({1u, 2u, 3u})) {
     for (const auto& [stops, noise_deg] : {std::pair{200, 0.015}, std::pair{72, 0.003}}) {
       const Answer answer = Ask(ThereAndBack(stops, noise_deg, seed, [&](double a, int, int) { return Sum(waves, a); }));
       SCOPED_TRACE(answer.Words());
@@ -170,8 +165,7 @@ TEST(EncoderDominant, AnOffsetOfEachPassTakesNothingOfAReversalBesideAHighOrder)
 TEST(EncoderDominant, PlayIsFoundAtTargetsThatAreNotMetExactly) {
   std::mt19937_64 random(14);
   std::normal_distribution<double> noise_deg(0.0, 0.004), off_deg(0.0, 0.02);
-  Record record;
-  record.kind = "stops";
+  Record record{"stops"};
   for (int k = 0; k < 4 * 120; ++k) {
     const int pass = k / 120, at = k % 120, direction = pass % 2 == 0 ? 1 : -1;
     const double r_deg = -60.0 + 1.0 * (direction > 0 ? at : 119 - at) + off_deg(random);
@@ -183,11 +177,10 @@ TEST(EncoderDominant, PlayIsFoundAtTargetsThatAreNotMetExactly) {
 }
 
 TEST(EncoderDominant, AScaleBesideAnOrderOfAPartOfATurnDoesNotBend) {
-  for (const unsigned seed : {15u, 16u, 17u}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> noise_deg(0.0, 0.1);
+  for (const unsigned seed : Seeds({15u, 16u, 17u})) {
+    Noise noise_deg(0.1, seed);
     const Answer answer = Ask(ThereAndBackTwice(181, 1.5, [&](double r_deg, int) {
-      return 1.008 * r_deg + 0.5 * std::cos((r_deg + 200.0) * units::deg) + noise_deg(random);
+      return 1.008 * r_deg + 0.5 * std::cos((r_deg + 200.0) * units::deg) + noise_deg();
     }));
     EXPECT_NEAR(answer.Value("scale", "ratio"), 0.008, 4.0 * answer.Uncertainty("scale", "ratio")) << answer.Words();
     EXPECT_NEAR(SizeOfOrder(answer, 1), 0.5, 0.05) << answer.Words();
@@ -196,14 +189,13 @@ TEST(EncoderDominant, AScaleBesideAnOrderOfAPartOfATurnDoesNotBend) {
 
 /// To and fro at one speed a delay jumps where the shaft turns, as play does that is crossed at once.
 TEST(EncoderDominant, ADelayOfATriangleIsNoPlay) {
-  std::mt19937_64 random(18);
-  std::normal_distribution<double> noise_deg(0.0, 0.05);
+  Noise noise_deg(0.05, 18);
   const auto shaft_deg = [](double t_s) { return 30.0 - std::abs(std::remainder(30.0 * t_s, 120.0)); };
   Record record;
   for (int k = 0; k < 1600; ++k) {
     const double t_s = 1.0 + 0.01 * k;
     const int half = static_cast<int>(t_s / 2.0);
-    record.Add(t_s, shaft_deg(t_s), 0.96 * shaft_deg(t_s - 0.06) + noise_deg(random), half % 2 == 0 ? -1 : 1, half);
+    record.Add(t_s, shaft_deg(t_s), 0.96 * shaft_deg(t_s - 0.06) + noise_deg(), half % 2 == 0 ? -1 : 1, half);
   }
   const Answer answer = Ask(record);
   EXPECT_TRUE(answer.Names("latency")) << answer.Words();
@@ -212,13 +204,12 @@ TEST(EncoderDominant, ADelayOfATriangleIsNoPlay) {
 }
 
 TEST(EncoderDominant, TheNoiseOfAReferenceThatMovesIsNoAcceleration) {
-  std::mt19937_64 random(19);
-  std::normal_distribution<double> noise_deg(0.0, 0.003);
+  Noise noise_deg(0.003, 19);
   Record record;
   for (int k = 0; k < 1800; ++k) {
     const int pass = k / 900, direction = pass % 2 == 0 ? 1 : -1;
     const double shaft_deg = -90.0 + 0.2 * (direction > 0 ? k % 900 : 899 - k % 900);
-    record.Add(0.02 * k, shaft_deg + noise_deg(random), shaft_deg + 0.014 * std::cos(200.0 * shaft_deg * units::deg), direction, pass);
+    record.Add(0.02 * k, shaft_deg + noise_deg(), shaft_deg + 0.014 * std::cos(200.0 * shaft_deg * units::deg), direction, pass);
   }
   const Answer answer = Ask(record);
   EXPECT_NEAR(SizeOfOrder(answer, 200), 0.014, 0.0005) << answer.Words();
@@ -226,11 +217,10 @@ TEST(EncoderDominant, TheNoiseOfAReferenceThatMovesIsNoAcceleration) {
 }
 
 TEST(EncoderDominant, AFaultOfAFewPlacesLeavesTheOrdersBesideIt) {
-  std::mt19937_64 random(20);
-  std::normal_distribution<double> noise_deg(0.0, 0.008);
+  Noise noise_deg(0.008, 20);
   const Answer answer = Ask(ThereAndBackTwice(360, 1.0, [&](double r_deg, int) {
     const double dirt_deg = 0.4 * std::exp(-0.5 * std::pow((r_deg - 137.0) / 1.2, 2));
-    return r_deg + dirt_deg + Sum({{1, 0.06, 30.0}}, r_deg) + noise_deg(random);
+    return r_deg + dirt_deg + Sum({{1, 0.06, 30.0}}, r_deg) + noise_deg();
   }));
   EXPECT_NEAR(SizeOfOrder(answer, 1), 0.06, 0.002) << answer.Words();
   EXPECT_NE(answer.run.diagnosis.unknown.signature.find("targets"), std::string::npos) << answer.Words();
@@ -279,11 +269,9 @@ TEST(EncoderDominant, AServoThatIsCommandedFasterThanItCanGoHasASpeedLimit) {
 }
 
 TEST(EncoderDominant, OnePlacePushedFromBothSidesShowsThePlay) {
-  std::mt19937_64 random(8);
-  std::normal_distribution<double> noise_deg(0.0, 0.001);
-  Record record;
-  record.kind = "stops";
-  for (int k = 0; k < 20; ++k) record.Add(k, 30.0, 30.0 - 0.005 * (k % 2 == 0 ? 1 : -1) + noise_deg(random), k % 2 == 0 ? 1 : -1, k);
+  Noise noise_deg(0.001, 8);
+  Record record{"stops"};
+  for (int k = 0; k < 20; ++k) record.Add(k, 30.0, 30.0 - 0.005 * (k % 2 == 0 ? 1 : -1) + noise_deg(), k % 2 == 0 ? 1 : -1, k);
   const Answer answer = Ask(record);
   EXPECT_TRUE(answer.Names("backlash", 0.5)) << answer.Words();
   EXPECT_NEAR(answer.Value("backlash", "width"), 0.01, 4.0 * answer.Uncertainty("backlash", "width"));
@@ -307,10 +295,9 @@ TEST(EncoderDominant, ACourseInTimeThatDoesNotRepeatIsNoOrder) {
 
 /// A quarter of a turn: what a scale off its axis shows there is a line and a small bend, too.
 TEST(EncoderDominant, AQuarterOfATurnLeavesOpenWhetherItIsOrderOne) {
-  std::mt19937_64 random(61);
-  std::normal_distribution<double> noise_deg(0.0, 0.004);
+  Noise noise_deg(0.004, 61);
   const Answer answer = Ask(ThereAndBackTwice(181, 0.5, [&](double r_deg, int) {
-    return r_deg + Sum({{1, 0.2, 135.0}}, r_deg - 45.0) + 0.05 * std::cos(24.0 * r_deg * units::deg) + noise_deg(random);
+    return r_deg + Sum({{1, 0.2, 135.0}}, r_deg - 45.0) + 0.05 * std::cos(24.0 * r_deg * units::deg) + noise_deg();
   }));
   EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kTie) << answer.Words();
   const auto& notes = answer.run.diagnosis.notes;
@@ -320,12 +307,11 @@ TEST(EncoderDominant, AQuarterOfATurnLeavesOpenWhetherItIsOrderOne) {
 
 /// A place that is dirty, a fifth of a turn wide: the other targets lie on the orders that are there.
 TEST(EncoderDominant, AWornPlaceLeavesTheOrdersBesideIt) {
-  for (const unsigned seed : {51u, 52u, 53u}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> noise_deg(0.0, 0.002);
+  for (const unsigned seed : Seeds({51u, 52u, 53u})) {
+    Noise noise_deg(0.002, seed);
     const Answer answer = Ask(ThereAndBackTwice(121, 3.0, [&](double r_deg, int direction) {
       const double dirt_deg = 0.03 * std::exp(-0.5 * std::pow((r_deg - 180.0) / 20.0, 2));
-      return r_deg + Sum({{1, 0.05, 327.0}, {4, 0.02, 270.0}}, r_deg) + dirt_deg + 0.01 * direction + noise_deg(random);
+      return r_deg + Sum({{1, 0.05, 327.0}, {4, 0.02, 270.0}}, r_deg) + dirt_deg + 0.01 * direction + noise_deg();
     }));
     EXPECT_NEAR(SizeOfOrder(answer, 1), 0.05, 0.004) << answer.Words();
     EXPECT_NEAR(SizeOfOrder(answer, 4), 0.02, 0.001) << answer.Words();
@@ -354,10 +340,9 @@ TEST(EncoderDominant, OnePassWithoutAClockIsNoWalk) {
 
 /// An order and play that explain as much as each other are two causes, and no two names of one.
 TEST(EncoderDominant, AnOrderAndPlayOfOneSizeAreBothThere) {
-  std::mt19937_64 random(6);
-  std::normal_distribution<double> noise_deg(0.0, 1e-4);
+  Noise noise_deg(1e-4, 6);
   const Answer answer = Ask(ThereAndBackTwice(36, 10.0, [&](double a_deg, int direction) {
-    return a_deg + 0.0035 * std::cos(a_deg * units::deg) + 0.00085 * std::cos(4.0 * a_deg * units::deg) + 0.0006 * direction + noise_deg(random);
+    return a_deg + 0.0035 * std::cos(a_deg * units::deg) + 0.00085 * std::cos(4.0 * a_deg * units::deg) + 0.0006 * direction + noise_deg();
   }));
   EXPECT_TRUE(answer.Names("periodic")) << answer.Words();
   EXPECT_TRUE(answer.Names("backlash")) << answer.Words();
@@ -367,14 +352,12 @@ TEST(EncoderDominant, AnOrderAndPlayOfOneSizeAreBothThere) {
 
 /// The worm beside a slope, as stops that have no clock.
 TEST(EncoderDominant, AnOrderBesideASlopeIsAskedAgain) {
-  for (const unsigned seed : {1u, 2u, 3u}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> noise_deg(0.0, 0.0002);
-    Record record;
-    record.kind = "stops";
+  for (const unsigned seed : Seeds({1u, 2u, 3u})) {
+    Noise noise_deg(0.0002, seed);
+    Record record{"stops"};
     for (int k = 0; k < 900; ++k) {
       const double r_deg = 15.0 * k / 900.0;
-      record.Add(k, r_deg, r_deg + Sum({{144, 0.0039, 293.0}, {288, 0.0011, 270.0}}, r_deg) - 0.00053 * r_deg + noise_deg(random), 1, 0);
+      record.Add(k, r_deg, r_deg + Sum({{144, 0.0039, 293.0}, {288, 0.0011, 270.0}}, r_deg) - 0.00053 * r_deg + noise_deg(), 1, 0);
       record.readings.back().extra[kClockColumn] = kNoClock;
     }
     const Answer answer = Ask(record);
@@ -385,13 +368,12 @@ TEST(EncoderDominant, AnOrderBesideASlopeIsAskedAgain) {
 
 /// The worm of a mount, seen over a thirtieth of a turn beside a drift: orders next to each other are hardly told apart.
 TEST(EncoderDominant, AnOrderOfAPartOfATurnIsOneAndTheRightOne) {
-  for (const unsigned seed : {22u, 23u, 24u}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> noise_deg(0.0, 0.0002);
+  for (const unsigned seed : Seeds({22u, 23u, 24u})) {
+    Noise noise_deg(0.0002, seed);
     Record record;
     for (int k = 0; k < 500; ++k) {
       const double t_s = 6.0 * k, r_deg = 41.2 + 15.041 / 3600.0 * t_s;
-      record.Add(t_s, r_deg, r_deg + Sum({{144, 0.00167, 20.0}, {288, 0.0007, 200.0}}, r_deg) - 0.0042 / 3600.0 * t_s + noise_deg(random), 1, 0);
+      record.Add(t_s, r_deg, r_deg + Sum({{144, 0.00167, 20.0}, {288, 0.0007, 200.0}}, r_deg) - 0.0042 / 3600.0 * t_s + noise_deg(), 1, 0);
     }
     const Answer answer = Ask(record);
     EXPECT_NEAR(SizeOfOrder(answer, 144), 0.00167, 0.00006) << answer.Words();
@@ -410,14 +392,12 @@ TEST(EncoderDominant, CoarseStepsThatEveryPassRepeatsAreNoCause) {
 
 /// The place at which the shaft turns is read twice, the second time with the device still on the old side.
 TEST(EncoderDominant, PlayIsFoundWhereTheTurningPointIsReadTwice) {
-  std::mt19937_64 random(21);
-  std::normal_distribution<double> noise_deg(0.0, 0.0005);
-  Record record;
-  record.kind = "stops";
+  Noise noise_deg(0.0005, 21);
+  Record record{"stops"};
   for (int k = 0; k < 4 * 60; ++k) {
     const int pass = k / 60, at = k % 60, direction = pass % 2 == 0 ? 1 : -1, side = pass > 0 && at == 0 ? -direction : direction;
     const double r_deg = 5.0 * (direction > 0 ? at : 59 - at);
-    record.Add(60.0 * k, r_deg, r_deg * 1.0001 + 0.00003 * k - 0.006 * side + noise_deg(random), direction, pass);
+    record.Add(60.0 * k, r_deg, r_deg * 1.0001 + 0.00003 * k - 0.006 * side + noise_deg(), direction, pass);
   }
   const Answer answer = Ask(record);
   ExpectFound(answer, {{"backlash", "width", 0.012, 0.001}});
@@ -452,15 +432,14 @@ TEST(Repeats, WhatIsTheSameAtEveryVisitIsNotCounted) {
 
 TEST(SteadyCourse, SmoothsNoiseAndNeitherCornersNorAMotionWithoutNoise) {
   constexpr int kReadings = 1000;
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> noise(0.0, 0.05);
+  Noise noise(0.05, 3);
   model::Course course;
   course.reading.resize(kReadings);
   course.setup.assign(kReadings, 0);
   course.pass.assign(kReadings, 0);
   course.time_s = Eigen::VectorXd::LinSpaced(kReadings, 0.0, 0.001 * (kReadings - 1));
   const Eigen::ArrayXd t = course.time_s;
-  const Eigen::VectorXd true_deg = 200.0 * (t - 0.5).abs(), noisy_deg = true_deg + true_deg.unaryExpr([&](double) { return noise(random); });
+  const Eigen::VectorXd true_deg = 200.0 * (t - 0.5).abs(), noisy_deg = true_deg + true_deg.unaryExpr([&](double) { return noise(); });
   EXPECT_FALSE(model::SteadyCourseOf(course, true_deg).is_smoothed);
   const model::SteadyCourse steady = model::SteadyCourseOf(course, noisy_deg);
   ASSERT_TRUE(steady.is_smoothed);

@@ -13,8 +13,7 @@ using namespace lab;
 /// A list without a clock: `stops` from `from_deg` over `travel_deg`, and back, `passes` in all.
 Record ListedBothWays(double from_deg, double travel_deg, int stops, int passes,
                       const std::function<double(double angle_deg, int stop, int pass)>& error_deg) {
-  Record record;
-  record.kind = "stops";
+  Record record{"stops"};
   for (int k = 0; k < passes * stops; ++k) {
     const int pass = k / stops, stop = pass % 2 == 0 ? k % stops : stops - 1 - k % stops;
     const double angle_deg = from_deg + travel_deg * stop / stops;
@@ -35,7 +34,7 @@ TEST(EncoderExactness, AFollowerThatIsLateToFirstOrderHasNoWrongScale) {
   // r - tau v of a swing: a delay of tau, less its second order, which is like a scale.
   const Swing swing{100.0, 6.0};
   const double late_s = 0.03, w = 2.0 * units::kPi / swing.period_s;
-  for (const unsigned seed : {1u, 2u, 3u}) {
+  for (const unsigned seed : Seeds({1u, 2u, 3u})) {
     const Answer answer = Ask(Swung(swing, 0.0, 12.0, 0.02, 0.04, seed, [&](double t_s) {
       return swing.At(t_s) - late_s * 0.5 * swing.range_deg * w * std::sin(w * t_s);
     }));
@@ -48,10 +47,9 @@ TEST(EncoderExactness, AFollowerThatIsLateToFirstOrderHasNoWrongScale) {
 
 TEST(EncoderExactness, AWaveIsNoLessAnOffsetOfTheSignalsForBeingOne) {
   for (const double size_deg : {1.2, 2.4}) {
-    std::mt19937_64 random(4);
-    std::normal_distribution<double> noise_deg(0.0, 0.01);
+    Noise noise_deg(0.01, 4);
     const Answer answer = Ask(ListedBothWays(0.9, 360.0, 200, 2, [&](double a, int, int) {
-      return size_deg * std::cos((a + 40.0) * units::deg) + noise_deg(random);
+      return size_deg * std::cos((a + 40.0) * units::deg) + noise_deg();
     }));
     SCOPED_TRACE(answer.Words());
     EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kTie);
@@ -77,11 +75,10 @@ TEST(EncoderExactness, ACurveByTheAngleThatIsShownIsNoWalk) {
 }
 
 TEST(EncoderExactness, WhatAlternatesWithTheDirectionHasTheSizeThatItShows) {
-  for (const unsigned seed : {6u, 7u}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> noise_deg(0.0, 0.01);
+  for (const unsigned seed : Seeds({6u, 7u})) {
+    Noise noise_deg(0.01, seed);
     const Answer answer = Ask(ListedBothWays(1.8, 360.0, 200, 2, [&](double a, int stop, int pass) {
-      return 0.9 * std::cos(a * units::deg) + (stop % 2 == pass % 2 ? 0.1 : -0.1) + noise_deg(random);
+      return 0.9 * std::cos(a * units::deg) + (stop % 2 == pass % 2 ? 0.1 : -0.1) + noise_deg();
     }));
     SCOPED_TRACE(answer.Words());
     EXPECT_NE(answer.run.diagnosis.unknown.signature.find("direction times order 100"), std::string::npos);
@@ -91,7 +88,7 @@ TEST(EncoderExactness, WhatAlternatesWithTheDirectionHasTheSizeThatItShows) {
 }
 
 TEST(EncoderExactness, AWalkHasTheSizeThatTheReadingsShowAndNoOtherName) {
-  for (const unsigned seed : {8u, 9u}) {
+  for (const unsigned seed : Seeds({8u, 9u})) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     std::vector<double> walk_deg;
@@ -113,7 +110,7 @@ TEST(EncoderExactness, AWalkHasTheSizeThatTheReadingsShowAndNoOtherName) {
 
 TEST(EncoderExactness, ASlowCourseBesideLargeCausesIsToldAndWritten) {
   // What follows the square of a temperature of the room.
-  for (const unsigned seed : {21u, 22u}) {
+  for (const unsigned seed : Seeds({21u, 22u})) {
     const Answer answer = Ask(Stops(0.002, 0.0, seed, [](double t_s, double a) {
       const double room_K = std::sin(t_s / 300.0) + 0.4 * std::sin(t_s / 90.0 + 1.0);
       return (t_s < 1100.0 ? 0.0 : 0.01) + 0.007 * std::cos(2.0 * a * units::deg) + 0.0025 * room_K * room_K;
@@ -128,16 +125,15 @@ TEST(EncoderExactness, ASlowCourseBesideLargeCausesIsToldAndWritten) {
 
 /// 9 targets of a stage, five times there and back, while its zero goes on from pass to pass.
 TEST(EncoderExactness, OffsetsOfPassesHideNoReversal) {
-  for (const unsigned seed : {11u, 12u, 13u}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+  for (const unsigned seed : Seeds({11u, 12u, 13u})) {
+    Noise normal(1.0, seed);
     std::vector<double> curve_deg(9), pass_deg(10);
-    for (double& c : curve_deg) c = 0.02 * normal(random);
+    for (double& c : curve_deg) c = 0.02 * normal();
     for (int k = 0; k < 10; ++k)
-      pass_deg[static_cast<std::size_t>(k)] = 0.01 * (1.0 - 0.1 * k) + 0.0006 * normal(random);
+      pass_deg[static_cast<std::size_t>(k)] = 0.01 * (1.0 - 0.1 * k) + 0.0006 * normal();
     const Answer answer = Ask(ListedBothWays(-20.0, 45.0, 9, 10, [&](double, int stop, int pass) {
       return curve_deg[static_cast<std::size_t>(stop)] + pass_deg[static_cast<std::size_t>(pass)] +
-             (pass % 2 == 0 ? -0.0065 : 0.0065) + 0.0015 * normal(random);
+             (pass % 2 == 0 ? -0.0065 : 0.0065) + 0.0015 * normal();
     }));
     SCOPED_TRACE(answer.Words());
     EXPECT_TRUE(answer.Names("backlash", 0.5) || answer.Names("hysteresis", 0.5));
@@ -147,13 +143,12 @@ TEST(EncoderExactness, OffsetsOfPassesHideNoReversal) {
 
 /// Of which a part is looked at.
 TEST(EncoderExactness, AStepInALongRecordingIsWhereItIs) {
-  constexpr int kReadings = 9000, kStep = 5207;
-  std::mt19937_64 random(21);
-  std::normal_distribution<double> noise_deg(0.0, 0.0005);
+  constexpr int kReadings = 5000, kStep = 2893;
+  Noise noise_deg(0.0005, 21);
   Record record;
   for (int k = 0; k < kReadings; ++k) {
     const double angle_deg = 0.2 * k, error_deg = 0.01 * std::cos(angle_deg * units::deg) + (k < kStep ? 0.0 : 0.03);
-    record.Add(0.01 * k, angle_deg, angle_deg + error_deg + noise_deg(random), 1, 0);
+    record.Add(0.01 * k, angle_deg, angle_deg + error_deg + noise_deg(), 1, 0);
   }
   const Answer answer = Ask(record);
   SCOPED_TRACE(answer.Words());
@@ -163,15 +158,14 @@ TEST(EncoderExactness, AStepInALongRecordingIsWhereItIs) {
 }
 
 TEST(EncoderExactness, ACurveOverAPartOfATurnIsNoSumOfOrders) {
-  for (const unsigned seed : {15u, 16u}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+  for (const unsigned seed : Seeds({15u, 16u})) {
+    Noise normal(1.0, seed);
     std::vector<double> knots_deg(30);
-    for (double& k : knots_deg) k = 0.05 * normal(random);
+    for (double& k : knots_deg) k = 0.05 * normal();
     const Answer answer = Ask(ListedBothWays(12.0, 45.0, 450, 1, [&](double, int stop, int) {
       const double at = stop / 16.0, share = 0.5 * (1.0 - std::cos(units::kPi * (at - std::floor(at))));
       const auto k = static_cast<std::size_t>(at);
-      return std::lerp(knots_deg[k], knots_deg[k + 1], share) + 0.001 * normal(random);
+      return std::lerp(knots_deg[k], knots_deg[k + 1], share) + 0.001 * normal();
     }));
     SCOPED_TRACE(answer.Words());
     EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kUnknown);
@@ -182,13 +176,12 @@ TEST(EncoderExactness, ACurveOverAPartOfATurnIsNoSumOfOrders) {
 
 TEST(EncoderExactness, ASingleFarReadingThatNoOtherPassCheckedMayBeOfItsPlace) {
   for (const double between_deg : {0.0, 1.3}) {
-    std::mt19937_64 random(18);
-    std::normal_distribution<double> noise_deg(0.0, 0.002);
+    Noise noise_deg(0.002, 18);
     Record record;
     for (int k = 0; k < 800; ++k) {
       const int pass = k / 200;
       const double turned_deg = 3.6 * (pass % 2 == 0 ? k % 200 : 199 - k % 200) + between_deg * pass;
-      record.Add(0.1 * k + pass, turned_deg, turned_deg + noise_deg(random) + (k == 333 ? 0.04 : 0.0),
+      record.Add(0.1 * k + pass, turned_deg, turned_deg + noise_deg() + (k == 333 ? 0.04 : 0.0),
                  pass % 2 == 0 ? 1 : -1, pass);
     }
     const Answer answer = Ask(record);
@@ -201,15 +194,14 @@ TEST(EncoderExactness, ASingleFarReadingThatNoOtherPassCheckedMayBeOfItsPlace) {
 }
 
 TEST(EncoderExactness, AWormIsNoPieceOfACurve) {
-  std::mt19937_64 random(17);
-  std::normal_distribution<double> normal;
+  Noise normal(1.0, 17);
   std::vector<double> knots_deg(17);
-  for (double& k : knots_deg) k = 0.01 * normal(random);
+  for (double& k : knots_deg) k = 0.01 * normal();
   const Answer answer = Ask(ListedBothWays(12.0, 45.0, 800, 1, [&](double a, int stop, int) {
     const double at = stop / 50.0, share = 0.5 * (1.0 - std::cos(units::kPi * (at - std::floor(at))));
     const auto k = static_cast<std::size_t>(at);
     return std::lerp(knots_deg[k], knots_deg[k + 1], share) + 0.004 * std::cos(400.0 * a * units::deg) +
-           0.0003 * normal(random);
+           0.0003 * normal();
   }));
   SCOPED_TRACE(answer.Words());
   EXPECT_EQ(answer.Value("periodic", "order"), 400.0);

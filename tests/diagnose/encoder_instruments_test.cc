@@ -13,10 +13,8 @@ constexpr double kRad = units::kPi / 180.0;
 
 /// A follower with play on a shaft that goes to and fro in even steps.
 Record Played(double width_deg, double step_deg, int turns_back, double first_share, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise_deg(0.0, 0.01 * width_deg);
-  Record record;
-  record.kind = "stops";
+  Noise noise_deg(0.01 * width_deg, seed);
+  Record record{"stops"};
   const int steps = 40 + 3 * static_cast<int>(width_deg / step_deg);
   double shaft_deg = 3.0, follower_deg = shaft_deg + 0.5 * first_share * width_deg;
   for (int pass = 0; pass <= turns_back; ++pass) {
@@ -26,7 +24,7 @@ Record Played(double width_deg, double step_deg, int turns_back, double first_sh
       if (follower_deg > ahead_deg) follower_deg = ahead_deg;
       if (follower_deg < behind_deg) follower_deg = behind_deg;
       record.Add(0.02 * static_cast<double>(record.readings.size()), shaft_deg,
-                 follower_deg + noise_deg(random) - 5.0, pass % 2 == 0 ? 1 : -1, pass);
+                 follower_deg + noise_deg() - 5.0, pass % 2 == 0 ? 1 : -1, pass);
     }
   }
   return record;

@@ -59,12 +59,11 @@ TEST(EncoderClock, IsNotToBlameForAScaleOrForWhatTheSpeedDoes) {
 TEST(EncoderMotion, OfAServoOverAPartOfATurnIsLateBesideARestThatWanders) {
   constexpr double kLate_s = 0.045, kMemory = 0.9, kRest_deg = 0.3;
   const Swing plate{10.0, 1.0, -5.0};
-  for (const unsigned seed : {81U, 82U, 83U}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> step(0.0, kRest_deg * std::sqrt(1.0 - kMemory * kMemory));
+  for (const unsigned seed : Seeds({81U, 82U, 83U})) {
+    Noise step(kRest_deg * std::sqrt(1.0 - kMemory * kMemory), seed);
     double rest_deg = 0.0;
     const Answer answer = Ask(Swung(plate, 0.01, 17.0, 0.0233, 0.01, seed, [&](double t_s) {
-      rest_deg = kMemory * rest_deg + step(random);
+      rest_deg = kMemory * rest_deg + step();
       return plate.At(t_s - kLate_s) + rest_deg;
     }));
     EXPECT_TRUE(answer.Names("latency")) << seed << ": " << answer.Words();
@@ -78,15 +77,14 @@ TEST(EncoderMotion, OfAServoOverAPartOfATurnIsLateBesideARestThatWanders) {
 TEST(EncoderMotion, LateByAPartOfAPeriodIsALatencyAndAScale) {
   constexpr double kLate_s = 0.025, kGain = 0.79;
   const auto chirp_deg = [](double t_s) { return 1.45 * std::sin(2.0 * units::kPi * (2.0 * t_s + 1.5 * t_s * t_s)); };
-  std::mt19937_64 random(84);
-  std::normal_distribution<double> noise_deg(0.0, 0.02);
+  Noise noise_deg(0.02, 84);
   Record record;
   int direction = 1, pass = 0;
   for (double t_s = 0.03; t_s < 4.0; t_s += 0.0031) {
     const int now = chirp_deg(t_s + 1e-4) > chirp_deg(t_s - 1e-4) ? 1 : -1;
     pass += now == direction ? 0 : 1;
     direction = now;
-    record.Add(t_s, chirp_deg(t_s), kGain * chirp_deg(t_s - kLate_s) + noise_deg(random), direction, pass);
+    record.Add(t_s, chirp_deg(t_s), kGain * chirp_deg(t_s - kLate_s) + noise_deg(), direction, pass);
   }
   const Answer answer = Ask(record);
   SCOPED_TRACE(answer.Words());
@@ -174,10 +172,8 @@ struct Rests {
 
 /// 36 stops there and back twice, each read six times while it comes to rest.
 Record ComesToRest(const Rests& rests, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, 0.0015);
-  Record record;
-  record.kind = "stops";
+  Noise noise(0.0015, seed);
+  Record record{"stops"};
   double t_s = 0.0;
   for (int pass = 0; pass < 4; ++pass) {
     const int sense = pass % 2 == 0 ? 1 : -1;
@@ -188,7 +184,7 @@ Record ComesToRest(const Rests& rests, unsigned seed) {
         const double now_s = t_s + 0.8 * again;
         const double error_deg = -sense * rests.left_deg * std::exp(-0.8 * again / rests.over_s) +
                                  rests.warm_up_deg * (1.0 - std::exp(-now_s / 300.0));
-        record.Add(now_s, at_deg, at_deg + error_deg + noise(random), sense, pass);
+        record.Add(now_s, at_deg, at_deg + error_deg + noise(), sense, pass);
       }
       t_s += 4.0;
     }
@@ -228,8 +224,7 @@ Record Positioned(const Axis& axis, int passes, unsigned seed) {
   std::uniform_real_distribution<double> uneven(-0.15, 0.15);
   std::vector<double> targets_mm;
   for (int k = 0; k < axis.targets; ++k) targets_mm.push_back(axis.length_mm / axis.targets * (k + uneven(random)));
-  Record record;
-  record.kind = "stops";
+  Record record{"stops"};
   for (int pass = 0; pass < passes; ++pass) {
     const int sense = pass % 2 == 0 ? 1 : -1;
     for (std::size_t k = 0; k < targets_mm.size(); ++k) {
@@ -260,16 +255,14 @@ TEST(EncoderTargets, AWarmUpBesideTheReversalIsADriftThatSettles) {
 }
 
 TEST(EncoderTargets, FewOrdersKeepTheirNames) {
-  Record record;
-  record.kind = "stops";
-  std::mt19937_64 random(91);
-  std::normal_distribution<double> noise(0.0, 0.001);
+  Record record{"stops"};
+  Noise noise(0.001, 91);
   for (int pass = 0; pass < 4; ++pass) {
     const int sense = pass % 2 == 0 ? 1 : -1;
     for (int k = 0; k < 24; ++k) {
       const double at_deg = 15.0 * (sense > 0 ? k : 23 - k), a = at_deg * units::deg;
       const double error_deg = 0.03 * std::cos(a + 0.7) + 0.012 * std::cos(5.0 * a) - 0.006 * sense;
-      record.Add(4.0 * static_cast<double>(record.readings.size()), at_deg, at_deg + error_deg + noise(random),
+      record.Add(4.0 * static_cast<double>(record.readings.size()), at_deg, at_deg + error_deg + noise(),
                  sense, pass);
     }
   }

@@ -39,7 +39,7 @@ Record LateAndShort(double late_s, double scale, double noise_deg, unsigned seed
 }
 
 TEST(EncoderMemory, ALagAndAScaleAreNoLoopThatFollowsBoth) {
-  for (const unsigned seed : {1u, 2u, 3u}) {
+  for (const unsigned seed : Seeds({1u, 2u, 3u})) {
     const Answer answer = Ask(LateAndShort(0.0114, -0.05, 0.1, seed));
     SCOPED_TRACE(answer.Words());
     EXPECT_TRUE(answer.Names("latency"));
@@ -53,15 +53,14 @@ TEST(EncoderMemory, ALagAndAScaleAreNoLoopThatFollowsBoth) {
 
 /// Forward and back once; the noise has a deviation of 0.02 deg and remembers this much of what it was a reading ago.
 Record Remembering(int readings, double correlation, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> unit;
+  Noise unit(1.0, seed);
   Record record;
-  double x = unit(random);
+  double x = unit();
   for (int k = 0; k < readings; ++k) {
     const bool is_back = 2 * k >= readings;
     const double angle_deg = 720.0 * (is_back ? readings - 1 - k : k) / readings;
     record.Add(0.1 * k, angle_deg, angle_deg + 0.02 * x, is_back ? -1 : 1, 0);
-    x = correlation * x + std::sqrt(1.0 - correlation * correlation) * unit(random);
+    x = correlation * x + std::sqrt(1.0 - correlation * correlation) * unit();
   }
   return record;
 }
@@ -90,7 +89,7 @@ TEST(EncoderMemory, AWalkIsToldAsLargeAsItShows) {
 }
 
 TEST(EncoderMemory, ARandomWalkIsNoDriftAndNoScale) {
-  for (const unsigned seed : {7u, 8u, 9u, 10u}) {
+  for (const unsigned seed : Seeds({7u, 8u, 9u, 10u})) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> step_deg(0.0, 0.001), noise_deg(0.0, 0.0015);
     Record record;
@@ -131,16 +130,14 @@ const double kReversalAt_deg[kTargets] = {0.0030, -0.0021, 0.0012, -0.0034, 0.00
 /// Five times to every target from either side, without a clock: a curve, a reversal that differs from target to
 /// target, and a creep from cycle to cycle.
 Record PositioningTest(double reversal_deg, double noise_deg, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, noise_deg);
-  Record record;
-  record.kind = "stops";
+  Noise noise(noise_deg, seed);
+  Record record{"stops"};
   for (int cycle = 0; cycle < kCycles; ++cycle) {
     for (int k = 0; k < 2 * kTargets; ++k) {
       const int target = k < kTargets ? k : 2 * kTargets - 1 - k, sense = k < kTargets ? 1 : -1;
       const double at_deg = 5.0 * target - 20.0;
       const double error_deg = kCurve_deg[target] - 0.5 * sense * (reversal_deg + kReversalAt_deg[target]) - 0.0015 * cycle;
-      record.Add(cycle * 2 * kTargets + k, at_deg, at_deg + error_deg + noise(random), sense, 2 * cycle + (sense < 0));
+      record.Add(cycle * 2 * kTargets + k, at_deg, at_deg + error_deg + noise(), sense, 2 * cycle + (sense < 0));
       record.readings.back().extra[kClockColumn] = kNoClock;
     }
   }
@@ -148,7 +145,7 @@ Record PositioningTest(double reversal_deg, double noise_deg, unsigned seed) {
 }
 
 TEST(EncoderPositioning, TheReversalIsTheMeanOverAllTargetsBesideTheirErrors) {
-  for (const unsigned seed : {1u, 2u, 3u}) {
+  for (const unsigned seed : Seeds({1u, 2u, 3u})) {
     const Answer answer = Ask(PositioningTest(0.021, 0.0008, seed));
     SCOPED_TRACE(answer.Words());
     EXPECT_TRUE(answer.Names("backlash", 0.75));
@@ -168,8 +165,7 @@ TEST(EncoderPositioning, TheFileOfOneTestPredictsTheCurveOfTheNext) {
 }
 
 TEST(EncoderPositioning, AZeroThatFollowsTheTemperatureIsNoFunctionOfTime) {
-  std::mt19937_64 random(6);
-  std::normal_distribution<double> noise_deg(0.0, 0.001);
+  Noise noise_deg(0.001, 6);
   Record record;
   constexpr double kLag_s = 900.0;
   double follower_K = 0.0, last_K = 0.0;
@@ -182,7 +178,7 @@ TEST(EncoderPositioning, AZeroThatFollowsTheTemperatureIsNoFunctionOfTime) {
     }
     last_K = room_K;
     const double at_deg = 0.9 * k;
-    record.Add(t_s, at_deg, at_deg + 0.01 * follower_K + 0.02 * std::cos(at_deg * units::deg) + noise_deg(random), 1, 0);
+    record.Add(t_s, at_deg, at_deg + 0.01 * follower_K + 0.02 * std::cos(at_deg * units::deg) + noise_deg(), 1, 0);
     record.readings.back().temperature_degC = 20.0 + room_K;
   }
   const Answer answer = Ask(record);
@@ -195,11 +191,10 @@ TEST(EncoderPositioning, AZeroThatFollowsTheTemperatureIsNoFunctionOfTime) {
 }
 
 TEST(EncoderPositioning, ASlipIsOneWhereItIsSuddenAndSmall) {
-  for (const unsigned seed : {10u, 11u, 12u}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> noise_deg(0.0, 0.004);
+  for (const unsigned seed : Seeds({10u, 11u, 12u})) {
+    Noise noise_deg(0.004, seed);
     Record record;
-    for (int k = 0; k < 600; ++k) record.Add(0.5 * k, 2.0 * k, 2.0 * k + (k < 350 ? 0.0 : 0.006) + noise_deg(random), 1, 0);
+    for (int k = 0; k < 600; ++k) record.Add(0.5 * k, 2.0 * k, 2.0 * k + (k < 350 ? 0.0 : 0.006) + noise_deg(), 1, 0);
     const Answer answer = Ask(record);
     EXPECT_TRUE(answer.Names("slip", 0.5)) << answer.Words();
     EXPECT_NEAR(answer.Value("slip", "step"), 0.006, 0.0015) << answer.Words();
@@ -207,8 +202,7 @@ TEST(EncoderPositioning, ASlipIsOneWhereItIsSuddenAndSmall) {
 }
 
 TEST(Memory, OfWhiteNoiseIsOneAndOfAWalkIsLongAlongWhatIsSlow) {
-  std::mt19937_64 random(13);
-  std::normal_distribution<double> normal(0.0, 1.0);
+  Noise normal(1.0, 13);
   constexpr int kReadings = 1200, kRuns = 200;
   double of_white = 0.0, of_walk = 0.0;
   const Eigen::VectorXd slow = Eigen::VectorXd::LinSpaced(kReadings, -1.0, 1.0);
@@ -216,8 +210,8 @@ TEST(Memory, OfWhiteNoiseIsOneAndOfAWalkIsLongAlongWhatIsSlow) {
     Eigen::VectorXd white(kReadings), walk(kReadings);
     double sum = 0.0;
     for (int k = 0; k < kReadings; ++k) {
-      white[k] = normal(random);
-      walk[k] = sum += normal(random);
+      white[k] = normal();
+      walk[k] = sum += normal();
     }
     of_white += MemoryAlong(slow, white) / kRuns;
     of_walk += MemoryAlong(slow, walk.array() - walk.mean()) / kRuns;
@@ -231,8 +225,7 @@ TEST(EncoderPositioning, TargetsInAnyOrderShowAScale) {
   constexpr double kRatio = 0.012;
   std::mt19937 random(140);
   std::normal_distribution<double> noise(0.0, 0.02);
-  Record record;
-  record.kind = "stops";
+  Record record{"stops"};
   double before_deg = 0.0;
   for (const double at_deg : {-30.0, 60.0, 0.0, -90.0, 45.0, 30.0, -60.0, 90.0, -45.0, 60.0, -90.0, 0.0, 90.0, -30.0}) {
     const auto n = static_cast<int>(std::ssize(record.readings));

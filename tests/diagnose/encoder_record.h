@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <random>
 
+#include "tests/support/noise.h"
 #include "tests/support/thresholds.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
@@ -18,17 +18,16 @@
 /// Comparisons made by hand and asked about, for instruments by closed forms that share nothing with the twin.
 namespace twinbench::diagnose::encoder::lab {
 
+using twinbench::test::Noise, twinbench::test::Seeds;
+
 /// A comparison in the making, all in deg and s.
 struct Record {
   std::string kind = "sweep";  // what the scenario says of it
-  std::vector<Reading> readings;
+  std::vector<Reading> readings = {};
 
   void Add(double time_s, double reference_deg, double measured_deg, int direction, int pass) {
-    Reading r;
-    r.reading = static_cast<int>(readings.size());
-    r.time = Time(FromSeconds(time_s));
-    r.pass = pass;
-    r.direction = direction;
+    Reading r{.reading = static_cast<int>(readings.size()), .time = Time(FromSeconds(time_s)), .pass = pass,
+              .direction = direction};
     r.position = r.reading;
     r.reference_rad = reference_deg * units::deg;
     r.measured_rad = measured_deg * units::deg;
@@ -126,26 +125,23 @@ struct Swing {
 template <class Shows>
 Record Swung(const Swing& swing, double first_s, double end_s, double every_s, double noise_deg, unsigned seed,
              Shows shows_deg) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, noise_deg);
+  Noise noise(noise_deg, seed);
   Record record;
   for (double t_s = first_s; t_s < end_s; t_s += every_s)
-    record.Add(t_s, swing.At(t_s), shows_deg(t_s) + noise(random), swing.Direction(t_s), swing.Pass(t_s));
+    record.Add(t_s, swing.At(t_s), shows_deg(t_s) + noise(), swing.Direction(t_s), swing.Pass(t_s));
   return record;
 }
 
 /// Stops of 6 deg, two turns there and back twice; the error is a function of time and angle.
 template <class Error>
 Record Stops(double noise_deg, double step_deg, unsigned seed, Error error_deg) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, noise_deg);
-  Record record;
-  record.kind = "stops";
+  Noise noise(noise_deg, seed);
+  Record record{"stops"};
   for (int pass = 0; pass < 4; ++pass) {
     for (int k = 0; k < 120; ++k) {
       const double reference_deg = 0.4 + 6.0 * (pass % 2 == 0 ? k : 119 - k);
       const double time_s = 5.0 * static_cast<double>(record.readings.size());
-      double measured_deg = reference_deg + error_deg(time_s, reference_deg) + noise(random);
+      double measured_deg = reference_deg + error_deg(time_s, reference_deg) + noise();
       if (step_deg > 0.0) measured_deg = step_deg * std::round(measured_deg / step_deg);
       record.Add(time_s, reference_deg, measured_deg, pass % 2 == 0 ? 1 : -1, pass);
     }

@@ -20,8 +20,7 @@ constexpr double kDeg = units::deg;
 /// A list without a clock, from `from_deg` on over `travel_deg` and back as often as is said.
 template <class Shows>
 Record Listed(double from_deg, double travel_deg, int stops, int passes, Shows shows_deg) {
-  Record record;
-  record.kind = "stops";
+  Record record{"stops"};
   for (int k = 0; k < passes * stops; ++k) {
     const int pass = k / stops, stop = pass % 2 == 0 ? k % stops : stops - 1 - k % stops;
     const double angle_deg = from_deg + travel_deg * (stop + 0.5) / stops;
@@ -37,10 +36,9 @@ double FirstTwoOrders_deg(double angle_deg) {
 
 /// A device that wraps and shows `wrong_deg` at some readings.
 Record WithGlitches(const std::vector<std::pair<int, double>>& wrong_deg, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise_deg(0.0, 0.01);
+  Noise noise_deg(0.01, seed);
   return Listed(0.0, 360.0, 300, 2, [&](int k, double angle_deg) {
-    const double right_deg = angle_deg + FirstTwoOrders_deg(angle_deg) + noise_deg(random);
+    const double right_deg = angle_deg + FirstTwoOrders_deg(angle_deg) + noise_deg();
     const auto glitch = std::ranges::find(wrong_deg, k, [](const auto& g) { return g.first; });
     return glitch == wrong_deg.end() ? right_deg - 360.0 * std::floor(right_deg / 360.0) : glitch->second;
   });
@@ -60,7 +58,7 @@ void ExpectOrdersAsWithoutGlitches(const Record& record, const std::set<int>& gl
 }
 
 TEST(EncoderRecordings, OneReadingFarOffTakesNothingFromTheOthers) {
-  for (const unsigned seed : {1u, 2u}) {
+  for (const unsigned seed : Seeds({1u, 2u})) {
     ExpectOrdersAsWithoutGlitches(WithGlitches({{417, 89.7}}, seed), {417});
     ExpectOrdersAsWithoutGlitches(WithGlitches({{0, 50.0}}, seed), {0});
     ExpectOrdersAsWithoutGlitches(WithGlitches({{31, 200.0}, {290, 5.0}, {511, 170.0}}, seed), {31, 290, 511});
@@ -85,12 +83,11 @@ TEST(EncoderRecordings, WholeTurnsAreContinuedBehindAGlitch) {
 }
 
 TEST(EncoderRecordings, APartOfATurnShowsOneOrderHoweverHighItIs) {
-  std::mt19937_64 random(5);
-  std::normal_distribution<double> noise_deg(0.0, 0.002);
+  Noise noise_deg(0.002, 5);
   for (const auto& [order, travel_deg, stops] :
        {std::tuple{2048, 60.0, 3000}, std::tuple{180, 40.0, 250}, std::tuple{900, 47.0, 1200}}) {
     const Answer answer = Ask(Listed(33.0, travel_deg, stops, 1, [&](int, double angle_deg) {
-      return angle_deg + 0.01 * std::cos((order * angle_deg + 75.0) * kDeg) + noise_deg(random);
+      return angle_deg + 0.01 * std::cos((order * angle_deg + 75.0) * kDeg) + noise_deg();
     }));
     SCOPED_TRACE(answer.Words());
     EXPECT_EQ(answer.run.diagnosis.causes.size(), 1u);
@@ -103,12 +100,11 @@ TEST(EncoderRecordings, APartOfATurnShowsOneOrderHoweverHighItIs) {
 
 /// A wave and a fault whose signature begins with it: what is told has a size, and the file has it.
 TEST(EncoderRecordings, AnOrderFourBesideLargerOnesHasASize) {
-  for (const unsigned seed : {1u, 2u, 3u}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> noise_deg(0.0, 0.02);
+  for (const unsigned seed : Seeds({1u, 2u, 3u})) {
+    Noise noise_deg(0.02, seed);
     const Answer answer = Ask(Listed(0.0, 360.0, 588, 1, [&](int, double angle_deg) {
       return angle_deg + 2.0 * FirstTwoOrders_deg(angle_deg) + 0.07 * std::cos((4.0 * angle_deg + 130.0) * kDeg) +
-             noise_deg(random);
+             noise_deg();
     }));
     SCOPED_TRACE(answer.Words());
     EXPECT_NEAR(answer.Value("periodic", "amplitude"), 0.07, 0.006);
@@ -118,13 +114,12 @@ TEST(EncoderRecordings, AnOrderFourBesideLargerOnesHasASize) {
 
 /// A stage of 11 targets whose scale errs, each target by a little of its own.
 TEST(EncoderRecordings, AScaleIsToldBeforeErrorsOfTargets) {
-  for (const unsigned seed : {1u, 2u, 3u}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+  for (const unsigned seed : Seeds({1u, 2u, 3u})) {
+    Noise normal(1.0, seed);
     std::vector<double> own_deg(11);
-    for (double& e : own_deg) e = 0.004 * normal(random);
+    for (double& e : own_deg) e = 0.004 * normal();
     const Answer answer = Ask(Listed(0.0, 220.0, 11, 10, [&](int, double angle_deg) {
-      return 1.001 * angle_deg + own_deg.at(static_cast<std::size_t>(angle_deg / 20.0)) + 0.0008 * normal(random);
+      return 1.001 * angle_deg + own_deg.at(static_cast<std::size_t>(angle_deg / 20.0)) + 0.0008 * normal();
     }));
     SCOPED_TRACE(answer.Words());
     ASSERT_FALSE(answer.run.diagnosis.causes.empty());

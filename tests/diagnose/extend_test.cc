@@ -98,10 +98,7 @@ TEST(Extend, LeavesOutWhatHasNoFittedSizeAndWhatPredictsNothing) {
 
 TEST(AliasesOf, AreOrdersThatEvenStopsDoNotTellApart) {
   constexpr int kStops = 72;
-  Cause cause;
-  cause.effect = "periodic";
-  cause.rho = 50.0;
-  cause.parameters = {{"order", "1", 1.0, 13.0}};
+  Cause cause{.effect = "periodic", .rho = 50.0, .parameters = {{"order", "1", 1.0, 13.0}}};
   LinearRun run;
   run.bench = kEncoderBench;
   const auto start_second_turn_at = [&run](double stop) {
@@ -111,9 +108,7 @@ TEST(AliasesOf, AreOrdersThatEvenStopsDoNotTellApart) {
   };
   start_second_turn_at(0.0);
   EXPECT_THAT(AliasesOf(cause, run), testing::AllOf(testing::Contains(59), testing::Contains(85), testing::Contains(131), testing::SizeIs(27)));
-  Diagnosis told;
-  told.causes = {cause};
-  told.verdict = Verdict::kNamed;
+  Diagnosis told{.verdict = Verdict::kNamed, .causes = {cause}};
   told.gain.another_run = 1.0;
   TellAliases(run, told);
   EXPECT_TRUE(std::isnan(told.gain.another_run));

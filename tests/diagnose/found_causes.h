@@ -8,12 +8,7 @@ namespace twinbench::diagnose::test {
 
 /// As sure as a diagnosis ever is, with one fitted parameter.
 inline Cause FoundCause(const std::string& effect, const std::string& where, const ParameterEstimate& parameter) {
-  Cause cause;
-  cause.effect = effect;
-  cause.where = where;
-  cause.probability = 0.97;
-  cause.parameters = {parameter};
-  return cause;
+  return {.effect = effect, .where = where, .probability = 0.97, .parameters = {parameter}};
 }
 
 inline Cause FoundPsdGain(double gain_error) {
@@ -22,15 +17,8 @@ inline Cause FoundPsdGain(double gain_error) {
 
 /// A model that predicts held-out passes nearly as well as their noise allows.
 inline Gain ClearGain() {
-  Gain gain;
-  gain.before_m = 0.71e-6;
-  gain.after_m = 0.31e-6;
-  gain.noise_floor_m = 0.30e-6;
-  gain.fraction_removed = 0.97;
-  gain.interval95 = {0.95, 0.99};
-  gain.positive = true;
-  gain.folds = 4;
-  return gain;
+  return {.before_m = 0.71e-6, .after_m = 0.31e-6, .noise_floor_m = 0.30e-6, .fraction_removed = 0.97,
+          .interval95 = {0.95, 0.99}, .positive = true, .folds = 4};
 }
 
 /// A run of the rotary bench with one named cause.

@@ -149,15 +149,9 @@ class Machine {
       e_rad = Motion_rad(th_rad, hob_rad);
       hob_rad = (th_rad - e_rad) / kRatio;
     }
-    Reading r;
-    r.reading = static_cast<int>(readings_.size());
-    r.time = Time{} + FromSeconds(now_s_);
-    r.setup = setup_;
-    r.pass = pass_;
-    r.direction = direction;
-    r.position = position;
-    r.head_rad = head_rad;
-    r.velocity_rad_s = v;
+    Reading r{.reading = static_cast<int>(readings_.size()), .time = Time{} + FromSeconds(now_s_), .setup = setup_,
+              .pass = pass_, .direction = direction, .position = position, .velocity_rad_s = v,
+              .head_rad = head_rad};
     r.measured_rad = encoder_rad + Slipped_rad("table", r.reading);
     r.reference_rad = Shown_rad(hob_rad) + Slipped_rad("hob", r.reading);
     if (chain_.interferometer)

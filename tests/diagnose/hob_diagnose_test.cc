@@ -29,10 +29,7 @@ std::string NameOf(const std::string& effect, const std::string& where) {
 }
 
 HobChain Short() {
-  HobChain chain;
-  chain.turns = 2;
-  chain.seed = 7;
-  return chain;
+  return {.turns = 2, .seed = 7};
 }
 
 DiagnosisRun DiagnosisOf(const HobChain& chain) {
@@ -130,14 +127,9 @@ std::vector<Reading> OnceATurnOfTheHob(double error_arcsec, std::uint64_t seed) 
   std::vector<Reading> readings;
   constexpr int kRows = 2 * 40 * 36;
   for (int i = 0; i < 2 * kRows; ++i) {
-    Reading r;
-    r.reading = i;
-    r.pass = i < kRows ? 0 : 1;
-    r.direction = i < kRows ? 1 : -1;
-    r.position = i % kRows;
-    r.head_rad = 0.0;
-    r.velocity_rad_s = kNaN;
-    r.reference_rad = (i < kRows ? i : 2 * kRows - 1 - i) * 10.0 * deg;
+    Reading r{.reading = i, .pass = i < kRows ? 0 : 1, .direction = i < kRows ? 1 : -1, .position = i % kRows,
+              .reference_rad = (i < kRows ? i : 2 * kRows - 1 - i) * 10.0 * deg, .velocity_rad_s = kNaN,
+              .head_rad = 0.0};
     r.measured_rad = r.reference_rad / 40.0 + arcsec * (error_arcsec * std::cos(r.reference_rad - 0.7) + 0.2 * noise.Normal());
     readings.push_back(r);
   }
@@ -207,11 +199,7 @@ TEST(HobDiagnosis, TabulatesTheLinesOfTheChain) {
 }
 
 HobChain Quiet() {
-  HobChain chain;
-  chain.table_noise_arcsec = chain.hob_noise_arcsec = 0.0;
-  chain.hob_steps = false;
-  chain.turns = 1;
-  return chain;
+  return {.turns = 1, .table_noise_arcsec = 0.0, .hob_noise_arcsec = 0.0, .hob_steps = false};
 }
 
 LinearRun RunOf(const std::vector<Reading>& readings, const Scenario& scenario) {

@@ -24,13 +24,9 @@ struct Design {
 };
 
 const std::vector<Design>& Designs() {
-  static const Strings sweep = {"encoder_procedure.kind=sweep",
-                                "encoder_procedure.mounting_deg=[0.0, 90.0]",
-                                "encoder_procedure.interval_s=0.16",
-                                "device.lines_per_turn=20",
-                                "device.teeth=44",
-                                "device.signal_periods=3",
-                                "device.signal_zero_deg=17",
+  static const Strings sweep = {"encoder_procedure.kind=sweep", "encoder_procedure.mounting_deg=[0.0, 90.0]",
+                                "encoder_procedure.interval_s=0.16", "device.lines_per_turn=20", "device.teeth=44",
+                                "device.signal_periods=3", "device.signal_zero_deg=17",
                                 "device.signal_zero_known=true"};
   static const std::set<std::string> not_at_stops = {"outliers", "interpolation", "gear_mesh", "reference_fault",
                                                      "latency",  "clock_rate",    "settling"};

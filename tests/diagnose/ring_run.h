@@ -21,11 +21,8 @@ inline constexpr double kRingSigma_m = 0.3e-6;
 inline constexpr int kRingChannels = 2;
 
 inline LinearRun MakeRing(const RingShape& shape = {}) {
-  LinearRun run = SyntheticRun({.positions = shape.positions,
-                                .shifts = shape.shifts,
-                                .passes = shape.passes,
-                                .sigma_m = kRingSigma_m,
-                                .channels = kRingChannels,
+  LinearRun run = SyntheticRun({.positions = shape.positions, .shifts = shape.shifts, .passes = shape.passes,
+                                .sigma_m = kRingSigma_m, .channels = kRingChannels,
                                 .calibration = shape.calibration});
   Schedule& s = run.schedule;
   for (int& pass : s.pass) pass %= std::max(1, static_cast<int>(shape.passes.size()));  // counted anew in every set-up

@@ -26,12 +26,8 @@ Nuisance ArrowNuisance() {
     dense.row(k).tail(kCore) = values.row(k).tail(kCore);
   }
   dense.rightCols(1) = dense.middleCols(kBlocks * kSize, 1);
-  Nuisance nuisance;
-  nuisance.jacobian = dense.sparseView();
-  nuisance.prior_precision = Eigen::VectorXd::Constant(dense.cols(), 1e-4);
-  nuisance.blocks = kBlocks;
-  nuisance.block_size = kSize;
-  return nuisance;
+  return {.jacobian = dense.sparseView(), .prior_precision = Eigen::VectorXd::Constant(dense.cols(), 1e-4),
+          .blocks = kBlocks, .block_size = kSize};
 }
 
 /// The same by an orthogonal factorisation of the data with the priors as extra rows.

@@ -130,25 +130,17 @@ TEST(Search, FindsCausesThatAreThereTogetherBesideWhatImitatesTheirSum) {
 
 /// One place of the answer that a wave of this order fills for sure.
 Term SureOrder(double order) {
-  Term term;
-  term.shape = Eigen::VectorXd::Constant(1, order);
-  term.columns = Eigen::VectorXd::Ones(8);
-  term.log_posterior = Eigen::Vector2d(0.0, -50.0);
-  term.statistic = 50.0;
-  term.explained = 100.0;
-  term.amplitudes = Eigen::VectorXd::Constant(1, units::um);
-  term.cov = 1e-16 * Eigen::MatrixXd::Identity(2, 2);
-  return term;
+  return {.shape = Eigen::VectorXd::Constant(1, order), .columns = Eigen::VectorXd::Ones(8),
+          .log_posterior = Eigen::Vector2d(0.0, -50.0), .statistic = 50.0, .explained = 100.0,
+          .amplitudes = Eigen::VectorXd::Constant(1, units::um), .cov = 1e-16 * Eigen::MatrixXd::Identity(2, 2)};
 }
 
 TEST(Name, TellsTwoOrdersOfOneEffectAsTwoCauses) {
   Family wave = Fixed("periodic", Eigen::VectorXd::Ones(8), units::um);
   wave.shapes = {{"order", "1", 1.0, 1.0, 24.0, {3.0, 5.0}}};
   wave.grid = 2;
-  SearchResult found;
-  found.terms = {SureOrder(3.0), SureOrder(5.0)};
-  found.joint_evidence = 100.0;
-  found.alone = {Eigen::MatrixXd::Zero(1, 1), Eigen::MatrixXi::Zero(1, 1), Eigen::MatrixXd::Zero(1, 1)};
+  SearchResult found{.terms = {SureOrder(3.0), SureOrder(5.0)}, .joint_evidence = 100.0,
+                     .alone = {Eigen::MatrixXd::Zero(1, 1), Eigen::MatrixXi::Zero(1, 1), Eigen::MatrixXd::Zero(1, 1)}};
   const Naming naming = Name(found, {wave}, 5.0);
   ASSERT_EQ(naming.causes.size(), 2U);
   for (std::size_t k = 0; k < 2; ++k) {

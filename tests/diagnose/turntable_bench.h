@@ -91,12 +91,8 @@ class Bench {
   void Circle(int setup, int pass, int direction, int positions, double offset_rad, Phase phase) {
     const int shift = TurntableProcedureSettings::Of(TurntableOf(s_).turntable_procedure.shifts, setup);
     for (int step = 0; step < positions; ++step) {
-      Reading r;
-      r.position = direction > 0 ? step : positions - 1 - step;
-      r.setup = setup;
-      r.pass = pass;
-      r.direction = direction;
-      r.phase = phase;
+      Reading r{.setup = setup, .pass = pass, .direction = direction,
+                .position = direction > 0 ? step : positions - 1 - step, .phase = phase};
       r.target_rad = offset_rad + r.position * 2.0 * kPi / positions;
       r.reference_rad = shift * 2.0 * kPi / TurntableOf(s_).multitooth.teeth - r.target_rad;
       Take(r);
@@ -106,11 +102,9 @@ class Bench {
   void Sweep() {
     const int n = TurntableOf(s_).turntable_procedure.sweep_points;
     for (int k = 0; k < n; ++k) {
-      Reading r;
-      r.position = k;
-      r.phase = Phase::kCalibration;
-      r.target_rad = TurntableOf(s_).turntable_procedure.sweep_rad * (2.0 * k / (n - 1.0) - 1.0);
-      r.reference_rad = 0.0;
+      Reading r{.position = k, .phase = Phase::kCalibration,
+                .target_rad = TurntableOf(s_).turntable_procedure.sweep_rad * (2.0 * k / (n - 1.0) - 1.0),
+                .reference_rad = 0.0};
       Take(r);
     }
   }

@@ -8,6 +8,7 @@
 #include "tests/diagnose/found_causes.h"
 #include "tests/diagnose/turntable_bench.h"
 #include "tests/support/angle_benches.h"
+#include "tests/support/noise.h"
 #include "tests/support/thresholds.h"
 #include "twin/diagnose/extend.h"
 
@@ -117,18 +118,15 @@ TEST(TurntableDiagnosis, NamesWhatMovesTheZeroInTime) {
              {{.creep_rad = on_axis(0.2 * arcsec)}, "mount_creep", where, "amplitude", 0.2 * arcsec},
              {{.slip_rad = on_axis(0.4 * arcsec)}, "slip", where, "step", 0.4 * arcsec},
              {{.tone_rad = on_axis(0.2 * arcsec), .modulation = 0.1}, "tone", where, "amplitude", 0.2 * arcsec},
-             {{.kelvin_rad = on_axis(2.0 * arcsec), .lag_s = 10.0},
-              "autocollimator_temperature",
-              where,
-              "coefficient",
-              2.0 * arcsec}})
+             {{.kelvin_rad = on_axis(2.0 * arcsec), .lag_s = 10.0}, "autocollimator_temperature", where,
+              "coefficient", 2.0 * arcsec}})
       ExpectNamed(named);
   }
 }
 
 // Whose size and time constant stand for each other: neither is known, but that is no reason to believe in a drift.
 TEST(TurntableDiagnosis, LeavesASlowCreepOpenBesideADrift) {
-  for (const std::uint64_t seed : {21u, 22u, 23u, 24u}) {
+  for (const std::uint64_t seed : twinbench::test::Seeds({21u, 22u, 23u, 24u})) {
     const Wrong creep{.creep_rad = {0.0, 0.3 * arcsec}, .creep_s = 300.0};
     const DiagnosisRun run = DiagnosisOf(CarefulScenario(), creep, seed);
     std::vector<Cause> open = run.diagnosis.causes;
@@ -178,7 +176,7 @@ TEST(TurntableDiagnosis, TakesWhatSwitchesForNoTone) {
     const double turns = ToSeconds(r.time) / 260.0 + 0.13;
     return Eigen::Vector2d(turns - std::floor(turns) < 0.4 ? 0.2 * arcsec : 0.0, 0.0);
   };
-  for (const std::uint64_t seed : {32u, 33u, 34u})
+  for (const std::uint64_t seed : twinbench::test::Seeds({32u, 33u, 34u}))
     EXPECT_GT(DiagnosisOf(CarefulScenario(), {.other = switching}, seed).diagnosis.unknown.probability, 0.7)
         << seed;
 }

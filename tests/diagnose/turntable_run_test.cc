@@ -53,9 +53,7 @@ TEST(TurntableRun, BelievesTheStatedInstrument) {
   TurntableOf(scenario).mirror.flatness_m = 0.2e-6;
   TurntableOf(scenario).turntable_procedure.eccentricities_m = {50e-6, 9e-3};
   TurntableOf(scenario).turntable.backlash_rad = 2.0 * arcsec;
-  Wrong as_stated;
-  as_stated.kelvin_rad = {3.0 * arcsec, 0.0};
-  as_stated.backlash_rad = 2.0 * arcsec;
+  Wrong as_stated{.kelvin_rad = {3.0 * arcsec, 0.0}, .backlash_rad = 2.0 * arcsec};
   const std::vector<Reading> readings = BenchReadings(Quiet(scenario), as_stated, 4);
   EXPECT_LT(LeftOver(RunOf(readings, scenario)), 0.2);
   // Each statement alone is needed.
@@ -78,10 +76,7 @@ TEST(TurntableRun, TakesOffAnEmpiricalSignal) {
   bump.other = [](const Reading& r) { return Eigen::Vector2d(0.0, r.reading == 40 ? 5.0 * arcsec : 0.0); };
   const std::vector<Reading> readings = BenchReadings(Quiet(scenario), bump, 4);
   EXPECT_GT(LeftOver(RunOf(readings, scenario)), 10.0);
-  EmpiricalSettings signal;
-  signal.channel = "y";
-  signal.reading = {40};
-  signal.value_rad = {5.0 * arcsec};
+  EmpiricalSettings signal{.channel = "y", .reading = {40}, .value_rad = {5.0 * arcsec}};
   scenario.empiricals = {signal};
   EXPECT_NEAR(LeftOver(RunOf(readings, scenario)), LeftOver(plain), 1e-6);
 }
