@@ -35,16 +35,9 @@ Scenario Believed(bool in_motion) {
 }
 
 Reading ReadingOf(const Instant& at, int number) {
-  Reading r;
-  r.reading = number;
-  r.time = Time(FromSeconds(at.t_s));
-  r.pass = at.pass;
-  r.direction = at.direction;
-  r.position = at.position;
-  r.reference_rad = at.angle_deg * units::deg;
-  r.velocity_rad_s = at.speed_deg_s * units::deg;
-  r.temperature_degC = Quantised(at.temperature_degC, 0.001);
-  return r;
+  return {.reading = number, .time = Time(FromSeconds(at.t_s)), .pass = at.pass, .direction = at.direction,
+          .position = at.position, .reference_rad = at.angle_deg * units::deg,
+          .temperature_degC = Quantised(at.temperature_degC, 0.001), .velocity_rad_s = at.speed_deg_s * units::deg};
 }
 
 Eigen::VectorXd ShownErrors_deg(const AngleMachine& m, const Track& track, const Run& run) {
@@ -215,21 +208,15 @@ Machine MakeAngleInOrder(std::uint64_t seed, bool in_motion, const NoiseShape& n
 }
 
 AngleDesign DrawStops(Dice& dice) {
-  AngleDesign d;
-  d.stops_per_turn = dice.Whole(41, 83);
-  d.turns = dice.Between(1.2, 2.2);
-  d.start_deg = dice.Between(-170.0, 170.0);
-  d.passes = dice.OneOf(std::vector<std::vector<int>>{{1, -1, -1, 1}, {1, -1, 1, -1}, {-1, 1, 1, -1}});
-  d.interval_s = dice.Between(3.0, 6.0);
-  return d;
+  return {.stops_per_turn = 1.0 * dice.Whole(41, 83), .turns = dice.Between(1.2, 2.2),
+          .start_deg = dice.Between(-170.0, 170.0),
+          .passes = dice.OneOf(std::vector<std::vector<int>>{{1, -1, -1, 1}, {1, -1, 1, -1}, {-1, 1, 1, -1}}),
+          .interval_s = dice.Between(3.0, 6.0)};
 }
 
 AngleDesign DrawMotion(Dice& dice) {
-  AngleDesign d;
-  d.in_motion = true;
-  d.turns = dice.Between(1.3, 2.2);
-  d.start_deg = dice.Between(-170.0, 170.0);
-  d.passes = {1, -1, 1, -1};
+  AngleDesign d{.in_motion = true, .turns = dice.Between(1.3, 2.2), .start_deg = dice.Between(-170.0, 170.0),
+                .passes = {1, -1, 1, -1}};
   const double fast_deg_s = dice.Between(25.0, 60.0), slow_deg_s = fast_deg_s / dice.Between(2.0, 3.5);
   d.speeds_deg_s = {fast_deg_s, fast_deg_s, slow_deg_s, slow_deg_s};
   const double duration_s = 720.0 * d.turns * (1.0 / fast_deg_s + 1.0 / slow_deg_s);

@@ -53,11 +53,8 @@ struct NoiseShape {
 
 /// The ways in which runs with nothing wrong are put under stress.
 inline std::vector<NoiseShape> Stresses() {
-  std::vector<NoiseShape> all = {{"noise x 0.5", 0.5},
-                                 {"noise x 2", 2.0},
-                                 {"Student t, 3 dof", 1.0, 3.0},
-                                 {"AR(1) 0.5", 1.0, 0.0, 0.5},
-                                 {"rows missing", 1.0, 0.0, 0.0, 0.0, 0.15}};
+  std::vector<NoiseShape> all = {{"noise x 0.5", 0.5}, {"noise x 2", 2.0}, {"Student t, 3 dof", 1.0, 3.0},
+                                 {"AR(1) 0.5", 1.0, 0.0, 0.5}, {"rows missing", 1.0, 0.0, 0.0, 0.0, 0.15}};
   for (const double step : {0.5, 2.0, 5.0, 20.0})
     all.push_back(
         {"quantised at " + std::to_string(step).substr(0, step < 10.0 ? 3 : 4) + " sigma", 1.0, 0.0, 0.0, step});

@@ -64,20 +64,11 @@ Scenario Believed(const StandDesign& design) {
 }
 
 Reading ReadingOf(const StandStop& at, int number) {
-  Reading r;
-  r.reading = number;
-  r.time = Time(FromSeconds(at.t_s));
-  r.setup = at.setup;
-  r.pass = at.pass;
-  r.direction = at.direction;
-  r.position = at.position;
-  r.phase = at.calibration ? Phase::kCalibration : Phase::kFullCircle;
-  r.dwell_s = at.dwell_s;
-  r.temperature_degC = Quantised(at.temperature_degC, 0.001);
-  r.target_rad = at.target_rad;
-  r.reference_rad = at.reference_rad;
-  r.n_samples = kSamples;
-  return r;
+  return {.reading = number, .time = Time(FromSeconds(at.t_s)), .setup = at.setup, .pass = at.pass,
+          .direction = at.direction, .position = at.position,
+          .phase = at.calibration ? Phase::kCalibration : Phase::kFullCircle, .target_rad = at.target_rad,
+          .reference_rad = at.reference_rad, .n_samples = kSamples, .dwell_s = at.dwell_s,
+          .temperature_degC = Quantised(at.temperature_degC, 0.001)};
 }
 
 /// All that is random in the readings of one run.

@@ -168,9 +168,7 @@ std::size_t Stand::PositionOf(double angle_rad) const {
 
 Eigen::Isometry3d Stand::GratingAt(const StandStop& stop) const {
   if (stop.calibration) {
-    TableError sweep;
-    sweep.ez_rad = stop.sweep_yaw_rad;
-    sweep.ex_rad = stop.sweep_tilt_rad;
+    TableError sweep{.ex_rad = stop.sweep_tilt_rad, .ez_rad = stop.sweep_yaw_rad};
     return PoseOf(sweep) * PoseOf(mount_.back());
   }
   const auto setup = static_cast<std::size_t>(stop.setup);

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <functional>
-#include <random>
 
 /// An axis under a reference and a device that errs, made with nothing of the program's: the raw files of these
 /// tests are printed from it.
+#include "tests/support/noise.h"
 namespace twinbench::test {
 
 struct AxisSample {
@@ -31,12 +31,11 @@ inline double Cosine(double order, double angle_deg, double phase_deg) {
 
 /// Passes at constant speed, each followed by a rest.
 inline std::vector<AxisSample> DriveAxis(const AxisMotion& motion, const AxisError& error) {
-  std::mt19937_64 random(motion.seed);
-  std::normal_distribution<double> noise(0.0, motion.noise_deg);
+  twinbench::test::Noise noise(motion.noise_deg, motion.seed);
   std::vector<AxisSample> samples;
   double time_s = 0.0, angle_deg = 0.0;
   const auto add = [&](int sense) {
-    samples.push_back({time_s, angle_deg, angle_deg + error(angle_deg, sense) + noise(random), sense});
+    samples.push_back({time_s, angle_deg, angle_deg + error(angle_deg, sense) + noise(), sense});
     time_s += motion.interval_s;
   };
   const double step_deg = motion.speed_deg_s * motion.interval_s;
@@ -122,8 +121,7 @@ inline std::string CamonitorLog(const std::vector<AxisSample>& samples, double b
 /// @param error_arcsec  Of the mount's axis, by its angle [deg].
 inline std::string GuideLog(const std::function<double(double)>& error_arcsec, int frames) {
   constexpr double kScale = 2.0, kRate = 6.5, kDec_deg = 30.0;
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> seeing(0.0, 0.1);
+  twinbench::test::Noise seeing(0.1, 7);
   std::string text =
       "PHD2 version 2.6.11 [Windows], Log version 2.5. Log enabled at 2022-01-15 21:30:00\n\n"
       "Calibration Begins at 2022-01-15 21:31:00\nPixel scale = 2.00 arc-sec/px, Binning = 1, Focal length = 400 "
@@ -151,7 +149,7 @@ inline std::string GuideLog(const std::function<double(double)>& error_arcsec, i
                           "INFO: SETTLING STATE CHANGE, Settling started\n", by_px);
     }
     const double raw_px =
-        error_arcsec(angle_deg) * Cosine(1.0, kDec_deg, 0.0) / kScale - taken_out_px - held_px + seeing(random);
+        error_arcsec(angle_deg) * Cosine(1.0, kDec_deg, 0.0) / kScale - taken_out_px - held_px + seeing();
     const int pulse_ms = std::abs(raw_px) > 0.2 ? static_cast<int>(700.0 * std::abs(raw_px) / kRate) : 0;
     taken_out_px += (raw_px > 0.0 ? 1.0 : -1.0) * pulse_ms / 1000.0 * kRate;
     const char* way = pulse_ms == 0 ? "" : raw_px > 0.0 ? "W" : "E";

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <random>
 
 #include "tests/import/importing.h"
 #include "tests/support/kept_text.h"
+#include "tests/support/noise.h"
 
 /// A command that jumps, and a servo that takes its time.
 namespace twinbench::imports {
@@ -19,8 +19,7 @@ struct Servo {
 
 /// A square wave of 140 deg, 20 rests, a row every 13 ms.
 std::string StepTest(const Servo& servo) {
-  std::mt19937_64 random(4);
-  std::normal_distribution<double> noise(0.0, servo.noise_deg);
+  test::Noise noise(servo.noise_deg, 4);
   std::string text = "time [s];commanded [deg];measured [deg]\n";
   double time_s = 0.0, at_deg = -60.0;
   for (int k = 0; k < 20; ++k) {
@@ -28,7 +27,7 @@ std::string StepTest(const Servo& servo) {
     for (int i = 0; i < std::lround(rest_s / 0.013); ++i) {
       const double step_deg = 0.013 * servo.speed_deg_s;
       at_deg += std::clamp(to_deg - at_deg, -step_deg, step_deg);
-      text += fmt::format("{:.3f};{:.1f};{:.3f}\n", time_s, to_deg, at_deg - servo.low_deg + noise(random));
+      text += fmt::format("{:.3f};{:.1f};{:.3f}\n", time_s, to_deg, at_deg - servo.low_deg + noise());
       time_s += 0.013;
     }
   }
@@ -56,13 +55,12 @@ TEST_F(Importing, KeepsTwoThirdsOfTheRestsOfAFastServo) {
 
 /// A sine of 1 Hz that is sent 25 times a second and recorded 500 times: nothing is ever at rest.
 TEST_F(Importing, TakesACommandThatIsHeldForAFewRowsAsMotion) {
-  std::mt19937_64 random(4);
-  std::normal_distribution<double> noise(0.0, 0.01);
+  test::Noise noise(0.01, 4);
   const auto sine = [](double time_s) { return 20.0 * std::sin(2.0 * units::kPi * time_s); };
   std::string text = "time [s];commanded [deg];measured [deg]\n";
   for (int i = 0; i < 3000; ++i) {
     const double time_s = 0.002 * i, sent_s = 0.04 * (i / 20);
-    text += fmt::format("{:.3f};{:.4f};{:.3f}\n", time_s, sine(sent_s), sine(time_s - 0.03) + noise(random));
+    text += fmt::format("{:.3f};{:.4f};{:.3f}\n", time_s, sine(sent_s), sine(time_s - 0.03) + noise());
   }
   const Imported imported = Take(text);
   ASSERT_EQ(imported.readings.size(), 150u) << "of each value that is new";

@@ -24,16 +24,8 @@ void ExpectHidden(const nlohmann::json& errors, const std::string& key, double v
 
 TEST(Samples, OfAPoseTableHaveItsLocations) {
   const nlohmann::json errors = ErrorsOfSample("pose_table.csv");
-  for (const auto& [key, value] : {std::pair{"XOC", 12.0},
-                                   {"YOC", -7.0},
-                                   {"AOC", 9.0},
-                                   {"BOC", -3.0},
-                                   {"YOA", 8.0},
-                                   {"ZOA", -5.0},
-                                   {"BOA", 4.0},
-                                   {"COA", -6.0},
-                                   {"COY", 5.0},
-                                   {"BOZ", -4.0},
+  for (const auto& [key, value] : {std::pair{"XOC", 12.0}, {"YOC", -7.0}, {"AOC", 9.0}, {"BOC", -3.0}, {"YOA", 8.0},
+                                   {"ZOA", -5.0}, {"BOA", 4.0}, {"COA", -6.0}, {"COY", 5.0}, {"BOZ", -4.0},
                                    {"AOZ", 3.0}})
     ExpectHidden(errors, key, value, 0.3);
 }

@@ -53,12 +53,8 @@ const std::vector<hidden::Clamped> kClamped = {{30.0, 60.0},  {30.0, 300.0},  {1
                                                {600.0, 60.0}, {3600.0, 60.0}, {3600.0, 600.0}, {7200.0, 300.0}};
 
 hidden::TwinOptions TwinOptionsOf(const Amount& amount, double rho_from, double rho_to) {
-  hidden::TwinOptions options;
-  options.magnitudes = options.seeds = amount.is_long ? 2 : 1;
-  options.first_seed = amount.first_seed;
-  options.rho_from = rho_from;
-  options.rho_to = rho_to;
-  return options;
+  return {.magnitudes = amount.is_long ? 2 : 1, .seeds = amount.is_long ? 2 : 1, .first_seed = amount.first_seed,
+          .rho_from = rho_from, .rho_to = rho_to};
 }
 
 }  // namespace
