@@ -138,7 +138,10 @@ std::optional<LagGuess> GuessLag(const EncoderRun& encoder) {
   const std::optional<Late> delay = courses.Best(true), lag = courses.Best(false);
   if (!delay && !lag) return {};
   Late best = !lag || (delay && delay->left <= lag->left) ? *delay : *lag;
-  if (const Late both = courses.Both(best); courses.IsClearly(both, best)) best = both;
+  constexpr double kPart = 0.05;  // of both: less is what lies between the readings
+  const Late both = courses.Both(best);
+  const auto [less_s, more_s] = std::minmax(both.guess.delay_s, both.guess.lag_s);
+  if (less_s > kPart * more_s && courses.IsClearly(both, best)) best = both;
   if (!(best.left < kLittle * courses.At(0.0, 0.0).left)) return {};
   Eigen::MatrixXd by_speed(c.Readings(), 2);
   by_speed << encoder.BesideSetUps(c.reference_rad), encoder.BesideSetUps(c.velocity_rad_s);

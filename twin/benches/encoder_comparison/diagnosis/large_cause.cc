@@ -208,7 +208,7 @@ double Deviations(const EffectSettings& effect) {
     if (u == effect.finding.u.end() || !(u->second > 0.0)) continue;
     const double none = p.name == "level" ? 1.0 : 0.0;
     most = std::max(most, std::abs(effect.parameters.at(p.name) - none) / u->second);
-    if (p.name != "offset_sin") break;  // the others say how, not how much
+    if (p.name != "offset_sin" && p.name != "delay") break;  // the others say how, not how much
   }
   return most;
 }

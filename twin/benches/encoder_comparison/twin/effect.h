@@ -34,6 +34,8 @@ class AngleEffect {
   virtual double ShaftError_rad(const AngleMoment& /*moment*/) const { return 0.0; }
   /// Of the device's reading, beyond that of the reference's.
   virtual double Age_s(const AngleMoment& /*moment*/) const { return 0.0; }
+  /// Of what is read, beside where the shaft is: a device that follows it.
+  virtual double Behind_rad(const AngleMoment& /*moment*/) const { return 0.0; }
   virtual void AlterSignals(SignalState& /*signals*/) const {}
   /// By how much the device's sine rises later than the scenario says.
   virtual double SignalZero_rad() const { return 0.0; }

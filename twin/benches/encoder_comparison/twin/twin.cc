@@ -107,10 +107,13 @@ void EncoderTwin::Advance(const AngleMoment& moment) {
 
 /// Of the device's shaft, as its scale counts. What is read late shows the errors of where the shaft was.
 double EncoderTwin::ShaftAngle_rad(const AngleMoment& moment) const {
-  double age_s = 0.0;
-  for (const auto& effect : effects_) age_s += effect->Age_s(moment);
+  double age_s = 0.0, behind_rad = 0.0;
+  for (const auto& effect : effects_) {
+    age_s += effect->Age_s(moment);
+    behind_rad += effect->Behind_rad(moment);
+  }
   AngleMoment read = moment;
-  read.read_rad = moment.shaft_rad + (age_s != 0.0 ? course_.Beside_rad(moment, age_s) : 0.0);
+  read.read_rad = moment.shaft_rad + behind_rad + (age_s != 0.0 ? course_.Beside_rad(moment, age_s) : 0.0);
   double device_rad = read.read_rad + MountingOf_rad(moment.setup);
   for (const auto& effect : effects_) device_rad += effect->ShaftError_rad(read);
   return device_rad;

@@ -29,7 +29,7 @@ class Lagging : public Late {
     last_ = moment;
     has_begun_ = true;
   }
-  double ShaftError_rad(const AngleMoment&) const override { return behind_rad_; }
+  double Behind_rad(const AngleMoment&) const override { return behind_rad_; }
 
  private:
   model::FirstOrderLag follower_;

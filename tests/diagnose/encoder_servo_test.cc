@@ -1,0 +1,159 @@
+#include <gmock/gmock.h>
+
+#include "tests/diagnose/encoder_record.h"
+#include "twin/benches/encoder_comparison/diagnosis/few_counts.h"
+#include "twin/benches/encoder_comparison/diagnosis/large_cause.h"
+#include "twin/benches/encoder_comparison/diagnosis/memory.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+using namespace lab;
+
+namespace servo {
+
+/// An axis that goes to and fro the faster the longer, and a device that is behind its command.
+double Chirp_deg(double t_s) {
+  return 17.0 * std::sin(2.0 * units::kPi * (0.2 * t_s + 0.03 * t_s * t_s));
+}
+
+/// x' = (command - x) / lag in steps of 0.1 ms.
+Answer Followed(double lag_s, double gain, unsigned seed) {
+  constexpr double kStep_s = 1e-4, kEvery_s = 0.018;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise_deg(0.0, 0.02);
+  Record record;
+  double at_deg = 0.0, next_s = 0.0;  // it has been in motion for some seconds
+  int direction = 1, pass = 0;
+  for (double t_s = -3.0; t_s < 14.0; t_s += kStep_s) {
+    at_deg += (Chirp_deg(t_s) - at_deg) * kStep_s / lag_s;
+    if (t_s < next_s) continue;
+    next_s += kEvery_s;
+    const int now = Chirp_deg(t_s + 1e-4) > Chirp_deg(t_s - 1e-4) ? 1 : -1;
+    pass += now == direction ? 0 : 1;
+    direction = now;
+    record.Add(t_s, Chirp_deg(t_s), gain * at_deg + noise_deg(random), direction, pass);
+  }
+  return Ask(record);
+}
+
+TEST(EncoderServo, ThatFollowsWithALagOfFirstOrderHasATimeConstant) {
+  for (const double lag_s : {0.11, 0.19}) {
+    const Answer answer = Followed(lag_s, 1.0, 91);
+    SCOPED_TRACE(answer.Words());
+    EXPECT_TRUE(answer.Names("latency"));
+    // Straight lines from reading to reading: the square of 18 ms beside the period.
+    EXPECT_NEAR(answer.Value("latency", "time_constant"), lag_s, 0.02 * lag_s);
+    EXPECT_EQ(answer.Value("latency", "delay"), 0.0);
+    EXPECT_FALSE(answer.Names("backlash") || answer.Names("hysteresis"));
+  }
+}
+
+TEST(EncoderServo, ThatFallsShortAsWellHasAScale) {
+  const Answer answer = Followed(0.15, 0.93, 92);
+  SCOPED_TRACE(answer.Words());
+  EXPECT_NEAR(answer.Value("latency", "time_constant"), 0.15, 0.004);
+  EXPECT_NEAR(answer.Value("scale", "ratio"), -0.07, 0.004);
+}
+
+LargeCause Latency(double delay_s, double lag_s) {
+  LargeCause latency;
+  latency.effect.name = "latency";
+  latency.effect.parameters = {{"delay", delay_s}, {"time_constant", lag_s}};
+  return latency;
+}
+
+TEST(EncoderServo, ThatIsBehindDoesNotLeadAsWell) {
+  EXPECT_TRUE(LeadsBesideLatency("backlash", -0.1, {Latency(0.0, 0.2)}));
+  EXPECT_TRUE(LeadsBesideLatency("hysteresis", -0.1, {Latency(0.2, 0.0)}));
+  EXPECT_FALSE(LeadsBesideLatency("backlash", 0.1, {Latency(0.0, 0.2)}));
+  EXPECT_FALSE(LeadsBesideLatency("backlash", -0.1, {Latency(-0.2, 0.0)})) << "then it leads";
+  EXPECT_FALSE(LeadsBesideLatency("backlash", -0.1, {}));
+}
+
+TEST(EncoderServo, OfWhichARestSwingsHasTheMemoryOfASwing) {
+  constexpr int kPeriod = 60;
+  std::vector<int> pass(1200, 0);
+  Eigen::VectorXd swing(1200);
+  for (int i = 0; i < swing.size(); ++i) swing[i] = std::sin(2.0 * units::kPi * i / kPeriod);
+  // 1 + 2 (sum of cosines over a quarter of a period): the period over pi. By neighbours alone it would be 364.
+  EXPECT_NEAR(MemoryOf(swing, pass), kPeriod / units::kPi, 1.5);
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> step;
+  Eigen::VectorXd steady(1200);
+  steady[0] = 0.0;
+  for (int i = 1; i < steady.size(); ++i) steady[i] = 0.5 * steady[i - 1] + step(random);
+  EXPECT_NEAR(MemoryOf(steady, pass), 3.0, 0.6) << "(1 + 0.5) / (1 - 0.5)";
+}
+
+}  // namespace servo
+
+namespace part_of_turn {
+
+/// Once through a part of a turn.
+template <class Error>
+Answer Table(double range_deg, int readings, double noise_deg, unsigned seed, Error error_deg) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0.0, noise_deg);
+  Record record;
+  record.kind = "stops";
+  for (int k = 0; k < readings; ++k) {
+    const double at_deg = range_deg * k / (readings - 1);
+    record.Add(k, at_deg, at_deg + error_deg(at_deg) + noise(random), 1, 0);
+  }
+  return Ask(record);
+}
+
+TEST(EncoderPart, ACurveThatHasNotRepeatedIsNoOrder) {
+  for (const unsigned seed : {61u, 62u, 63u, 64u}) {
+    const Answer answer = Table(112.0, 25, 0.5, seed, [](double a_deg) { return 6.0 * (1.0 - std::exp(-a_deg / 17.0)) + 3e-4 * a_deg * a_deg; });
+    EXPECT_FALSE(answer.Names("periodic")) << seed << ": " << answer.Words();
+  }
+}
+
+TEST(EncoderPart, AnOrderThatIsSharperThanAnyCurveIsOne) {
+  const Answer answer = Table(110.0, 60, 0.01, 65, [](double a_deg) { return 0.5 * std::cos(5.0 * a_deg * units::deg); });
+  EXPECT_TRUE(answer.Names("periodic")) << answer.Words();
+  EXPECT_EQ(answer.Value("periodic", "order"), 5.0) << answer.Words();
+}
+
+}  // namespace part_of_turn
+
+namespace coarse {
+
+constexpr double kCount_deg = 0.0043;
+
+/// A servo between two places, three means of each rest; where it comes to rest is one count or the next.
+Record Rests(unsigned seed) {
+  std::mt19937_64 random(seed);
+  Record record;
+  record.kind = "stops";
+  for (int rest = 0; rest < 9; ++rest) {
+    const double to_deg = rest % 2 == 0 ? 0.8 : -0.8;
+    const double counts = std::round(to_deg / kCount_deg) + static_cast<double>(random() % 2) * (to_deg > 0.0 ? -1.0 : 1.0);
+    for (int k = 0; k < 3; ++k) record.Add(1.25 * rest + 0.3 * k, to_deg, kCount_deg * counts, rest % 2 == 0 ? 1 : -1, rest);
+  }
+  return record;
+}
+
+TEST(EncoderCounts, OfAServoAtRestAreNoSlipAndNoReversal) {
+  for (const unsigned seed : {3u, 4u, 5u, 6u, 7u, 8u}) {
+    const Answer answer = Ask(Rests(seed));
+    for (const Cause& cause : answer.run.diagnosis.causes) EXPECT_LT(cause.probability, 0.8) << seed << ": " << answer.Words();
+    EXPECT_LT(answer.run.diagnosis.unknown.probability, 0.8) << seed << ": " << answer.Words();
+  }
+}
+
+TEST(EncoderCounts, AreSeenInAFewValuesThatComeAgain) {
+  Eigen::VectorXd shown(8);
+  shown << 7, 7, 8, 8, -100, -100, -101, -101;
+  EXPECT_NEAR(CountOfFewValues(0.0031 * shown), 0.0031, 1e-9);
+  shown[4] = shown[5] = -100.4;
+  EXPECT_EQ(CountOfFewValues(0.0031 * shown), 0.0) << "not whole counts apart";
+  shown << 7, 7.1, 8, 8.1, -100, -100.1, -101, -101.1;
+  EXPECT_EQ(CountOfFewValues(0.0031 * shown), 0.0) << "none comes again";
+}
+
+}  // namespace coarse
+}  // namespace
+}  // namespace twinbench::diagnose::encoder
