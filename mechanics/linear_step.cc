@@ -32,15 +32,19 @@ static_assert(sizeof(Column) == sizeof(StackPropagator::State));
   return sum;
 }
 
-}  // namespace
-
 /// A third of a driven stack's time goes here.
-[[gnu::target_clones("avx512f", "avx2", "default")]] void LinearStep(const StepMatrices& matrices, const double* from,
+[[gnu::target_clones("avx512f", "avx2", "default")]] void StepArrays(const StepMatrices& matrices, const double* from,
                                                                      const double* input, double* to) {
   const Column carried = SumOfColumns(matrices.transition, from, 2 * kCoordinates);
   const Column driven = SumOfColumns(matrices.drive, input, matrices.inputs);
   const Column sum{carried.top + driven.top, carried.middle + driven.middle, carried.bottom + driven.bottom};
   std::memcpy(to, &sum, sizeof(Column));
+}
+
+}  // namespace
+
+void LinearStep(const StepMatrices& matrices, const double* from, const double* input, double* to) {
+  StepArrays(matrices, from, input, to);
 }
 
 }  // namespace twinbench::mechanics

@@ -43,9 +43,9 @@ LargeSearch::Beside LargeSearch::AskBeside(const std::vector<LargeCause>& causes
 void LargeSearch::MoveBesideTheRest() {
   if (large_.causes.empty()) return;
   Beside beside = AskBeside(large_.causes);
-  // Against a shape that takes it back a cause may have any size.
-  constexpr double kMostMore = 2.0;
-  if (fit_->PowerOf(fit_->Run().run.residual - fit_->Shown(beside.asked.effects)) > kMostMore * std::max(power_, kLarge * kLarge)) return;
+  // Against a shape that takes it back a cause may have any size: it leaves no more than there is without it.
+  const Eigen::VectorXd& all = fit_->Run().run.residual;
+  if (fit_->PowerOf(all - fit_->Shown(beside.asked.effects)) > fit_->PowerOf(all)) return;
   const double more = std::sqrt(fit_->Memory(beside.left));
   for (EffectSettings& effect : beside.asked.effects) {
     for (auto& [parameter, u] : effect.finding.u) u *= more;
