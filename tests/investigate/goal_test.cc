@@ -83,6 +83,10 @@ TEST(Goal, OfWhatARunStatesTheStandardsPartIsNotCountedAgain) {
   Certainty certainty(ParseGoal("target.ez 0.2arcsec"));
   certainty.Add(results);
   EXPECT_NEAR(certainty.u(), 0.3, 1e-12);
+  results["separation"]["u_parts"] = {{"noise", 0.36}, {"prior", 0.64}};
+  Certainty believed(ParseGoal("target.ez 0.2arcsec"));
+  believed.Add(results);
+  EXPECT_NEAR(believed.u(), 0.3, 1e-12) << "nor what was believed before";
 }
 
 // Five of the score's seeds in a row: a scale, an ellipticity, a slip, a drift, an order of a half. More of them by

@@ -4,7 +4,9 @@
 #include "twin/plan/advice.h"
 #include "twin/plan/harmonics.h"
 #include "twin/plan/next_run.h"
+#include "twin/plan/outlook.h"
 #include "twin/plan/unseen.h"
+#include "twin/report/plan_advice.h"
 
 namespace twinbench::plan {
 namespace {
@@ -27,6 +29,43 @@ TEST(GainsOf, AddsThePrecisionOfAWholeProgrammeOnlyOfWhatIsWanted) {
   ASSERT_EQ(gains.size(), 2u);
   EXPECT_NEAR(gains[0].ratio, std::sqrt(0.5), 1e-12) << "dy is determined by one of the three";
   EXPECT_NEAR(gains[1].ratio, 0.5, 1e-12) << "four runs";
+}
+
+/// Of u = 0.5 the standard has 0.4: of three further runs the other 0.3 grows half as large, and 0.4 stays.
+TEST(GainsOf, WhatAllRunsShareIsNoMeanOfThem) {
+  const auto run = nlohmann::json::parse(R"({"ez_arcsec": [0], "u_ez_arcsec": [0.5], "u_parts": {"noise": 0.36, "standard": 0.64}})");
+  const std::vector<Gain> gains = GainsOf(run, {&run, &run, &run}, "");
+  ASSERT_EQ(gains.size(), 1u);
+  EXPECT_NEAR(gains.front().ratio, std::hypot(0.15, 0.4) / 0.5, 1e-12);
+  EXPECT_NEAR(gains.front().precision_before, 0.25 / 0.09, 1e-12);
+  EXPECT_NEAR(gains.front().precision, 3.0 * 0.25 / 0.09, 1e-12);
+  const auto shared = nlohmann::json::parse(R"({"ez_arcsec": [0], "u_ez_arcsec": [0.5], "u_parts": {"standard": 1.0}})");
+  EXPECT_EQ(GainsOf(shared, {&shared, &shared}, "").front().ratio, 1.0);
+}
+
+/// A run without the standard's error is as good alone as with one that has it.
+TEST(GainsOf, AreNoneBelowThatOfTheBestRun) {
+  const auto with = nlohmann::json::parse(R"({"ez_arcsec": [0], "u_ez_arcsec": [0.5], "u_parts": {"noise": 0.01, "model": 0.99}})");
+  const auto without = nlohmann::json::parse(R"({"ez_arcsec": [0], "u_ez_arcsec": [0.05], "u_parts": {"noise": 1.0}})");
+  EXPECT_LE(GainsOf(with, without, "").front().ratio, 0.1 + 1e-12);
+}
+
+TEST(GainsOf, TheNextMountingHasAnOffsetOfItsOwn) {
+  const auto run = nlohmann::json::parse(R"({"setups": [{"offset_um": 1.0, "u_offset_um": 0.1}], "dy_um": 0.0, "u_dy_um": 1.0})");
+  const std::vector<Gain> gains = GainsOf(run, run, "");
+  ASSERT_EQ(gains.size(), 1u);
+  EXPECT_EQ(gains.front().name, "dy_um");
+}
+
+TEST(OutlookOf, AListByRankIsNoResultOfItsOwn) {
+  const auto results = nlohmann::json::parse(R"({"errors": {"scale": {"value_um_m": 2.0, "u_um_m": 0.1}},
+      "ranked": [{"error": "scale", "value": 2.0, "u": 0.1}, {"error": "squareness", "value": 5.0, "u": 3.0}]})");
+  const Outlook outlook = OutlookOf(results, 2, 10.0);
+  ASSERT_EQ(outlook.results.size(), 1u);
+  EXPECT_EQ(outlook.results.front().name, "errors.scale_um_m");
+}
+
+TEST(GainsOf, OnlyOfWhatIsWanted) {
   EXPECT_EQ(GainsOf(kBefore, kBefore, "target.dy").size(), 1u);
   EXPECT_EQ(GainsOf(kBefore, kBefore, "dy_um").size(), 1u);
   EXPECT_TRUE(GainsOf(kBefore, kBefore, "get.dy").empty());
@@ -40,6 +79,26 @@ TEST(Rank, PutsWhatBuysMostPerMinuteFirst) {
   advice[1].minutes = 10.0;
   Rank(advice);
   EXPECT_EQ(advice.front().minutes, 10.0);
+}
+
+TEST(Rank, WhatWasNotComputedPutsNobodyBehind) {
+  std::vector<Advice> advice(2);
+  advice[0].of_results_bit = 1.0;
+  advice[0].of_causes_bit = 30.0;
+  advice[1].of_results_bit = 2.0;
+  advice[1].causes_unknown = "not computed";
+  for (Advice& one : advice) one.minutes = 10.0;
+  Rank(advice);
+  EXPECT_EQ(advice.front().of_results_bit, 2.0) << "by results alone, which are known of both";
+  const std::string text = report::PlanAdviceText(advice);
+  EXPECT_THAT(text, testing::HasSubstr("not computed"));
+  EXPECT_THAT(text, testing::Not(testing::HasSubstr(" 0.0 "))) << text;
+  EXPECT_TRUE(report::PlanAdviceJson(advice)[0].at("of_causes_bit").is_null());
+}
+
+TEST(MinutesText, IsNotNoneOfAShortRun) {
+  EXPECT_EQ(report::MinutesText(10.0 / 60.0), "0.17");
+  EXPECT_EQ(report::MinutesText(36.4), "36");
 }
 
 TEST(BiasesOf, AreChangesByTheirOwnUncertaintyTheMostFirstAndAPhaseComesRound) {

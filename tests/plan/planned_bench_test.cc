@@ -75,6 +75,27 @@ TEST(Mendings, AreConfirmedByTheTwinEachAndEvery) {
   }
 }
 
+/// What `check` says of the scenario that is proposed: nothing that was not lost before, and nothing of what it is proposed for.
+TEST(Mendings, LoseNothingOfWhatTheyAreProposedForOnAnyBench) {
+  const std::pair<const char*, std::vector<std::string>> cases[] = {
+      {"turntable_shifts.toml", {"turntable_procedure.positions=12", "turntable_procedure.shifts_teeth=[0]", "turntable_procedure.tilts_arcsec=[40]"}},
+      {"encoder_mountings.toml", {"encoder_procedure.stops_per_turn=12", "encoder_procedure.mounting_deg=[0, 180]"}},
+      {"encoder_heads.toml", {"encoder_procedure.heads_deg=[0, 180]"}}};
+  for (const auto& [file, sets] : cases) {
+    const Scenario scenario = LoadScenario(test::ScenarioPath(file), sets);
+    const LookedAt own = ResultsOfOwn(scenario);
+    ASSERT_FALSE(own.planned.outlook.lost.empty()) << file;
+    const std::vector<report::Mending> mendings = Mendings(scenario, own, without_end);
+    ASSERT_FALSE(mendings.empty()) << file;
+    for (const report::Mending& mending : mendings) {
+      for (const std::string& lost : OutlookAtOnce(Altered(scenario, mending.run.sets)).lost) {
+        EXPECT_THAT(own.planned.outlook.lost, testing::Contains(lost)) << file << " " << mending.run.name;
+        EXPECT_THAT(mending.mended, testing::Not(testing::Contains(lost))) << file << " " << mending.run.name;
+      }
+    }
+  }
+}
+
 TEST(Mendings, AreNotNeededByARunThatSeparatesAllThatCanBe) {
   const Scenario scenario = SmallRotary("reseat");
   EXPECT_TRUE(Mendings(scenario, LookAtOwn(scenario), without_end).empty());
@@ -224,7 +245,7 @@ TEST(AdviceOf, IsInOrderOfWhatItBuysAndAProgrammeKeepsItsBudget) {
   LookAtCauses(scenario, without_end, others);
   const std::vector<plan::Advice> advice = AdviceOf(own, others, "target.ez");
   ASSERT_GT(advice.size(), 5u);
-  for (std::size_t k = 1; k < advice.size(); ++k) EXPECT_GE(advice[k - 1].PerMinute(), advice[k].PerMinute());
+  for (std::size_t k = 1; k < advice.size(); ++k) EXPECT_GE(RateOf(advice[k - 1], advice), RateOf(advice[k], advice));
   const auto again = std::ranges::find_if(advice, [](const plan::Advice& one) { return one.run.name == "again"; });
   ASSERT_EQ(again->gains.size(), 1u);
   EXPECT_NEAR(again->gains.front().ratio, std::sqrt(0.5), 1e-9);  // the same run once more
@@ -233,6 +254,10 @@ TEST(AdviceOf, IsInOrderOfWhatItBuysAndAProgrammeKeepsItsBudget) {
   EXPECT_GT(programme.best.cost, 300.0);
   EXPECT_GT(programme.best.efficiency, 0.5);
   EXPECT_LE(programme.best.efficiency, 1.0);
+  EXPECT_FALSE(programme.is_of_results_alone);
+  EXPECT_GT(programme.gains.size(), 5u) << "the goal chooses the runs, which tell of other results too";
+  others.back().is_looked_at_for_causes = false;
+  EXPECT_TRUE(ProgrammeOf(own, others, {600.0, true}, "target.ez").is_of_results_alone);
 }
 
 }  // namespace

@@ -94,6 +94,7 @@ TEST_F(BadInput, InAWordOrANumberIsToldWithWhatWouldBeRightAndTheNearest) {
   EXPECT_THAT(Refusal({"help", "scenario", "lasr"}), HasSubstr("the nearest is laser"));
   EXPECT_THAT(Refusal({"completion", "fihs"}), HasSubstr("the nearest is fish"));
   EXPECT_THAT(Refusal({"plan", "small.toml", "--goal", "taget.ez"}), HasSubstr("the nearest is target.ez"));
+  EXPECT_THAT(Refusal({"plan", "small.toml", "--goal", "separaton.reference.ez"}), HasSubstr("the nearest is separation.reference.ez"));
   EXPECT_THAT(Refusal({"score", "run", "--aganst", "x"}), HasSubstr("the nearest is --against"));
   EXPECT_THAT(Refusal({"score", "run", "--table", "x"}), testing::Not(HasSubstr("nearest"))) << "no option is meant by it";
   EXPECT_THAT(Refusal({"completion", "tcsh"}), testing::Not(HasSubstr("nearest"))) << "nor any of these words";

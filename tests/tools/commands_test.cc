@@ -62,6 +62,16 @@ TEST_F(Commands, APlanWithoutTimeSaysWhatItLeavesOutAndStillProposesARun) {
   EXPECT_THAT(Succeed({"plan", "small.toml", "--cpu", "0.001"}), HasSubstr("With --cpu 0 all is."));
 }
 
+TEST_F(Commands, APlanThatCannotBeWrittenIsRefusedBeforeItIsMade) {
+  Write("small.toml", kSmall);
+  for (const char* option : {"-o", "--json"}) {
+    const Outcome plan = Call({"plan", "small.toml", "--cpu", "0.001", option, "no/such/next.toml"});
+    EXPECT_EQ(plan.exit_code, 1);
+    EXPECT_THAT(plan.err, HasSubstr("there is no folder no/such"));
+    EXPECT_THAT(plan.err, testing::Not(HasSubstr("the run as the scenario says"))) << "nothing was computed";
+  }
+}
+
 TEST_F(Commands, TheListHasEveryBenchAndEffect) {
   const nlohmann::json benches = Json({"list", "--json"}).at("benches");
   ASSERT_EQ(benches.size(), BenchFormats().size());

@@ -98,7 +98,10 @@ void PrintTrial(const CampaignOptions& options, JsonAnswer& answer) {
 
 void Campaign(const CampaignOptions& options, JsonAnswer& answer) {
   if (options.trial) return PrintTrial(options, answer);
-  for (const std::string& output : {options.csv, answer.to()}) RequireOutput(output, {options.study, options.table});
+  for (const std::string& output : {options.csv, answer.to()}) {
+    RequireOutput(output, {options.study, options.table});
+    RequireFolderOf(output);
+  }
   if (!options.show.empty() && !options.web) throw InputError("--show", "there is no page to show it on", "--web PORT beside it");
   if (options.table.empty()) throw InputError("campaign", "there is no table", "-o TABLE.sqlite, or --trial N");
   campaign::Ranks ranks(options.mpi || campaign::Ranks::StartedAsOneOfMany());

@@ -75,7 +75,7 @@ std::string Counted(std::size_t count, const std::string& what) {
 
 std::string DurationOf(double minutes, const std::optional<double>& on_real_bench) {
   if (std::isnan(minutes)) return "how long it takes is not known: the recording beside it has no clock";
-  return fmt::format("{:.0f} minutes by the procedure's clock{}", minutes, WithProofs(minutes, on_real_bench));
+  return fmt::format("{} minutes by the procedure's clock{}", report::MinutesText(minutes), WithProofs(minutes, on_real_bench));
 }
 
 /// Loading is the check: whatever is wrong is told with its line. The twin is built as well, for a scenario may

@@ -96,8 +96,10 @@ void WriteExtended(const DiagnoseOptions& options, const RecordedRun& run, const
 }
 
 void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
-  for (const std::string& output : {answer.to(), options.extended})
+  for (const std::string& output : {answer.to(), options.extended}) {
     RequireOutput(output, {options.source, options.scenario});
+    RequireFolderOf(output);
+  }
   const RecordedRun run = LoadPlausibleRun(options.source, options.scenario, options.overrides);
   CheckExcluded(options.excluded, run.scenario.bench);
   diagnose::DiagnoseOptions how;

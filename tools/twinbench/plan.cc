@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,6 +9,7 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
+#include "tools/twinbench/next_scenarios.h"
 #include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/plan_advice.h"
@@ -23,6 +23,7 @@
 #include "twin/core/nearest_key.h"
 #include "twin/report/plan_text.h"
 #include "twin/report/sound.h"
+#include "twin/uncertainty/quantities.h"
 
 namespace twinbench::tools {
 namespace {
@@ -81,15 +82,23 @@ report::PlanBudget BudgetOf(const PlanWish& options) {
                                 : report::PlanBudget{options.minutes, false};
 }
 
+/// As goals are written, without the unit: "separation.target.ez", "target.ez", "ez".
+void AddEnds(const std::string& kind, std::vector<std::string>& ends) {
+  const std::string unit = uncertainty::UnitOf(kind);
+  for (std::string end = kind.substr(0, unit.empty() ? kind.size() : kind.size() - unit.size() - 1);; end = end.substr(end.find('.') + 1)) {
+    ends.push_back(end);
+    if (end.find('.') == std::string::npos) return;
+  }
+}
+
 /// @throws InputError if no result of the run is the one that shall count, naming those there are.
 void RequireGoal(const std::string& goal, const LookedAt& own) {
   if (!plan::GainsOf(own.results, own.results, goal).empty()) return;
   std::vector<std::string> kinds;
   for (const plan::Gain& gain : plan::GainsOf(own.results, own.results, "")) kinds.push_back(gain.name);
   if (goal.empty()) return;
-  std::vector<std::string> ends;  // as goals are written: "target.ez"
-  for (const std::string& kind : kinds)
-    ends.push_back(kind.substr(kind.find('.') + 1, kind.rfind('_') - kind.find('.') - 1));
+  std::vector<std::string> ends;
+  for (const std::string& kind : kinds) AddEnds(kind, ends);
   throw InputError("--goal " + goal, "the run gives no such result",
                    fmt::format("one of {}; the nearest is {}", fmt::join(kinds, ", "), Nearest(goal, ends)));
 }
@@ -107,6 +116,7 @@ Planned PlanOf(const PlanWish& options, const Scenario& scenario) {
   std::vector<LookedAt> others = LookAtOthers(scenario, setups, kOfOtherRuns, patience);
   planned.effects = EffectsIn(scenario, readings, patience);
   own.isolability = planned.effects.seen.isolability;
+  own.is_looked_at_for_causes = true;
   planned.mendings = Mendings(scenario, own, patience);
   LookAtCauses(scenario, patience, others);
   planned.runs = RunsOf(scenario, own, setups, others, patience);
@@ -140,39 +150,6 @@ std::vector<plan::NextRun> NextOf(const PlanWish& options, const Planned& planne
   return runs.empty() ? std::vector<plan::NextRun>{planned.advice.front().run} : runs;
 }
 
-/// "next.toml" of a single run; "next-1-of-3-again.toml" and so on of several.
-std::string FileOf(const std::string& output, std::size_t at, std::size_t count, const plan::NextRun& run) {
-  if (count == 1) return output;
-  const std::filesystem::path path(output);
-  const std::size_t digits = std::to_string(count).size();
-  const std::string name = fmt::format("{}-{:0{}}-of-{}-{}{}", path.stem().string(), at + 1, digits, count,
-                                       run.name, path.extension().string());
-  return (path.parent_path() / name).string();
-}
-
-/// Before anything is written: every file of the programme.
-void RequireFreeNext(const PlanOptions& options, const std::vector<plan::NextRun>& runs) {
-  if (options.next.empty()) return;
-  for (std::size_t k = 0; k < runs.size(); ++k)
-    RequireFree(FileOf(options.next, k, runs.size(), runs[k]), {options.scenario}, options.force);
-}
-
-/// Each run of several has a seed of its own: a run that is made twice is another draw of chance on the twin.
-std::vector<Scenario> ScenariosOf(const std::vector<plan::NextRun>& runs, const Scenario& scenario) {
-  std::vector<Scenario> next;
-  for (const plan::NextRun& run : runs) {
-    next.push_back(Altered(scenario, run.sets));
-    next.back().seed += next.size() - 1;
-  }
-  return next;
-}
-
-void WriteNext(const std::string& output, const std::vector<plan::NextRun>& runs, const Scenario& scenario) {
-  const std::vector<Scenario> next = ScenariosOf(runs, scenario);
-  for (std::size_t k = 0; k < runs.size(); ++k)
-    WriteFileAtOnce(FileOf(output, k, runs.size(), runs[k]), WriteScenario(next[k]));
-}
-
 nlohmann::json JsonOf(const std::string& title, const Planned& planned, const std::vector<plan::NextRun>& next) {
   nlohmann::json json = report::PlanJson(planned.runs, planned.effects);
   json["title"] = title;
@@ -201,7 +178,7 @@ std::string TextOf(const Planned& planned) {
   std::string text = report::PlanText(planned.runs, planned.effects, planned.programme) + "\n" +
                      report::MendingText(planned.mendings);
   if (!with_proofs.empty())
-    text += fmt::format("\nAs the scenario says it takes {:.0f} minutes{}.\n", minutes, with_proofs);
+    text += fmt::format("\nAs the scenario says it takes {} minutes{}.\n", report::MinutesText(minutes), with_proofs);
   if (!planned.mendings.empty()) text += "\n";
   text += report::PlanAdviceText(planned.advice);
   if (!planned.programme.empty()) text += "\n" + report::ProgrammeText(planned.programme.front());
@@ -211,10 +188,11 @@ std::string TextOf(const Planned& planned) {
 void Plan(const PlanOptions& options, JsonAnswer& answer) {
   RequireFree(options.next, {options.scenario}, options.force);
   RequireOutput(answer.to(), {options.scenario});
+  for (const std::string& output : {options.next, answer.to()}) RequireFolderOf(output);
   const Scenario scenario = LoadScenario(options.scenario, options.overrides);
   const Planned planned = PlanOf(options, scenario);
   const std::vector<plan::NextRun> next = NextOf(options, planned);
-  RequireFreeNext(options, next);
+  RequireFreeNext(options.next, next, options.scenario, options.force);
   if (!options.next.empty()) WriteNext(options.next, next, scenario);
   answer.Write(JsonOf(scenario.title, planned, next));
   if (!answer.IsOnStdout()) fmt::print("{}", report::WithoutNoNumbers(TextOf(planned)));

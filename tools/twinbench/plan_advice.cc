@@ -1,7 +1,6 @@
 #include "tools/twinbench/plan_advice.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +17,7 @@
 #include "twin/core/estimator.h"
 #include "twin/diagnose/isolability.h"
 #include "twin/diagnose/joint_design.h"
+#include "twin/plan/mended.h"
 #include "twin/report/evaluation.h"
 #include "twin/uncertainty/quantities.h"
 
@@ -85,57 +85,6 @@ std::vector<plan::NextRun> Additions(const plan::ShiftDesign& design) {
   return runs;
 }
 
-std::vector<std::string> Without(const std::vector<std::string>& all, const std::vector<std::string>& others) {
-  std::vector<std::string> left;
-  for (const std::string& one : all) {
-    if (std::ranges::count(others, one) == 0) left.push_back(one);
-  }
-  return left;
-}
-
-/// What the own run loses and the other one does not.
-std::vector<std::string> MendedBy(const LookedAt& own, const LookedAt& other) {
-  if (!other.planned.outlook.separates) return {};
-  return Without(own.planned.outlook.lost, other.planned.outlook.lost);
-}
-
-/// "reference dx,dy orders +2, -4" is a part of "reference dy": the same words, components separated by commas.
-bool IsPartOf(const std::string& part, const std::string& what) {
-  if (part.starts_with(what)) return true;
-  const std::size_t space = what.find(' ');
-  if (space == std::string::npos || !part.starts_with(what.substr(0, space + 1))) return false;
-  const std::string component = what.substr(space + 1);
-  const std::string components = "," + part.substr(space + 1, part.find(' ', space + 1) - space - 1) + ",";
-  return components.find("," + component + ",") != std::string::npos;
-}
-
-/// The same in words; what comes back in parts only names those.
-std::vector<std::string> MendedInWords(const LookedAt& own, const LookedAt& other) {
-  std::vector<std::string> words;
-  for (const std::string& what : MendedBy(own, other)) {
-    std::vector<std::string> stays;
-    bool is_lost = false;
-    for (const std::string& part : other.planned.outlook.lost) {
-      is_lost = is_lost || IsPartOf(what, part);
-      if (IsPartOf(part, what)) stays.push_back(part);
-    }
-    if (is_lost) continue;  // as a part of more
-    words.push_back(stays.empty() ? what : fmt::format("{} but for {}", what, fmt::join(stays, "; ")));
-  }
-  return words;
-}
-
-/// Of that, what the other one loses no part of but those that a good set of shifts loses too: "target dy" is not mended
-/// where "target dy orders 2, 4" stays.
-std::vector<std::string> WhollyMendedBy(const LookedAt& own, const LookedAt& other, const LookedAt& good) {
-  std::vector<std::string> mended = MendedBy(own, other);
-  const std::vector<std::string> stays = Without(other.planned.outlook.lost, good.planned.outlook.lost);
-  std::erase_if(mended, [&stays](const std::string& what) {
-    return std::ranges::any_of(stays, [&what](const std::string& part) { return IsPartOf(part, what); });
-  });
-  return mended;
-}
-
 /// Curves that only the other one determines, with their uncertainty.
 std::vector<plan::Gain> AddedBy(const LookedAt& own, const LookedAt& other) {
   std::vector<plan::Gain> added;
@@ -162,28 +111,48 @@ double MeanU(const report::Mending& mending) {
   return std::exp(sum / static_cast<double>(mending.certain.size()));
 }
 
-/// A scalar of precision for each kind of results, in units of the own run's.
+/// Of what is not shared by all runs: for each kind of results what the other run adds, in units of 1 / u^2 of the own.
 Eigen::VectorXd PrecisionOf(const LookedAt& own, const LookedAt& other, const std::string& goal) {
   const std::vector<plan::Gain> all = plan::GainsOf(own.results, own.results, goal);
   const std::vector<plan::Gain> gains = plan::GainsOf(own.results, other.results, goal);
   Eigen::VectorXd precision = Eigen::VectorXd::Zero(std::ssize(all));
   for (std::size_t k = 0; k < all.size(); ++k) {
     const auto gain = std::ranges::find(gains, all[k].name, &plan::Gain::name);
-    if (gain != gains.end()) precision[static_cast<Eigen::Index>(k)] = 1.0 / (gain->ratio * gain->ratio) - 1.0;
+    if (gain != gains.end()) precision[static_cast<Eigen::Index>(k)] = gain->precision;
   }
   return precision;
 }
 
+/// Before any other run; 1 of what all runs share alone, so that there is no kind without.
+Eigen::VectorXd PrecisionBefore(const LookedAt& own, const std::string& goal) {
+  const std::vector<plan::Gain> all = plan::GainsOf(own.results, own.results, goal);
+  Eigen::VectorXd precision(std::ssize(all));
+  std::ranges::transform(all, precision.begin(), [](const plan::Gain& gain) { return gain.precision_before > 0.0 ? gain.precision_before : 1.0; });
+  return precision;
+}
+
 /// Causes in their plausible sizes, and behind them kinds of results.
-Eigen::MatrixXd JointInformation(const LookedAt& own, const LookedAt& other, const std::string& goal) {
+/// @param causes  So many; 0: results alone.
+Eigen::MatrixXd JointInformation(const LookedAt& own, const LookedAt& other, const std::string& goal, Eigen::Index causes) {
   const Eigen::VectorXd precision = PrecisionOf(own, other, goal);
-  const Eigen::Index causes = own.isolability ? std::ssize(own.isolability->causes) : 0;
   Eigen::MatrixXd joint = Eigen::MatrixXd::Zero(causes + precision.size(), causes + precision.size());
-  if (own.isolability && other.isolability)
+  if (causes > 0 && other.isolability)
     joint.topLeftCorner(causes, causes) = diagnose::InformationInOrder(*other.isolability, *own.isolability);
   joint.bottomRightCorner(precision.size(), precision.size()) = precision.asDiagonal();
   return joint;
 }
+
+/// Of the own run, and what is thought of the causes' sizes before.
+Eigen::MatrixXd KnownBefore(const LookedAt& own, const std::string& goal, Eigen::Index causes) {
+  Eigen::MatrixXd known = JointInformation(own, own, goal, causes);
+  known.diagonal().head(causes).array() += 1.0;
+  const Eigen::VectorXd of_results = PrecisionBefore(own, goal);
+  known.diagonal().tail(of_results.size()) = of_results;
+  return known;
+}
+
+constexpr const char* kWantOfTime = "not computed: --cpu";
+constexpr const char* kNoCauses = "-";  // in the own run, to be compared with
 
 plan::Advice AdviceOf(const LookedAt& own, const LookedAt& other, const std::string& goal) {
   plan::Advice advice;
@@ -192,9 +161,10 @@ plan::Advice AdviceOf(const LookedAt& own, const LookedAt& other, const std::str
   advice.minutes = other.planned.outlook.minutes;
   advice.gains = plan::GainsOf(own.results, other.results, goal);
   advice.of_results_bit = plan::MeanGain_bit(advice.gains);
-  advice.mended = MendedInWords(own, other);
+  advice.mended = plan::MendedInWords(own.planned.outlook, other.planned.outlook);
   advice.closest = kNaN;
-  if (!own.isolability || !other.isolability) return advice;
+  if (!own.isolability || !other.is_looked_at_for_causes) advice.causes_unknown = own.isolability ? kWantOfTime : kNoCauses;
+  if (!advice.causes_unknown.empty() || !other.isolability) return advice;
   advice.broken = diagnose::BrokenTies(*own.isolability, *other.isolability);
   advice.shown = diagnose::NewlyShown(*own.isolability, *other.isolability);
   const Eigen::MatrixXd before = own.isolability->information;
@@ -238,6 +208,7 @@ LookedAt LookAtOwn(const Scenario& scenario) {
   LookedAt own = ResultsOfOwn(scenario);
   const Scenario quick = Quick(scenario);
   own.isolability = ShownBy(quick, ReadingsOfTwin(quick));
+  own.is_looked_at_for_causes = true;
   return own;
 }
 
@@ -264,6 +235,7 @@ void LookAtCauses(const Scenario& scenario, Patience& patience, std::vector<Look
     Doing("what another run would tell of causes: " + other.run.words);
     const Scenario quick = Quick(Altered(scenario, other.run.sets));
     other.isolability = ShownBy(quick, ReadingsOfTwin(quick));
+    other.is_looked_at_for_causes = true;
   }
 }
 
@@ -273,7 +245,7 @@ std::vector<report::Mending> Mendings(const Scenario& scenario, const LookedAt& 
   constexpr double kOfMendings = 0.75;
   const auto results_of = [&](const plan::NextRun& run) { return LookAtResults(run, scenario); };
   const std::vector<LookedAt> good = EachThatCanBe({GoodRun(*design)}, "the run at a good set of shifts", kOfMendings, patience, results_of);
-  if (good.empty() || MendedBy(own, good.front()).empty()) return {};
+  if (good.empty() || plan::MendedBy(own.planned.outlook, good.front().planned.outlook).empty()) return {};
   std::vector<report::Mending> mendings;
   const auto looked = EachThatCanBe(Additions(*design), "an addition that may separate what is lost", kOfMendings, patience, results_of);
   for (const LookedAt& other : looked) {
@@ -281,7 +253,8 @@ std::vector<report::Mending> Mendings(const Scenario& scenario, const LookedAt& 
     mending.run = other.run;
     mending.minutes = other.planned.outlook.minutes;
     mending.more_minutes = mending.minutes - own.planned.outlook.minutes;
-    mending.mended = WhollyMendedBy(own, other, good.front());
+    mending.dof = other.planned.outlook.dof;
+    mending.mended = plan::WhollyMendedBy(own.planned.outlook, other.planned.outlook, good.front().planned.outlook);
     mending.certain = AddedBy(own, other);
     if (!mending.mended.empty()) mendings.push_back(std::move(mending));
   }
@@ -303,23 +276,24 @@ report::PlannedProgramme ProgrammeOf(const LookedAt& own, const std::vector<Look
                                      const report::PlanBudget& budget, const std::string& goal) {
   report::PlannedProgramme programme;
   programme.budget = budget;
+  programme.runs.push_back(AdviceOf(own, own, goal));
+  for (const LookedAt& other : others) programme.runs.push_back(AdviceOf(own, other, goal));
+  programme.is_of_results_alone = !std::ranges::all_of(programme.runs, &plan::Advice::IsWhole);
+  const Eigen::Index causes = programme.is_of_results_alone ? 0 : std::ssize(own.isolability->causes);
   std::vector<plan::RunInformation> runs;
   const auto add = [&](const LookedAt& looked) {
-    programme.runs.push_back(AdviceOf(own, looked, goal));
-    const plan::Advice& advice = programme.runs.back();
-    runs.push_back({budget.in_readings ? advice.readings : advice.minutes, JointInformation(own, looked, goal)});
+    const plan::Advice& advice = programme.runs[runs.size()];
+    runs.push_back({budget.in_readings ? advice.readings : advice.minutes, JointInformation(own, looked, goal, causes)});
   };
   add(own);
   for (const LookedAt& other : others) add(other);
-  Eigen::MatrixXd known = runs.front().information;
-  const Eigen::Index causes = own.isolability ? std::ssize(own.isolability->causes) : 0;
-  known.diagonal().head(causes).array() += 1.0;  // what is thought of their sizes before
+  const Eigen::MatrixXd known = KnownBefore(own, goal, causes);
   programme.unknowns = static_cast<int>(known.rows());
   programme.best = plan::BestProgramme(known, runs, budget.amount, plan::Optimality::kD);
   programme.least_trace = plan::BestProgramme(known, runs, budget.amount, plan::Optimality::kA);
   std::vector<const nlohmann::json*> made(static_cast<std::size_t>(programme.best.times.front()), &own.results);
   for (std::size_t k = 0; k < others.size(); ++k) made.insert(made.end(), static_cast<std::size_t>(programme.best.times[k + 1]), &others[k].results);
-  programme.gains = plan::GainsOf(own.results, made, goal);
+  programme.gains = plan::GainsOf(own.results, made, "");
   return programme;
 }
 

@@ -25,7 +25,8 @@ struct LookedAt {
   plan::NextRun run;
   report::PlannedRun planned;
   nlohmann::json results;
-  std::shared_ptr<const diagnose::Isolability> isolability;  // null: its evaluation tells of no causes
+  std::shared_ptr<const diagnose::Isolability> isolability = nullptr;  // null: its evaluation tells of no causes
+  bool is_looked_at_for_causes = false;                                // else there was no time for it
 };
 
 /// The scenario's own run on the quick twin; its results alone.

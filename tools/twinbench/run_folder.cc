@@ -49,6 +49,12 @@ void RequireOutput(const std::string& output, const std::vector<std::string>& in
     throw InputError(output, "this is a record or another database and would be overwritten", "another name");
 }
 
+void RequireFolderOf(const std::string& output) {
+  std::error_code ignored;
+  const fs::path folder = fs::path(output).parent_path();
+  if (!folder.empty() && !fs::is_directory(folder, ignored)) throw BenchError(output + ": cannot be written, there is no folder " + folder.string());
+}
+
 std::string JsonText(const nlohmann::json& json) {
   return json.dump(1) + "\n";
 }

@@ -38,6 +38,11 @@ void RequireRoomFor(const RunFolder& folder, const Scenario& scenario);
 /// @throws InputError if the output is one of them, a record, or a folder.
 void RequireOutput(const std::string& output, const std::vector<std::string>& inputs);
 
+/// Before long work, of a file that the user named in no folder of the command's own making.
+/// @param output  Empty or "-": no file.
+/// @throws BenchError if the folder that it is to lie in is not there.
+void RequireFolderOf(const std::string& output);
+
 /// JSON as a file of a run has it; what a command answers goes through JsonAnswer.
 std::string JsonText(const nlohmann::json& json);
 

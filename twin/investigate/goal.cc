@@ -9,6 +9,7 @@
 #include <regex>
 
 #include "twin/core/errors.h"
+#include "twin/uncertainty/every_run.h"
 #include "twin/uncertainty/quantities.h"
 
 namespace twinbench::investigate {
@@ -23,15 +24,9 @@ bool Ends(const std::string& name, const std::string& wanted) {
   return name.size() == wanted.size() || name[name.size() - wanted.size() - 1] == '.';
 }
 
-constexpr const char* kRounding = "quantisation";  // of type B, but another one in every reading
-
-/// Of u^2, without what an instrument's standard or the model has in it: another run has the same again.
-double OwnShare(const uncertainty::Quantity& q) {
-  double own = 1.0;
-  for (const uncertainty::Part& part : q.parts) {
-    if (part.name == "standard" || part.name == "second order" || part.name == "model") own -= part.share;
-  }
-  return own;
+/// What a standard or a model has in it, and every constant of the scenario.
+bool IsShared(const uncertainty::Source& source) {
+  return source.type == 'B' && source.name != uncertainty::kRoundingOfReadings;
 }
 
 }  // namespace
@@ -57,7 +52,7 @@ bool Certainty::IsOfGoal(const std::string& quantity) const {
 Certainty::Precision Certainty::Of(const nlohmann::json& results) const {
   Precision precision;
   for (const uncertainty::Quantity& q : uncertainty::QuantitiesOf(results)) {
-    const double own = OwnShare(q);
+    const double own = uncertainty::OwnShare(q);
     if (IsOfGoal(q.name) && q.u > 0.0 && own > 0.0) precision[q.name] = 1.0 / (own * q.u * q.u);
   }
   return precision;
@@ -69,7 +64,7 @@ void Certainty::Share(const std::vector<uncertainty::Budget>& budgets) {
   for (const uncertainty::Budget& budget : budgets) {
     if (!IsOfGoal(budget.quantity.name)) continue;
     for (const uncertainty::Source& source : budget.sources) {
-      if (source.type != 'B' || source.name == kRounding) continue;
+      if (!IsShared(source)) continue;
       shared_[budget.quantity.name] += source.u * source.u;
       shared_by_source_[source.name] += source.u * source.u;
     }

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "twin/uncertainty/every_run.h"
 #include "twin/uncertainty/quantities.h"
 
 namespace twinbench::plan {
@@ -20,32 +23,72 @@ bool IsWanted(const std::string& kind, const std::string& wanted) {
   return false;
 }
 
-struct Variances {
-  double before = 0.0, after = 0.0;
+/// One number as several runs give it: their mean by what each has anew is as certain as that, and by what they share as certain as the
+/// mean of it.
+class Together {
+ public:
+  void Add(const uncertainty::Quantity& q) {
+    const double variance = q.u * q.u, own = uncertainty::OwnShare(q) * variance;
+    best_ = std::min(best_, variance);
+    if (!(own > 0.0)) return;
+    precision_ += 1.0 / own;
+    shared_ += std::sqrt(variance - own) / own;
+  }
+  /// Never more than that of the best of them.
+  double Variance() const {
+    if (precision_ == 0.0) return best_;
+    const double shared = shared_ / precision_;
+    return std::min(best_, 1.0 / precision_ + shared * shared);
+  }
+  double OwnVariance() const { return precision_ > 0.0 ? 1.0 / precision_ : 0.0; }
+
+ private:
+  double best_ = std::numeric_limits<double>::infinity();
+  double precision_ = 0.0, shared_ = 0.0;
+};
+
+struct OfKind {
+  double before = 0.0, after = 0.0;          // variances
+  double own_before = 0.0, own_after = 0.0;  // of what is not shared
+  bool in_both = false;
+
+  void Add(const Together& first, const Together& all) {
+    before += first.Variance();
+    after += all.Variance();
+    own_before += first.OwnVariance();
+    own_after += all.OwnVariance();
+  }
+  Gain As(const std::string& name) const {
+    Gain gain{name, std::sqrt(after / before)};
+    if (!(own_before > 0.0)) return gain;
+    gain.precision_before = before / own_before;
+    gain.precision = before / own_after - gain.precision_before;
+    return gain;
+  }
 };
 
 }  // namespace
 
 std::vector<Gain> GainsOf(const nlohmann::json& before, const std::vector<const nlohmann::json*>& more, const std::string& wanted) {
-  std::map<std::string, double> of_more;  // inverse variances
+  std::multimap<std::string, uncertainty::Quantity> of_more;
   for (const nlohmann::json* run : more)
-    for (const uncertainty::Quantity& q : uncertainty::QuantitiesOf(*run))
-      if (q.u > 0.0) of_more[q.name] += 1.0 / (q.u * q.u);
-  std::map<std::string, Variances> kinds;
-  std::map<std::string, bool> in_both;
+    for (uncertainty::Quantity& q : uncertainty::QuantitiesOf(*run))
+      if (q.u > 0.0) of_more.emplace(q.name, std::move(q));
+  std::map<std::string, OfKind> kinds;
   for (const uncertainty::Quantity& q : uncertainty::QuantitiesOf(before)) {
     const std::string kind = uncertainty::KindOf(q.name);
-    if (!(q.u > 0.0) || !IsWanted(kind, wanted)) continue;
-    const auto other = of_more.find(q.name);
-    const bool has = other != of_more.end();
-    const double variance = q.u * q.u;
-    in_both[kind] = in_both[kind] || has;
-    kinds[kind].before += variance;
-    kinds[kind].after += has ? 1.0 / (1.0 / variance + other->second) : variance;
+    if (!(q.u > 0.0) || !uncertainty::OutlastsTheRun(q.name) || !IsWanted(kind, wanted)) continue;
+    Together first;
+    first.Add(q);
+    Together all = first;
+    const auto [from, to] = of_more.equal_range(q.name);
+    for (auto other = from; other != to; ++other) all.Add(other->second);
+    kinds[kind].Add(first, all);
+    kinds[kind].in_both = kinds[kind].in_both || from != to;
   }
   std::vector<Gain> gains;
-  for (const auto& [kind, sum] : kinds) {
-    if (in_both[kind]) gains.push_back({kind, std::sqrt(sum.after / sum.before)});
+  for (const auto& [name, kind] : kinds) {
+    if (kind.in_both) gains.push_back(kind.As(name));
   }
   return gains;
 }
@@ -60,8 +103,15 @@ double MeanGain_bit(const std::vector<Gain>& gains) {
   return bits;
 }
 
+double RateOf(const Advice& one, const std::vector<Advice>& among) {
+  const bool all_whole = std::ranges::all_of(among, &Advice::IsWhole);
+  const double bought_bit = all_whole ? one.Bought_bit() : one.BoughtOfResults_bit();
+  return one.minutes > 0.0 ? bought_bit / one.minutes : 0.0;
+}
+
 void Rank(std::vector<Advice>& advice) {
-  std::ranges::stable_sort(advice, std::ranges::greater{}, &Advice::PerMinute);
+  const std::vector<Advice> among = advice;
+  std::ranges::stable_sort(advice, std::ranges::greater{}, [&among](const Advice& one) { return RateOf(one, among); });
 }
 
 }  // namespace twinbench::plan

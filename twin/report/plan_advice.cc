@@ -46,6 +46,26 @@ std::string BoughtLines(const plan::Advice& one) {
   return lines;
 }
 
+/// What it adds, the separation's own first; nothing has an uncertainty where no reading is more than the unknowns are.
+std::string CertainLines(const Mending& one) {
+  constexpr std::size_t kMostListed = 4;
+  if (one.certain.empty()) return one.dof > 0.0 ? "" : "no u: no degrees of freedom are left";
+  std::vector<plan::Gain> certain = one.certain;
+  std::ranges::stable_partition(certain, [](const plan::Gain& result) { return result.name.starts_with("separation."); });
+  std::string lines;
+  for (std::size_t k = 0; k < std::min(kMostListed, certain.size()); ++k)
+    lines += fmt::format("{}u({}) = {:.3g}", lines.empty() ? "" : "\n", certain[k].name, certain[k].ratio);
+  if (certain.size() > kMostListed) lines += fmt::format("\nand {} more", certain.size() - kMostListed);
+  return lines;
+}
+
+std::string OfCausesText(const plan::Advice& one) {
+  return one.IsWhole() ? fmt::format("{:.1f}", one.of_causes_bit) : one.causes_unknown;
+}
+
+/// Under a table in which some run is not known whole.
+constexpr const char* kResultsAlone = "Here the rate is of results alone: what some runs tell of causes is not known.\n";
+
 Json RunJson(const plan::NextRun& run) {
   return {{"name", run.name}, {"words", run.words}, {"sets", run.sets}};
 }
@@ -82,22 +102,24 @@ std::string RunsOf(const PlannedProgramme& programme, const plan::Programme& of)
 }
 
 std::vector<std::string> ProgrammeRow(const char* name, const PlannedProgramme& programme, const plan::Programme& of) {
-  return {name, RunsOf(programme, of), fmt::format("{:.0f}", of.cost), fmt::format("{:.1f} %", 100.0 * of.efficiency),
+  return {name, RunsOf(programme, of), programme.budget.in_readings ? fmt::format("{:.0f}", of.cost) : MinutesText(of.cost), fmt::format("{:.1f} %", 100.0 * of.efficiency),
           of.exhaustive ? "all" : "by exchange"};
 }
 
 }  // namespace
+
+std::string MinutesText(double minutes) {
+  constexpr double kWhole_min = 10.0;
+  return std::abs(minutes) < kWhole_min ? fmt::format("{:.2g}", minutes) : fmt::format("{:.0f}", minutes);
+}
 
 std::string MendingText(const std::vector<Mending>& mendings) {
   constexpr std::size_t kMostShown = 6;
   std::vector<std::vector<std::string>> rows;
   for (const Mending& one : mendings) {
     if (rows.size() == kMostShown) break;
-    std::string certain;
-    for (const plan::Gain& result : one.certain)
-      certain += fmt::format("{}u({}) = {:.3g}", certain.empty() ? "" : "\n", result.name, result.ratio);
     rows.push_back({one.run.words + "\n" + SetLines(one.run), fmt::format("{:+.0f}", one.more_minutes),
-                    fmt::format("{}", fmt::join(one.mended, "\n")), certain});
+                    fmt::format("{}", fmt::join(one.mended, "\n")), CertainLines(one)});
   }
   const std::string table =
       TextTable({{"what would separate it"}, {"minutes more", true}, {"separates"}, {"how certain it gets"}}, rows,
@@ -122,16 +144,18 @@ Json MendingJson(const std::vector<Mending>& mendings) {
 std::string PlanAdviceText(const std::vector<plan::Advice>& advice) {
   std::vector<std::vector<std::string>> rows;
   for (const plan::Advice& one : advice)
-    rows.push_back({one.run.name, BoughtLines(one), fmt::format("{}", one.readings), fmt::format("{:.0f}", one.minutes),
-                    RatioText(one), fmt::format("{:.1f}", one.of_causes_bit), fmt::format("{:.3f}", one.PerMinute())});
-  return TextTable({{"another run"},
-                    {"what it is and buys"},
-                    {"readings", true},
-                    {"minutes", true},
-                    {"u after/before", true},
-                    {"information about causes [bit]", true},
-                    {"information rate [bit/min]", true}},
-                   rows, kAdviceWidth);
+    rows.push_back({one.run.name, BoughtLines(one), fmt::format("{}", one.readings), MinutesText(one.minutes), RatioText(one),
+                    OfCausesText(one), fmt::format("{:.3f}", plan::RateOf(one, advice))});
+  const std::string table = TextTable({{"another run"},
+                                       {"what it is and buys"},
+                                       {"readings", true},
+                                       {"minutes", true},
+                                       {"u after/before", true},
+                                       {"causes [bit]", true},
+                                       {"rate [bit/min]", true}},
+                                      rows, kAdviceWidth);
+  return table + "causes: information about their sizes; rate: information rate, of results and causes\n" +
+         (std::ranges::all_of(advice, &plan::Advice::IsWhole) ? "" : kResultsAlone);
 }
 
 Json PlanAdviceJson(const std::vector<plan::Advice>& advice) {
@@ -145,9 +169,9 @@ Json PlanAdviceJson(const std::vector<plan::Advice>& advice) {
     entry["tells_apart"] = one.broken;
     entry["shows"] = one.shown;
     entry["of_results_bit"] = one.of_results_bit;
-    entry["of_causes_bit"] = one.of_causes_bit;
+    entry["of_causes_bit"] = one.IsWhole() ? Json(one.of_causes_bit) : Json();
     entry["closest_causes_sigma"] = FiniteOrNull(one.closest);
-    entry["bit_per_minute"] = one.PerMinute();
+    entry["bit_per_minute"] = plan::RateOf(one, advice);
     list.push_back(std::move(entry));
   }
   return list;
@@ -155,7 +179,8 @@ Json PlanAdviceJson(const std::vector<plan::Advice>& advice) {
 
 std::string ProgrammeText(const PlannedProgramme& programme) {
   const std::string unit = programme.budget.in_readings ? "readings" : "minutes";
-  return fmt::format("Beside the scenario's own run, within {:.0f} {}:\n", programme.budget.amount, unit) +
+  return fmt::format("Beside the scenario's own run, within {:.0f} {}{}:\n", programme.budget.amount, unit,
+                     programme.is_of_results_alone ? ", by results alone (what some runs tell of causes is not known)" : "") +
          TextTable({{""}, {"runs"}, {unit, true}, {"efficiency at least", true}, {"looked at"}},
                    {ProgrammeRow("D-optimal", programme, programme.best),
                     ProgrammeRow("A-optimal", programme, programme.least_trace)},
@@ -166,6 +191,7 @@ Json ProgrammeJson(const PlannedProgramme& programme) {
   return {{"budget", programme.budget.amount},
           {"in", programme.budget.in_readings ? "readings" : "minutes"},
           {"unknowns", programme.unknowns},
+          {"by_results_alone", programme.is_of_results_alone},
           {"u_after_over_before", GainsJson(programme.gains, "ratio")},
           {"d_optimal", TimesJson(programme, programme.best)},
           {"a_optimal", TimesJson(programme, programme.least_trace)}};

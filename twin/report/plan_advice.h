@@ -9,11 +9,15 @@
 
 namespace twinbench::report {
 
+/// "0.17", "2.9", "36": a short run takes no 0 minutes.
+std::string MinutesText(double minutes);
+
 /// An addition that separates what a run does not.
 struct Mending {
   plan::NextRun run;
   double more_minutes = 0.0;         // than the scenario's own
   double minutes = 0.0;
+  double dof = 0.0;                  // that are left then
   std::vector<std::string> mended;   // "target dy"
   std::vector<plan::Gain> certain;   // results that it adds: name, and in `ratio` their rms u in the unit of the name
 };
@@ -29,8 +33,9 @@ struct PlannedProgramme {
   std::vector<plan::Advice> runs;  // what was chosen from, in the order of `best.times`
   plan::Programme best;            // D-optimal
   plan::Programme least_trace;     // A-optimal
-  std::vector<plan::Gain> gains;   // of the scenario's own run and the D-optimal ones together
+  std::vector<plan::Gain> gains;   // of all results: the scenario's own run and the D-optimal ones together
   int unknowns = 0;
+  bool is_of_results_alone = false;  // what some run tells of causes is not known
 };
 
 std::string MendingText(const std::vector<Mending>& mendings);

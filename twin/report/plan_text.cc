@@ -38,7 +38,7 @@ double UncertaintyOf(const Outlook& outlook, const std::string& name) {
 std::string RunsTable(const std::vector<PlannedRun>& runs) {
   std::vector<std::vector<std::string>> rows;
   for (const PlannedRun& run : runs)
-    rows.push_back({run.words, fmt::format("{}", run.outlook.readings), fmt::format("{:.0f}", run.outlook.minutes),
+    rows.push_back({run.words, fmt::format("{}", run.outlook.readings), MinutesText(run.outlook.minutes),
                     DegreesOfFreedom(run.outlook.dof), run.shifts ? FactorText(run.shifts->mean_factor) : "",
                     run.shifts ? FactorText(run.shifts->worst_factor) : "",
                     run.shifts ? FactorText(run.shifts->least_possible) : "",

@@ -8,6 +8,7 @@
 
 #include "twin/core/scenario_schema.h"
 #include "twin/core/scenario_uncertainty.h"
+#include "twin/uncertainty/every_run.h"
 
 namespace twinbench::uncertainty {
 namespace {
@@ -46,13 +47,11 @@ Unit UnitOfKey(Scenario scenario, const std::string& key) {
 
 /// What the estimator states, part by part.
 std::vector<Source> OfReadings(const Quantity& quantity) {
-  static const std::vector<std::string> not_by_statistics = {"quantisation", "standard", "second order", "model", "prior"};
   if (quantity.parts.empty()) return {{kReadings, 'A', quantity.u, quantity.dof}};
   std::vector<Source> sources;
   for (const Part& part : quantity.parts) {
-    const bool is_b = std::ranges::find(not_by_statistics, part.name) != not_by_statistics.end();
-    if (part.share > 0.0)
-      sources.push_back({part.name, is_b ? 'B' : 'A', quantity.u * std::sqrt(part.share), quantity.dof});
+    const char type = IsNotByStatistics(part.name) ? 'B' : 'A';
+    if (part.share > 0.0) sources.push_back({part.name, type, quantity.u * std::sqrt(part.share), quantity.dof});
   }
   return sources;
 }

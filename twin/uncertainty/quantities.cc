@@ -70,7 +70,7 @@ class Collector {
     if (const auto own = node.find("dof"); own != node.end() && own->is_number()) context.dof = own->get<double>();
     if (const auto own = node.find("u_parts"); own != node.end()) context.parts = &*own;
     for (const auto& [key, value] : node.items()) {
-      if (key == "diagnosis") continue;
+      if (key == "diagnosis" || key == "ranked") continue;
       const auto u = node.find(UncertaintyKey(node, key));
       if (u != node.end()) {
         Add(value, *u, NameOf(path, key), {context.dof, context.PartsOf(key)}, 0);

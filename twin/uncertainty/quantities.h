@@ -24,8 +24,8 @@ struct Quantity {
 
 /// All that the document states, in its order: `x` beside `u_x` (numbers, lists of numbers or objects of either),
 /// `value` beside `u`, `value_um` beside `u_um`. Its name is its path, without `value`: "setups[0].offset_x_um".
-/// What is null was not determined and is NaN. What a diagnosis adds is no result of the measurement and is left
-/// out.
+/// What is null was not determined and is NaN. What a diagnosis adds is no result of the measurement, and a list in order of size
+/// (`ranked`) says once more what stands elsewhere, in several units: both are left out.
 ///
 /// `u_parts` holds for all below it until another comes: {"noise": 0.7, "quantisation": 0.3}, a share of u^2 or a
 /// list of them by the place in the innermost list; or the same for single keys, {"ez_arcsec": {"noise": ...}}.
