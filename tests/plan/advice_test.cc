@@ -6,6 +6,7 @@
 #include "twin/plan/next_run.h"
 #include "twin/plan/outlook.h"
 #include "twin/plan/unseen.h"
+#include "twin/report/not_separable_text.h"
 #include "twin/report/plan_advice.h"
 
 namespace twinbench::plan {
@@ -99,6 +100,14 @@ TEST(Rank, WhatWasNotComputedPutsNobodyBehind) {
 TEST(MinutesText, IsNotNoneOfAShortRun) {
   EXPECT_EQ(report::MinutesText(10.0 / 60.0), "0.17");
   EXPECT_EQ(report::MinutesText(36.4), "36");
+}
+
+TEST(NotSeparableText, IsOneParagraphOfOrdersThatAreLostAlike) {
+  const std::string text = report::NotSeparableText(
+      {"both tables, order 1: seen alike", "both tables, order 2: seen alike", "both tables, order 9: seen alike", "target dx: no detector", "order 3: the sum", "order 4: folded"}, 100);
+  EXPECT_EQ(text,
+            "Not separable: both tables, orders 1-2, 9: seen alike\nNot separable: target dx: no detector\n"
+            "Not separable: order 3: the sum\nNot separable: order 4: folded\n");
 }
 
 TEST(BiasesOf, AreChangesByTheirOwnUncertaintyTheMostFirstAndAPhaseComesRound) {

@@ -28,6 +28,7 @@ TEST(Mended, IsWhatIsWholeBesideAPartOfSomethingElse) {
   EXPECT_THAT(WhollyMendedBy(own, Losing({"target dy orders 2, 4"}), good), ElementsAre("reference dx"));
   EXPECT_THAT(WhollyMendedBy(own, Losing({"target dy order 0"}), Losing({"target dy order 0"})), ElementsAre("target dy", "reference dx"))
       << "no shifts tell order 0";
+  EXPECT_THAT(MendedInWords(own, Losing({"target dy order 0"})), ElementsAre("target dy but for order 0", "reference dx"));
 }
 
 TEST(Mended, IsOrder1WhereOrder12Stays) {

@@ -255,6 +255,7 @@ std::vector<report::Mending> Mendings(const Scenario& scenario, const LookedAt& 
     mending.more_minutes = mending.minutes - own.planned.outlook.minutes;
     mending.dof = other.planned.outlook.dof;
     mending.mended = plan::WhollyMendedBy(own.planned.outlook, other.planned.outlook, good.front().planned.outlook);
+    mending.words = plan::MendedInWords(own.planned.outlook, other.planned.outlook);
     mending.certain = AddedBy(own, other);
     if (!mending.mended.empty()) mendings.push_back(std::move(mending));
   }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <iterator>
 
 namespace twinbench::plan {
 namespace {
@@ -39,6 +38,11 @@ bool StaysOf(const Outlook& own, const std::string& stays, const std::string& wh
          std::ranges::none_of(own.lost, [&stays](const std::string& lost) { return IsPartOf(stays, lost); });
 }
 
+/// "order 0" of "target dy order 0", beside "target dy".
+std::string PartIn(const std::string& part, const std::string& what) {
+  return part.starts_with(what + " ") ? part.substr(what.size() + 1) : part;
+}
+
 }  // namespace
 
 std::vector<std::string> MendedBy(const Outlook& own, const Outlook& other) {
@@ -52,7 +56,9 @@ std::vector<std::string> MendedInWords(const Outlook& own, const Outlook& other)
   for (const std::string& what : MendedBy(own, other)) {
     if (std::ranges::any_of(lost, [&what](const std::string& more) { return IsPartOf(what, more); })) continue;
     std::vector<std::string> stays;
-    std::ranges::copy_if(lost, std::back_inserter(stays), [&](const std::string& part) { return StaysOf(own, part, what); });
+    for (const std::string& part : lost) {
+      if (StaysOf(own, part, what)) stays.push_back(PartIn(part, what));
+    }
     words.push_back(stays.empty() ? what : fmt::format("{} but for {}", what, fmt::join(stays, "; ")));
   }
   return words;

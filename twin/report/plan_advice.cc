@@ -119,7 +119,7 @@ std::string MendingText(const std::vector<Mending>& mendings) {
   for (const Mending& one : mendings) {
     if (rows.size() == kMostShown) break;
     rows.push_back({one.run.words + "\n" + SetLines(one.run), fmt::format("{:+.0f}", one.more_minutes),
-                    fmt::format("{}", fmt::join(one.mended, "\n")), CertainLines(one)});
+                    fmt::format("{}", fmt::join(one.words, "\n")), CertainLines(one)});
   }
   const std::string table =
       TextTable({{"what would separate it"}, {"minutes more", true}, {"separates"}, {"how certain it gets"}}, rows,

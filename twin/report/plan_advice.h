@@ -19,6 +19,7 @@ struct Mending {
   double minutes = 0.0;
   double dof = 0.0;                  // that are left then
   std::vector<std::string> mended;   // "target dy"
+  std::vector<std::string> words = {};  // the same with what no shifts tell of it: "target dy but for order 0"
   std::vector<plan::Gain> certain;   // results that it adds: name, and in `ratio` their rms u in the unit of the name
 };
 

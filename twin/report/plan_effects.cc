@@ -111,8 +111,8 @@ std::string DetectableText(const PlannedEffects& effects) {
     if (!IsShown(isolability, other) && std::isfinite(other.smallest.value))
       rows.push_back({diagnose::Place(other.effect, other.where), diagnose::NameAndSize(other.smallest), "", ""});
   }
-  return TextTable({{"effect"}, {"smallest detectable"}, {"undetected bias"}, {"may be mistaken for"}}, rows,
-                   kEffectsWidth);
+  const std::string table = TextTable({{"effect"}, {"smallest detectable"}, {"undetected bias"}, {"may be mistaken for"}}, rows, kEffectsWidth);
+  return table.empty() ? "" : table + "smallest detectable: by a test for that cause alone (80 % at 0.1 %); a diagnosis, which has to choose among all, needs more\n";
 }
 
 std::string NeverText(const Isolability& isolability) {

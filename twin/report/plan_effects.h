@@ -16,7 +16,7 @@ struct PlannedEffects {
   std::string refused = {};          // why no cause would be found, whatever its size; then there is nothing else
 };
 
-/// Sizes from which causes would be found, what each moves if it is left unseen at that size, and which others it
+/// Sizes from which a test for a cause alone would find it, what each moves if it is left unseen at that size, and which others it
 /// may be taken for.
 std::string PlannedEffectsText(const PlannedEffects& effects);
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "twin/report/compensation_text.h"
+#include "twin/report/not_separable_text.h"
 #include "twin/report/spoken_keys.h"
 #include "twin/report/text_table.h"
 
@@ -42,7 +44,7 @@ std::string RunsTable(const std::vector<PlannedRun>& runs) {
                     DegreesOfFreedom(run.outlook.dof), run.shifts ? FactorText(run.shifts->mean_factor) : "",
                     run.shifts ? FactorText(run.shifts->worst_factor) : "",
                     run.shifts ? FactorText(run.shifts->least_possible) : "",
-                    run.shifts && !run.shifts->lost.empty() ? ShiftList(run.shifts->lost) : ""});
+                    run.shifts && !run.shifts->lost.empty() ? OrderRanges(run.shifts->lost) : ""});
   return TextTable({{"run"},
                     {"readings", true},
                     {"minutes", true},
@@ -137,12 +139,6 @@ Json HarmonicsJson(const Outlook& outlook) {
   return list;
 }
 
-std::string NotSeparableText(const Outlook& outlook) {
-  std::string text;
-  for (const std::string& lost : outlook.not_separable) text += Paragraph("Not separable: ", lost, 4, kPlanWidth);
-  return text;
-}
-
 }  // namespace
 
 std::string ShiftList(const std::vector<int>& shifts) {
@@ -155,7 +151,7 @@ std::string PlanText(const std::vector<PlannedRun>& runs, const PlannedEffects& 
   if (shifted)
     text += "variance: of one table's harmonic over that of the mean of all mountings\n";
   text += "\n" + CertaintyTable(runs, programme) + "\n" + HarmonicsOfRun(runs.front().outlook);
-  return text + NotSeparableText(runs.front().outlook) + "\n" + PlannedEffectsText(effects);
+  return text + NotSeparableText(runs.front().outlook.not_separable, kPlanWidth) + "\n" + PlannedEffectsText(effects);
 }
 
 std::string OutlookText(const Outlook& outlook) {
@@ -164,7 +160,7 @@ std::string OutlookText(const Outlook& outlook) {
     rows.push_back({WithWords(result.name), fmt::format("{}", result.values), UText(result.name, result.rms_u), UText(result.name, 2.0 * result.rms_u)});
   const std::string table = TextTable({{"result"}, {"values", true}, {"expected u (rms)", true}, {"U = 2 u", true}}, rows, kPlanWidth);
   const bool has_phases = std::ranges::any_of(outlook.results, IsPhase, &Certainty::name);
-  return table + (has_phases ? kOfPhases : "") + NotSeparableText(outlook);
+  return table + (has_phases ? kOfPhases : "") + NotSeparableText(outlook.not_separable, kPlanWidth);
 }
 
 Json OutlookJson(const PlannedRun& run) {
