@@ -39,6 +39,16 @@ TEST(ChiSquaredExceedance, IsCertainForNothingInThousandsOfDegreesOfFreedomAndKn
   EXPECT_NEAR(ChiSquaredExceedance(10000.0, 10000.0), 0.5, 0.003);  // skewed by 2 / (3 sqrt(2 pi dof))
 }
 
+TEST(VarianceRatioExceedance, AgreesWithTablesOfF) {
+  // Upper 0.05 and 0.001 points as printed, to half a unit of their last digit.
+  EXPECT_NEAR(VarianceRatioExceedance(4.9646, 1.0, 10.0), 0.05, 1e-6);
+  EXPECT_NEAR(VarianceRatioExceedance(51.71, 5.0, 4.0), 0.001, 1e-6);
+  EXPECT_NEAR(VarianceRatioExceedance(5.0, 2.0, 1e9), std::exp(-5.0), 1e-9);  // chi-squared of 10
+  EXPECT_EQ(VarianceRatioExceedance(0.0, 3.0, 4.0), 1.0);
+  EXPECT_EQ(VarianceRatioExceedance(std::numeric_limits<double>::infinity(), 3.0, 4.0), 0.0);
+  EXPECT_TRUE(std::isnan(VarianceRatioExceedance(1.0, 3.0, 0.0)));
+}
+
 TEST(NormalExceededWith, IsTheInverseOfTheTail) {
   for (const double p : {0.4, 0.025, 1e-9})
     EXPECT_NEAR(0.5 * std::erfc(NormalExceededWith(p) / std::sqrt(2.0)) / p, 1.0, 1e-12);

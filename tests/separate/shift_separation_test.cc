@@ -97,6 +97,23 @@ TEST(ShiftSeparation, SolvesTwoSetUpsOfManyStopsToTheLastDigitsThatThereAre) {
   ExpectCurves(ShiftSeparation({0, 1}, MatrixXd::Ones(18000, 2)).Solve(ReadingsOf(truth, {0, 1})), truth);
 }
 
+// Circles of opposite waves leave next to nothing to fit, and its gradient is rounding: steps along it led to
+// numbers without bound, or to residuals of their own. 1e-16 times readings of 100.
+TEST(ShiftSeparation, TakesNoStepsWhereOnlyRoundingIsLeftToFit) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Stream random(seed, "test.opposite");
+    MatrixXd values(48, 2);
+    for (Eigen::Index i = 0; i < 48; ++i)
+      for (Eigen::Index j = 0; j < 2; ++j)
+        values(i, j) = (j == 0 ? 100.0 : -100.0) * std::cos(units::turn * static_cast<double>(i) / 48.0) + 0.1 * random.Normal();
+    MatrixXd left = values.colwise() - values.rowwise().mean();
+    left.rowwise() -= left.colwise().mean();
+    const ShiftSolution found = ShiftSeparation({0, 0}, MatrixXd::Ones(48, 2)).Solve(values);
+    EXPECT_LT((found.residuals - left).cwiseAbs().maxCoeff(), 1e-11) << seed;
+    EXPECT_LT(found.unknowns.cwiseAbs().maxCoeff(), 1.0) << seed;
+  }
+}
+
 TEST(ShiftSeparation, SaysSoWhereItHasNotConverged) {
   const std::vector<int> shifts = {0, 1, 7};
   const MatrixXd weight = WeightsOf(60, 3, 0.1, 4.0), values = NormalValues(60, 3);

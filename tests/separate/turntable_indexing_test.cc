@@ -235,7 +235,7 @@ TEST(SeparateIndexing, LeavesOutPositionsThatWereNeverRead) {
 
 TEST(SeparateIndexing, TellsWhatAnUnknownRollCouldDo) {
   const auto found = SeparateIndexing(ReadIdeal({{0, 100 * arcsec, 0.4}}, 72));
-  EXPECT_EQ(found.roll.status, RollStatus::kTiltsAlike);
+  EXPECT_EQ(found.roll.status, RollStatus::kTiltsHidden);
   ASSERT_EQ(found.notes.size(), 2u);
   EXPECT_THAT(found.notes[1], HasSubstr("up to 1.74"));  // 100 arcsec * pi / 180 = 1.745, at most at a position
 }

@@ -1,6 +1,7 @@
 #include "twin/core/distributions.h"
 
 #include <algorithm>
+#include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
@@ -20,6 +21,11 @@ using NoOverflow = boost::math::policies::policy<
 double ChiSquaredExceedance(double chi2, double dof) {
   if (!(dof > 0.0) || std::isnan(chi2)) return std::numeric_limits<double>::quiet_NaN();
   return std::isinf(chi2) ? 0.0 : boost::math::gamma_q(0.5 * dof, 0.5 * chi2, NoOverflow());
+}
+
+double VarianceRatioExceedance(double ratio, double dof, double dof_below) {
+  if (!(dof > 0.0) || !(dof_below > 0.0) || std::isnan(ratio)) return std::numeric_limits<double>::quiet_NaN();
+  return boost::math::ibeta(0.5 * dof_below, 0.5 * dof, dof_below / (dof_below + dof * std::max(ratio, 0.0)));
 }
 
 double NormalExceededWith(double probability) {

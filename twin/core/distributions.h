@@ -11,6 +11,10 @@ inline constexpr double kLeastDof = 0.5;
 /// unless dof > 0. Exact to rounding (Boost.Math's regularised incomplete gamma function).
 double ChiSquaredExceedance(double chi2, double dof);
 
+/// Probability that the ratio of two variances of these degrees of freedom (any positive numbers) that estimate the
+/// same exceeds `ratio` (Fisher's F); NaN unless both are positive.
+double VarianceRatioExceedance(double ratio, double dof, double dof_below);
+
 /// ln Gamma(x), x > 0. From several threads at once, which std::lgamma must not be: it writes a sign for all of them.
 double LogGamma(double x);
 

@@ -11,7 +11,8 @@
 namespace twinbench::separate::shifts {
 namespace {
 
-constexpr double kStepTolerance = 1e-15;  // of the gradients' first norm: where a round of steps ends
+// Of the readings' norm, as the rounding errors of all gradients are: a step along these finds no end.
+constexpr double kStepTolerance = 1e-15;  // where a round of steps ends
 constexpr double kConverged = 1e-12;      // of the true gradient: what a round must have reached
 constexpr int kRounds = 4;
 constexpr double kCameBack = 1e-6;  // of unknowns of size one
@@ -150,16 +151,15 @@ Eigen::VectorXd ShiftSeparation::Gather(const Eigen::MatrixXd& weighted) const {
 Eigen::VectorXd ShiftSeparation::Minimise(const Eigen::MatrixXd& values, Convergence& convergence) const {
   const Eigen::MatrixXd weight = Chosen(weight_, read_);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(inverse_.unknowns());
-  double first = 0.0;
+  const double readings = values.cwiseAbs2().cwiseProduct(weight).sum(), rounding = kStepTolerance * kStepTolerance * readings;
   for (int round = 0; round <= kRounds; ++round) {
     Eigen::MatrixXd left = values - Predict(x);
     Eigen::VectorXd gradient = Gather(weight.cwiseProduct(left));
     Eigen::VectorXd step = inverse_.Apply(gradient);
     double size = gradient.dot(step);
-    if (round == 0) first = size;
-    convergence.relative_error = first > 0.0 ? std::sqrt(std::max(size, 0.0) / first) : 0.0;
+    convergence.relative_error = readings > 0.0 ? std::sqrt(std::max(size, 0.0) / readings) : 0.0;
     convergence.converged = convergence.relative_error < kConverged;
-    if (!(size > 0.0) || (convergence.converged && round > 1) || round == kRounds) break;
+    if (!(size > rounding) || (convergence.converged && round > 1) || round == kRounds) break;
     Eigen::VectorXd direction = step;
     for (int k = 0; k < most_steps_; ++k) {
       const Eigen::MatrixXd along = Predict(direction);
@@ -171,7 +171,7 @@ Eigen::VectorXd ShiftSeparation::Minimise(const Eigen::MatrixXd& values, Converg
       gradient = Gather(weight.cwiseProduct(left));
       step = inverse_.Apply(gradient);
       const double next = gradient.dot(step);
-      if (!(next > kStepTolerance * kStepTolerance * first)) break;
+      if (!(next > rounding)) break;
       direction = step + next / size * direction;
       size = next;
     }

@@ -13,8 +13,8 @@ namespace twinbench::separate::shifts {
 struct Convergence {
   bool converged = false;
   int iterations = 0;
-  /// What is left of the way from zero to the solution, in the norm of the weighted fitted readings; below 1e-12 is
-  /// converged.
+  /// What is left of the way to the solution, in the norm of the weighted fitted readings and of that of the readings;
+  /// below 1e-12 is converged.
   double relative_error = kNaN;
 };
 

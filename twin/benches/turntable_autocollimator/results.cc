@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/turntable_autocollimator/bench.h"
@@ -83,10 +84,12 @@ nlohmann::json ModelJson(const HarmonicModel& model, double of_noise) {
 }
 
 nlohmann::json ToJson(const Roll& roll) {
-  const char* status = roll.status == RollStatus::kOk      ? "ok"
-                       : roll.status == RollStatus::kGiven ? "given"
-                                                           : "tilts_alike";
-  return {{"status", status},
+  static const std::map<RollStatus, const char*> kNames = {{RollStatus::kOk, "ok"},
+                                                           {RollStatus::kGiven, "given"},
+                                                           {RollStatus::kTiltsAlike, "tilts_alike"},
+                                                           {RollStatus::kTiltsHidden, "tilts_hidden"},
+                                                           {RollStatus::kNoiseNotKnown, "noise_not_known"}};
+  return {{"status", kNames.at(roll.status)},
           {"gamma_mrad", report::In(units::mrad, roll.gamma_rad)},
           {"u_gamma_mrad", report::In(units::mrad, roll.u_gamma_rad)}};
 }
@@ -206,8 +209,12 @@ bool IsWithoutUncertainty(const IndexingSeparation& s) {
 }
 
 std::string RollText(const Roll& roll) {
-  if (roll.status == RollStatus::kTiltsAlike)
-    return "roll of the crosshair: not seen, the mountings do not differ in tilt\n";
+  static const std::map<RollStatus, const char*> kWhyNot = {
+      {RollStatus::kTiltsAlike, "the mountings differ in tilt by no more than noise"},
+      {RollStatus::kTiltsHidden, "it takes two mountings of equal shift, or three of different ones, that differ in tilt"},
+      {RollStatus::kNoiseNotKnown, "a single reading is left over, which does not tell it from noise"}};
+  if (const auto why = kWhyNot.find(roll.status); why != kWhyNot.end())
+    return fmt::format("roll of the crosshair: not seen, {}\n", why->second);
   return fmt::format("roll of the crosshair   {:.3f} ± {:.3f} mrad\n", roll.gamma_rad / units::mrad,
                      roll.u_gamma_rad / units::mrad);
 }

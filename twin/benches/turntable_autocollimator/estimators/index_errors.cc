@@ -25,11 +25,6 @@ double ToothError_rad(const AngleSeries& multitooth, double multitooth_rad) {
   return 0.0;
 }
 
-/// Roll of the crosshair taken out where it is known.
-double Levelled_rad(const Roll& roll, const TurntableStop& stop) {
-  return roll.status == RollStatus::kTiltsAlike ? stop.x_rad : roll.Correct(stop.x_rad, stop.y_rad);
-}
-
 /// What the uncertainty of the roll does to a reading, root mean square: the tilts turn it into an error of
 /// order 1.
 double RollError_rad(const Roll& roll, const std::vector<IndexReading>& tilts) {
@@ -71,7 +66,7 @@ IndexErrors TurntableIndexErrors(const Scenario& scenario, const std::vector<Rea
     for (const TurntableStop& stop : stops) {
       if (!std::isfinite(stop.x_rad)) continue;  // left out
       values.push_back({stop.setup, stop.turntable_rad,
-                        Levelled_rad(analysis.separation->roll, stop) -
+                        analysis.separation->roll.Correct(stop.x_rad, stop.y_rad) -
                             ToothError_rad(analysis.separation->multitooth, stop.multitooth_rad)});
       tilts.push_back({stop.setup, stop.turntable_rad, stop.y_rad});
     }

@@ -143,7 +143,7 @@ void AddNotes(const Eigen::VectorXd& d_roll, int n, IndexingSeparation& result) 
   if (result.status == IndexingStatus::kHarmonicsLost)
     result.notes.push_back(fmt::format("orders {} are the same for all shifts and counted as the turntable's",
                                        fmt::join(result.lost_harmonics, ", ")));
-  if (result.status != IndexingStatus::kUndetermined && result.roll.status == RollStatus::kTiltsAlike) {
+  if (result.status != IndexingStatus::kUndetermined && !std::isfinite(result.roll.gamma_rad)) {
     const double change_arcsec = d_roll.head(n).array().isNaN().select(0.0, d_roll.head(n)).cwiseAbs().maxCoeff() *
                                  units::deg / units::arcsec;
     if (change_arcsec == 0.0) return;  // nobody saw a tilt
@@ -202,7 +202,7 @@ IndexingSeparation SeparateIndexing(const std::vector<TurntableStop>& stops, con
       options.roll ? Given(*options.roll) : EstimateRoll(fit, readings.x_rad, readings.y_rad, result.noise);
   result.dof = fit.dof() - (result.roll.status == RollStatus::kOk ? 1.0 : 0.0);
 
-  const double gamma_rad = result.roll.status == RollStatus::kTiltsAlike ? 0.0 : result.roll.gamma_rad;
+  const double gamma_rad = std::isfinite(result.roll.gamma_rad) ? result.roll.gamma_rad : 0.0;
   const double c = std::cos(gamma_rad), s = std::sin(gamma_rad);
   const Eigen::VectorXd x_rad = c * readings.x_rad - s * readings.y_rad;
   const Eigen::VectorXd d_roll = fit.Solve(-s * readings.x_rad - c * readings.y_rad);

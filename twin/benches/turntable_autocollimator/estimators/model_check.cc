@@ -27,7 +27,7 @@ std::vector<Checked> Correct(const HarmonicModel& model, const std::vector<Turnt
                              const Roll& roll) {
   std::vector<Checked> checked;
   for (const TurntableStop& s : stops) {
-    const double x_rad = roll.status == RollStatus::kTiltsAlike ? s.x_rad : roll.Correct(s.x_rad, s.y_rad);
+    const double x_rad = roll.Correct(s.x_rad, s.y_rad);
     if (std::isfinite(x_rad) && std::isfinite(s.turntable_rad))
       checked.push_back({s.setup, PlaceOf(s.turntable_rad), x_rad, model.At(s.turntable_rad).value_rad});
   }

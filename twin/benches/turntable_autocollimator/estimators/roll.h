@@ -9,19 +9,21 @@ namespace twinbench::separate::turntable {
 
 enum class RollStatus {
   kOk,
-  kGiven,      // by the caller
-  kTiltsAlike  // y follows position, tooth and set-up but for noise: no change of tilt that would show the roll
+  kGiven,         // by the caller
+  kTiltsAlike,    // y follows position, tooth and set-up but for noise: no change of tilt that would show the roll
+  kTiltsHidden,   // position, tooth and set-up would follow any tilts of these set-ups
+  kNoiseNotKnown  // a single reading is left over, which tells no roll from noise
 };
 
 /// Roll of the autocollimator's crosshair against the turntable's axis: x' = (x + y' sin g) / cos g (eq. 1).
 struct Roll {
-  RollStatus status = RollStatus::kTiltsAlike;
+  RollStatus status = RollStatus::kTiltsHidden;
   double gamma_rad = kNaN;
   double u_gamma_rad = kNaN;
   double tilt_rms_rad = kNaN;  // of the part of y that shows the roll
   double attenuation = kNaN;   // of the slope by the noise of y; taken out
 
-  /// Angle about the turntable's axis.
+  /// Angle about the turntable's axis; x where the roll is not known.
   double Correct(double x_rad, double y_rad) const;
 };
 
@@ -29,7 +31,7 @@ struct Roll {
 ///
 /// Two set-ups of equal shift and different tilt give tan g = sum(dx dy) / sum(dy^2) over the differences of the
 /// two without their means. Several shifts need three set-ups, since two tell tooth and turntable apart and no
-/// more.
+/// more. What is left of y shows the roll if it is more than noise would leave (p < 0.001).
 ///
 /// @param x_rad, y_rad  One a stop of the grid.
 /// @param noise  Of one reading. If not known (NaN) it is taken from the fit, equal in x and y.

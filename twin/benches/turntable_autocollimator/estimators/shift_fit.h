@@ -28,6 +28,7 @@ class ShiftFit {
   bool determined() const { return determined_; }
   /// Readings minus rank.
   double dof() const { return dof_; }
+  const StopGrid& grid() const { return grid_; }
   int common_steps() const { return common_steps_; }
 
   /// Unknowns for one value a grid stop; T and R at places that were not read are NaN.
