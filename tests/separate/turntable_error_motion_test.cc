@@ -77,6 +77,7 @@ TEST(TurntableTilt, OfPassesThatLieApartIsAsynchronousMotion) {
   // 288 readings; 36 positions and 36 teeth, each but for a mean, a constant and the two of a circle for each of four set-ups.
   const double readings = 8.0 * kPositions, dof = readings - (2.0 * (kPositions - 1) + 4.0) - 8.0;
   EXPECT_NEAR(Value(tilt, "asynchronous"), apart_arcsec * std::sqrt(readings / dof), 1e-9);
+  EXPECT_EQ(tilt.at(0).at("dof"), dof);
   EXPECT_NEAR(Value(tilt, "synchronous"), 2.0 * kHalf_arcsec, 1e-9);
   EXPECT_NEAR(Value(tilt, "total"), 2.0 * kHalf_arcsec + Value(tilt, "asynchronous"), 1e-9);
   EXPECT_EQ(tilt.at(0).at("turns"), 8);

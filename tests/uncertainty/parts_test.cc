@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "tests/uncertainty/bench_budget.h"
 
@@ -130,6 +131,16 @@ TEST(Parts, OfSeatingAreRepeatability) {
   // 48 degrees of freedom: a fifth of the variance.
   EXPECT_NEAR(seating / noise, 9.0, 5.0);
   EXPECT_NEAR(ShareOf(budgets, "separation.roll.gamma_mrad", "repeatability"), 0.9, 0.07) << "the same readings show the roll";
+}
+
+/// The noise of a turntable's readings is estimated: nothing that is made of it has a coverage factor of 1.96.
+TEST(Parts, OfAnEstimatedNoiseKnowHowManyReadingsAreBehindIt) {
+  std::set<std::string> kinds;
+  for (const Budget& budget : BudgetsOf(Small(SmallBenches()[1], {"turntable_procedure.positions=12"}))) {
+    kinds.insert(KindOf(budget.quantity.name).substr(0, 5));
+    EXPECT_LT(budget.quantity.dof, 200.0) << budget.quantity.name;
+  }
+  for (const char* kind : {"equat", "iso23", "model", "separ"}) EXPECT_EQ(kinds.count(kind), 1u) << kind;
 }
 
 /// One shift leaves the teeth in the turntable's errors: their stated uncertainty is type B.

@@ -92,6 +92,7 @@ void AppendErrorMotions(const std::string& table, const std::vector<DirectedMoti
     const ErrorMotionValues values = EvaluateErrorMotion(d.motion, d.centre, draws);
     if (std::isnan(values.synchronous.value)) continue;
     to.json.push_back({{"table", table}, {"motion", d.name}, {"values", MotionValuesJson(d, values)}, {"missing", missing}});
+    if (std::isfinite(d.dof)) to.json.back()["dof"] = d.dof;
     if (values.turns > 0) to.json.back()["turns"] = values.turns;
     to.text += MotionText(d, values);
   }

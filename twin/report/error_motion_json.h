@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -18,12 +19,13 @@ struct DirectedMotion {
   /// Parts of the contour's covariance by name, which sum up to it; empty where it is not known.
   std::vector<std::pair<std::string, Eigen::MatrixXd>> parts = {};
   separate::PlotCentre centre = separate::PlotCentre::kLeastSquares;
+  double dof = std::numeric_limits<double>::infinity();  // behind the uncertainties
 };
 
 /// iso230_7 of results.json, and the same for a person.
 struct ErrorMotionTexts {
   /// [{"table", "motion", "values": {"total": {"value_um", "u_um", "bias_um", "u_parts"}, "synchronous", "asynchronous", "fundamental",
-  /// "residual"}, "turns", "missing"}]; what is not known is left out. "u_parts": those of the contour, and "repeatability" of the turns.
+  /// "residual"}, "turns", "dof", "missing"}]; what is not known is left out. "u_parts": those of the contour, and "repeatability" of the turns.
   nlohmann::json json = nlohmann::json::array();
   std::string text;  // empty if there is nothing to say
 };

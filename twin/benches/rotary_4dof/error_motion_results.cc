@@ -193,8 +193,11 @@ std::vector<DirectedMotion> OfReference(const TableEstimate& reference) {
 report::ErrorMotionTexts EvaluateErrorMotions(const separate::Separation& separation, const std::vector<measure::Motion>& motions) {
   report::ErrorMotionTexts results;
   separate::ErrorMotionDraws draws;
-  AppendErrorMotions("target", OfTarget(separation, motions), {kAtStops}, draws, results);
-  AppendErrorMotions("reference", OfReference(separation.reference), {kAtStops}, draws, results);
+  std::vector<DirectedMotion> of_target = OfTarget(separation, motions), of_reference = OfReference(separation.reference);
+  for (std::vector<DirectedMotion>* of_table : {&of_target, &of_reference})
+    for (DirectedMotion& d : *of_table) d.dof = separation.dof;
+  AppendErrorMotions("target", of_target, {kAtStops}, draws, results);
+  AppendErrorMotions("reference", of_reference, {kAtStops}, draws, results);
   return results;
 }
 

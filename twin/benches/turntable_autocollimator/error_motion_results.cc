@@ -55,6 +55,7 @@ report::DirectedMotion TiltOf(const StopGrid& grid, const ShiftFit& fit, const E
   tilt.motion.scatter.resize(static_cast<std::size_t>(grid.n));
   for (int i = 0; i < grid.n; ++i) tilt.motion.angle_rad[i] = grid.Position_rad(i);
   if (!(dof > 0.0)) return tilt;
+  tilt.dof = dof;
   const Eigen::VectorXd beyond = fit.Residuals(y_rad);
   for (std::size_t k = 0; k < grid.stops.size(); ++k)
     tilt.motion.scatter[static_cast<std::size_t>(grid.stops[k].position)].push_back(std::sqrt(readings / dof) * beyond[static_cast<Eigen::Index>(k)]);

@@ -45,6 +45,17 @@ double NoiseShare(const IndexingSeparation& s, double stated_noise_rad) {
   return std::min(1.0, std::pow(stated_noise_rad / (s.scale * s.noise.u_x_rad), 2));
 }
 
+/// Behind the noise that the uncertainties are made of; where the residuals scale it, they are.
+double DofOf(const IndexingSeparation& s) {
+  if (s.scale > 1.0) return s.dof;
+  return s.noise.dof > 0 ? s.noise.dof : std::numeric_limits<double>::infinity();
+}
+
+/// Says it of all that stands in `json`.
+void SayDof(const IndexingSeparation& s, nlohmann::json& json) {
+  if (std::isfinite(DofOf(s))) json["dof"] = DofOf(s);
+}
+
 /// Of what the scatter of the readings alone makes uncertain.
 nlohmann::json PartsOfScatter(double of_noise) {
   return report::PartsJson({{"noise", of_noise}, {"repeatability", 1.0 - of_noise}});
@@ -163,10 +174,12 @@ nlohmann::json SeparationJson(const IndexingSeparation& s, const Scenario& scena
                          {"dof", report::In(1.0, s.dof)},
                          {"roll", ToJson(s.roll)}};
   json["turntable"]["u_parts"] = PartsOf(s.turntable, s, stated_noise_rad);
+  SayDof(s, json["turntable"]);
   if (std::isfinite(s.roll.u_gamma_rad)) json["roll"]["u_parts"] = PartsOfScatter(NoiseShare(s, stated_noise_rad));
   if (s.multitooth.position_rad.empty()) return json;
   json["multitooth"] = ToJson(s.multitooth);
   json["multitooth"]["u_parts"] = PartsOf(s.multitooth, s, stated_noise_rad);
+  SayDof(s, json["multitooth"]);
   return json;
 }
 
@@ -183,7 +196,9 @@ nlohmann::json ResultsOf(const TurntableAnalysis& a, const Scenario& scenario) {
   if (!a.pointwise.empty()) json["equation_5"] = ToJson(a.pointwise);
   const double of_noise = a.separation ? NoiseShare(*a.separation, TurntableOf(scenario).ReadingNoise_rad()) : 0.0;
   if (!a.pointwise.empty() && a.separation) json["equation_5"]["u_parts"] = PartsOfScatter(of_noise);
+  if (!a.pointwise.empty() && a.separation) SayDof(*a.separation, json["equation_5"]);
   if (a.model) json["model"] = ModelJson(*a.model, of_noise);
+  if (a.model && !a.model->of_amplitudes_rad2.empty()) SayDof(*a.separation, json["model"]);
   if (a.check) json["verification"] = ToJson(*a.check);
   if (!a.not_separated.empty()) json["not_separated"] = a.not_separated;
   return json;
@@ -258,11 +273,6 @@ void AddTilt(const TurntableAnalysis& a, const Scenario& scenario, report::Evalu
 }
 
 // --- against the truth ---
-
-/// Behind the noise that the uncertainties are made of.
-double DofOf(const IndexingSeparation& s) {
-  return s.noise.dof > 0 ? s.noise.dof : std::numeric_limits<double>::infinity();
-}
 
 report::CurveScore WithDof(report::CurveScore curve, double dof) {
   curve.dof = dof;
