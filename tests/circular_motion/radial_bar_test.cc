@@ -123,6 +123,28 @@ TEST(RadialBar, KeepsTheBallsFormAndTheGainThatTheScenarioStates) {
   EXPECT_NEAR(Found(a, "machine.scale_mismatch_um_m").value, 0.0, 0.02);
 }
 
+// Axes that answer 1 / (1 + lag s) make a circle smaller by half the square of lag times rate: at 6000 mm/min by 0.83 um, at
+// 1000 mm/min by 0.02 um. Its length takes up one of both; the other was spikes of 0.5 um and backlash.
+TEST(RadialBar, TakesTheSizeOfCirclesAtSeveralFeedsForWhatBothAxesLag) {
+  constexpr double kLag_s = 5e-3;
+  std::vector<Reading> readings;
+  for (const double feed_m_s : {1.0 / 60.0, 6.0 / 60.0}) {
+    for (Reading r : Readings({})) {
+      r.reading = static_cast<int>(readings.size());
+      r.pass += feed_m_s > 0.05 ? 2 : 0;
+      kFeed_m_s(r) = feed_m_s;
+      kBar_m(r) = kRadius_m / std::hypot(1.0, kLag_s * feed_m_s / kRadius_m) - kRadius_m;
+      readings.push_back(r);
+    }
+  }
+  const CircleAnalysis a = Analyse(Usual(), readings, Estimator::kRigorous);
+  EXPECT_NEAR(Found(a, "machine.servo_mean_square_s2").value, kLag_s * kLag_s, 1e-3 * kLag_s * kLag_s);
+  for (const char* key : {"machine.spike_x_um", "machine.spike_y_um", "machine.backlash_x_um", "machine.backlash_y_um"})
+    EXPECT_NEAR(Found(a, key).value, 0.0, 1e-3) << key;
+  const CircleAnalysis at_one_feed = Analyse(Usual(), Readings({}), Estimator::kRigorous);
+  EXPECT_TRUE(Found(at_one_feed, "machine.servo_mean_square_s2").key.empty()) << "the length of the bar takes it up";
+}
+
 TEST(RadialBar, StatesUncertaintiesThatMatchItsErrors) {
   const Machine machine{6.0 * arcsec, 0.0, 0.0, 5.0 * um};
   const double noise_m = StatedNoiseOf(CircularOf(Usual()), true, kRadius_m).radial_m;

@@ -10,9 +10,10 @@ namespace {
 using Eigen::Vector2d;
 
 /// @param quarters  0: x goes with the cosine, 1: y with the sine.
-AxisMotion MotionOf(const CirclePoint& p, const CircleConstants& known, double lag_s, double commanded_rad, int quarters) {
+/// @param square_s2  Of the lag; apart from it where it is an unknown of its own.
+AxisMotion MotionOf(const CirclePoint& p, const CircleConstants& known, double lag_s, double square_s2, double commanded_rad, int quarters) {
   const double lag = p.rate_rad_s * lag_s;
-  const double amplitude_m = known.is_delay ? p.radius_m : p.radius_m / std::sqrt(1.0 + lag * lag);
+  const double amplitude_m = known.is_delay ? p.radius_m : p.radius_m / std::sqrt(1.0 + p.rate_rad_s * p.rate_rad_s * square_s2);
   const double angle_rad = commanded_rad - (known.is_delay ? lag : std::atan(lag)) - quarters * 0.5 * units::kPi;
   // Counted along the motion the axis turns at 0, pi, 2 pi; in the first half turn it goes down.
   const double along_rad = std::remainder(p.direction * angle_rad, units::turn);
@@ -47,8 +48,10 @@ Vector2d Position_m(const CirclePoint& p, const CircleErrors& e, const CircleCon
                     CircleMemo::Axes& memo) {
   const double commanded_rad = p.commanded_rad - p.rate_rad_s * before_s;
   const auto motion = [&](std::size_t k) -> const AxisMotion& {
-    const double lag_s = e.lag_s[k] + (k == 0 ? 0.5 : -0.5) * e.lag_mismatch_s;
-    return memo[k].At({lag_s, before_s}, [&] { return MotionOf(p, known, lag_s, commanded_rad, static_cast<int>(k)); });
+    const double lag_s = e.lag_s[k] + e.lag_mean_s + (k == 0 ? 0.5 : -0.5) * e.lag_mismatch_s;
+    const double square_s2 = lag_s * lag_s - e.lag_mean_s * e.lag_mean_s + e.lag_mean_square_s2;
+    return memo[k].At({lag_s, square_s2, before_s},
+                      [&] { return MotionOf(p, known, lag_s, square_s2, commanded_rad, static_cast<int>(k)); });
   };
   const AxisMotion &x = motion(0), &y = motion(1);
   return {x.at_m + AxisError_m(e, known, 0, x, y.at_m, p.above_K) - e.squareness_rad * y.at_m,
@@ -265,6 +268,7 @@ const std::vector<CircleUnknown>& CircleUnknowns() {
       {"machine.squareness_arcsec", "arcsec", arcsec, arcsec, [](E& e) -> double& { return e.squareness_rad; },
        kNothing},
       {"machine.servo_mismatch_s", "s", 1.0, 1e-4, [](E& e) -> double& { return e.lag_mismatch_s; }, kRadiusOnly},
+      {"machine.servo_mean_square_s2", "s2", 1.0, 1e-6, [](E& e) -> double& { return e.lag_mean_square_s2; }, kRadiusAtFeeds},
       {"machine.scale_mismatch_um_m", "um/m", um, kPpm, [](E& e) -> double& { return e.scale_mismatch; }, kRadiusOnly},
       {"machine.straightness_x_um", "um", um, kSmall_m, [](E& e) -> double& { return e.bow_m[0]; }, kNothing},
       {"machine.straightness_y_um", "um", um, kSmall_m, [](E& e) -> double& { return e.bow_m[1]; }, kNothing},

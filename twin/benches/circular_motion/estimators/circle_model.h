@@ -38,11 +38,14 @@ struct CirclePoint {
 std::vector<CirclePoint> PointsOf(const std::vector<Reading>& readings, const Scenario& scenario);
 
 /// What is unknown of machine and instruments. Waves are cosine and sine. A mismatch is x less y, half of it each: what a
-/// radius shows of two axes of which it does not show what they have in common.
+/// radius shows of two axes of which it does not show what they have in common, but for the square of the mean lag: by half of
+/// that times the rate's square circles are smaller.
 struct CircleErrors {
   AxisPair lag_s{}, scale{}, bow_m{}, s_shape_m{}, backlash_m{}, spike_m{};
   AxisPair cyclic_sine_m{}, cyclic_cosine_m{}, expansion_per_K{}, drift_m_per_K{};
   double squareness_rad = 0.0, lag_mismatch_s = 0.0, scale_mismatch = 0.0;
+  double lag_mean_square_s2 = 0.0;
+  double lag_mean_s = 0.0;  // no unknown: its root
   double bar_gain = 0.0, bar_cubic_per_m2 = 0.0, bar_expansion_per_K = 0.0;
   AxisPair ball2_m{}, ball3_m{}, eccentricity_rad{}, ellipticity_rad{};
   double encoder_latency_s = 0.0;
@@ -100,7 +103,7 @@ struct TiltTurns {
 
 /// What was computed last of one point.
 struct CircleMemo {
-  using Axes = std::array<LastValue<AxisMotion, 2>, 2>;
+  using Axes = std::array<LastValue<AxisMotion, 3>, 2>;
   Axes when_bar_is_read, when_encoder_is_read;
   LastValue<double, 5> ball_form_m, scale_error_rad;
   LastValue<TiltTurns, 2> tilt;
@@ -124,9 +127,9 @@ struct CircleUnknown {
   double to_SI;
   double step;  // SI, over which slopes are differenced
   double& (*in)(CircleErrors&);
-  /// kRadiusOnly: stands for those that need an angle where there is none. kBarShown: its slope is in proportion to what the
+  /// kRadiusOnly: stands for those that need an angle where there is none; kRadiusAtFeeds: at several, else a length takes it up. kBarShown: its slope is in proportion to what the
   /// bar shows, and nothing before the set-ups are known. Of a bar: one with an encoder.
-  enum class Needs { kNothing, kAngle, kRadiusOnly, kTemperature, kBar, kBarShown, kBarAndTemperature } needs;
+  enum class Needs { kNothing, kAngle, kRadiusOnly, kRadiusAtFeeds, kTemperature, kBar, kBarShown, kBarAndTemperature } needs;
 };
 const std::vector<CircleUnknown>& CircleUnknowns();
 

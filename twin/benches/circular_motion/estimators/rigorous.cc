@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 
 #include "twin/core/errors.h"
@@ -29,15 +30,30 @@ bool TemperatureChanged(const std::vector<CirclePoint>& points) {
   return warmest->above_K - coldest->above_K >= kLeast_K;
 }
 
+/// Rates of one set-up that are clearly not the same.
+bool FeedsDiffer(const std::vector<CirclePoint>& points) {
+  constexpr double kLeastRatio = 1.2;
+  std::map<int, std::pair<double, double>> slowest_fastest;
+  for (const CirclePoint& p : points) {
+    const double rate_rad_s = std::abs(p.rate_rad_s);
+    auto& [slowest, fastest] = slowest_fastest.try_emplace(p.setup, rate_rad_s, rate_rad_s).first->second;
+    slowest = std::min(slowest, rate_rad_s);
+    fastest = std::max(fastest, rate_rad_s);
+  }
+  return std::ranges::any_of(slowest_fastest, [](const auto& of) { return of.second.second > kLeastRatio * of.second.first; });
+}
+
 /// What a run has to show by.
 struct Shows {
   bool warm, angle, bar;  // of the bar: with an encoder
+  bool feeds;             // several of a mounting make circles of different size where axes lag
 };
 
 bool CanBeSeen(const CircleUnknown& unknown, const Shows& run) {
   using enum CircleUnknown::Needs;
   if (unknown.needs == kAngle) return run.angle;
   if (unknown.needs == kRadiusOnly) return !run.angle;
+  if (unknown.needs == kRadiusAtFeeds) return !run.angle && run.feeds;
   if (unknown.needs == kTemperature) return run.warm;
   if (unknown.needs == kBar || unknown.needs == kBarShown) return run.bar;
   if (unknown.needs == kBarAndTemperature) return run.bar && run.warm;
@@ -55,14 +71,15 @@ void NameWhatARadiusHides(CircleFit& fit) {
                                "squareness, scale mismatch, form of the balls twice per turn, straightness of both axes by P3: taken "
                                "as the machine's squareness and scales",
                                "straightness, form of the balls three times per turn: taken as the machine's straightness",
-                               "lag of both axes alike, rotation of the circle: a radius does not show it"},
+                               "lag of both axes alike but for its square, rotation of the circle: a radius does not show it"},
                     std::back_inserter(fit.not_separable));
 }
 
 CircleFit Begin(const std::vector<CirclePoint>& points, const CircleConstants& known) {
   CircleFit fit;
   const Shows run{TemperatureChanged(points), std::ranges::any_of(points, &CirclePoint::has_angle),
-                  std::ranges::any_of(points, [](const CirclePoint& p) { return p.is_bar && p.has_angle; })};
+                  std::ranges::any_of(points, [](const CirclePoint& p) { return p.is_bar && p.has_angle; }),
+                  !known.is_delay && FeedsDiffer(points)};
   if (!run.bar) fit.errors = known.bar;
   for (std::size_t k = 0; k < CircleUnknowns().size(); ++k) {
     if (CanBeSeen(CircleUnknowns()[k], run)) fit.fitted.push_back(k);
@@ -83,6 +100,7 @@ Index UnknownsOf(const CircleFit& fit) {
 void Add(const VectorXd& change, CircleFit& fit) {
   for (std::size_t k = 0; k < fit.fitted.size(); ++k)
     CircleUnknowns()[fit.fitted[k]].in(fit.errors) += change[static_cast<Index>(k)];
+  fit.errors.lag_mean_s = std::sqrt(std::max(fit.errors.lag_mean_square_s2, 0.0));
   for (std::size_t j = 0; j < fit.setups.size(); ++j) {
     for (Index k = 0; k < kOfSetup; ++k)
       MountingUnknown(fit.mountings[j], k) += change[fit.UnknownOf(fit.setups[j]) + k];
