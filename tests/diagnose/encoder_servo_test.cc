@@ -3,6 +3,7 @@
 #include "tests/diagnose/encoder_record.h"
 #include "twin/benches/encoder_comparison/diagnosis/few_counts.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_cause.h"
+#include "twin/benches/encoder_comparison/diagnosis/leading_loop.h"
 #include "twin/benches/encoder_comparison/diagnosis/memory.h"
 
 namespace twinbench::diagnose::encoder {
@@ -69,6 +70,55 @@ TEST(EncoderServo, ThatIsBehindDoesNotLeadAsWell) {
   EXPECT_FALSE(LeadsBesideLatency("backlash", 0.1, {Latency(0.0, 0.2)}));
   EXPECT_FALSE(LeadsBesideLatency("backlash", -0.1, {Latency(-0.2, 0.0)})) << "then it leads";
   EXPECT_FALSE(LeadsBesideLatency("backlash", -0.1, {}));
+}
+
+/// To and fro over ten places, with errors that differ by 0.1 from one way to the other.
+EncoderRun ToAndFro(double speed_rad_s) {
+  EncoderRun encoder;
+  SignalContext& c = encoder.context;
+  c.setup.assign(20, 0);
+  c.reference_rad.resize(20);
+  encoder.run.residual.resize(20);
+  for (int i = 0; i < 20; ++i) {
+    c.reference_rad[i] = i < 10 ? i : 19 - i;
+    encoder.run.residual[i] = i < 10 ? 0.05 : -0.05;
+  }
+  c.velocity_rad_s = Eigen::VectorXd::Constant(20, speed_rad_s);
+  return encoder;
+}
+
+Cause Named(const char* effect, const char* size, double value) {
+  Cause cause;
+  cause.effect = effect;
+  cause.probability = 0.95;
+  cause.parameters.resize(1);
+  cause.parameters[0].name = size;
+  cause.parameters[0].value = value;
+  return cause;
+}
+
+/// How sure the loop is that shows so much of what is there, beside another cause.
+double ChanceOfLoop(double width, double shown, const char* beside, double speed_rad_s) {
+  const EncoderRun encoder = ToAndFro(speed_rad_s);
+  DiagnosisRun result;
+  result.run.residual = encoder.run.residual;
+  result.diagnosis.causes = {Named("backlash", "width", width), Named(beside, "ratio", 0.01)};
+  Accepted& accepted = result.accepted.emplace_back();
+  accepted.family.effect = "backlash";
+  accepted.columns = encoder.run.residual;
+  accepted.amplitudes = Eigen::VectorXd::Constant(1, shown);
+  DoubtLeadingLoops(encoder, result);
+  return result.diagnosis.causes.front().probability;
+}
+
+TEST(EncoderServo, ThatSeemsToLeadOnReversalIsNotSureToHaveALoop) {
+  for (const char* beside : {"latency", "scale"}) {
+    EXPECT_LE(ChanceOfLoop(-0.1, 1.0, beside, 1.0), 0.6) << beside;
+    EXPECT_GT(ChanceOfLoop(0.1, 1.0, beside, 1.0), 0.9) << beside << ": a device that stays behind may well";
+  }
+  EXPECT_GT(ChanceOfLoop(-0.1, 1.0, "periodic", 1.0), 0.9) << "a reference that stays behind";
+  EXPECT_GT(ChanceOfLoop(-0.1, 1.0, "scale", 0.0), 0.9) << "at stops a scale has no direction";
+  EXPECT_LE(ChanceOfLoop(-0.15, 1.5, "periodic", 0.0), 0.6) << "wider than errors are apart";
 }
 
 TEST(EncoderServo, OfWhichARestSwingsHasTheMemoryOfASwing) {

@@ -14,6 +14,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/glitches.h"
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
+#include "twin/benches/encoder_comparison/diagnosis/leading_loop.h"
 #include "twin/benches/encoder_comparison/diagnosis/other_lag.h"
 #include "twin/benches/encoder_comparison/diagnosis/pieces_of_curve.h"
 #include "twin/benches/encoder_comparison/diagnosis/speed_limit.h"
@@ -109,6 +110,7 @@ diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario
   diagnose::encoder::TellGlitches(large.first->encoder.glitches, scenario, result);
   if (limit) diagnose::encoder::TellSpeedLimit(*limit, result);
   DoubtUnsized(result.run, result.diagnosis.causes);
+  diagnose::encoder::DoubtLeadingLoops(large.first->encoder, result);
   diagnose::encoder::DoubtFewCounts(ShownBy(large.first->encoder.used), result);
   result.diagnosis.left_out = (limit ? limit->asked : searched.encoder).left_out;
   result.diagnosis.harmonics =

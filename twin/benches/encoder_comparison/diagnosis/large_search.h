@@ -43,6 +43,7 @@ class LargeSearch {
   bool TakeOneOfTwoWaves();
   bool Take(const LargeCause& next);
   bool IsOtherFunctionOfSpeed(const LargeCause& next, const AskedAgain& asked) const;
+  bool IsClearlyLess(double power, const Eigen::VectorXd& left) const;
   bool TakeSum(std::size_t k, const LargeCause& more);
   bool SearchOn();
   std::vector<std::string> Excluded(const std::vector<LargeCause>& causes) const;

@@ -163,6 +163,14 @@ bool LargeSearch::IsOtherFunctionOfSpeed(const LargeCause& next, const AskedAgai
   return explained(both) - explained(other) < kHardly * named;
 }
 
+/// Beside the memory of what is left: Kass and Raftery, Bayes factors (1995). Over a part of a turn the next lower order always
+/// takes a little more of what is no wave, and grows against a scale.
+bool LargeSearch::IsClearlyLess(double power, const Eigen::VectorXd& left) const {
+  constexpr double kStrongly = 6.0;
+  const double readings = static_cast<double>(left.size()) / fit_->Memory(left);
+  return readings * std::log(power_ / power) > kStrongly;
+}
+
 /// A second wave of the k-th one's order, or of one that is not told from it, is what that lacks: it was fitted before all
 /// was there.
 /// @return false if no order about both explains it.
@@ -183,6 +191,8 @@ bool LargeSearch::TakeSum(std::size_t k, const LargeCause& more) {
   }
   const double power = fit_->PowerOf(of_best.left);
   if (!(power < power_ - kBetter)) return false;
+  const bool is_moved = *WaveOrderOf(best[k].effect) != *WaveOrderOf(large_.causes[k].effect);
+  if (is_moved && LeastOrder(large_.first->encoder.context) > 1 && !IsClearlyLess(power, of_best.left)) return false;
   best[k].explained += power_ - power;
   Accept(of_best, std::move(best), kFewCauses);
   return true;
