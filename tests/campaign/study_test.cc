@@ -102,6 +102,7 @@ TEST(Summary, HasMeanScatterBiasAndCoverage) {
   EXPECT_DOUBLE_EQ(a.mean, 12.0);
   EXPECT_DOUBLE_EQ(a.sd, std::sqrt(20.0 / 3.0));
   EXPECT_DOUBLE_EQ(a.rms_u, 1.0);
+  EXPECT_DOUBLE_EQ(a.rms_error, 3.0);  // root of (1 + 1 + 9 + 25) / 4
   EXPECT_DOUBLE_EQ(a.bias, 2.0);
   EXPECT_DOUBLE_EQ(a.coverage95, 0.5);
   ASSERT_EQ(summary.Lost().size(), 1u);

@@ -22,6 +22,20 @@ TEST(Sha256, AgreesWithThePublishedExamples) {
   EXPECT_EQ(Sha256(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
+TEST(ChiSquaredExceedance, OfNothingIsCertain) {
+  EXPECT_EQ(ChiSquaredExceedance(0.0, 3.0), 1.0);
+  EXPECT_EQ(ChiSquaredExceedance(-1e-17, 3.0), 1.0);
+  EXPECT_EQ(ChiSquaredExceedance(INFINITY, 3.0), 0.0);
+  EXPECT_TRUE(std::isnan(ChiSquaredExceedance(kNaN, 3.0)));
+}
+
+TEST(NormalExceededWith, IsANumberOfProbabilitiesOnly) {
+  EXPECT_NEAR(NormalExceededWith(0.025), 1.959964, 1e-6);
+  EXPECT_EQ(NormalExceededWith(0.0), INFINITY);
+  EXPECT_EQ(NormalExceededWith(1.0), -INFINITY);
+  for (const double none : {2.5, -0.1, kNaN}) EXPECT_TRUE(std::isnan(NormalExceededWith(none))) << none;
+}
+
 TEST(ChiSquaredExceedance, AgreesWithTablesAndIsAnExponentialForTwoDegreesOfFreedomAndRightBetweenWholeOnes) {
   // Upper 0.001 points of printed tables: half a unit of their last digit is 3e-7 of probability, or less.
   EXPECT_NEAR(ChiSquaredExceedance(10.828, 1.0), 0.001, 3e-7);

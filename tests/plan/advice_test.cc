@@ -146,6 +146,13 @@ TEST(HarmonicsOf, ReadsTermsColumnsAndTables) {
   EXPECT_THAT(found[2].u, ElementsAre(0.7, 0.8));
 }
 
+TEST(HarmonicsOf, HasNoneOfResultsThatWereTakenBack) {
+  const auto results = nlohmann::json::parse(R"({
+    "encoder": {"order": [null, null], "u_amplitude_arcsec": [null, null]},
+    "target": {"u_harmonics": {"order": [null, null], "ez_arcsec": [null, null]}}})");
+  EXPECT_TRUE(HarmonicsOf(results).empty());
+}
+
 TEST(MeanOf, AveragesVariancesOfRunsThatStateThem) {
   Outlook a, b;
   a.results = {{"ez_arcsec", 2, 3.0, 3.0}, {"dy_um", 1, 1.0, 1.0}};

@@ -38,6 +38,17 @@ TEST(Check, TakesLessThanASecond) {
   }
 }
 
+TEST(Check, OfASlowGearTrainTakesLessThanASecondToo) {
+  const Scenario slow = Shipped("hob_transmission", {"hob_procedure.turns=1", "hob_procedure.hob_speeds_rev_min=[0.5]"});
+  double least_s = 1.0;
+  for (int again = 0; again < 3 && least_s >= 1.0; ++again) {
+    const double begin_s = perf::Seconds();
+    ReadingsOfTwin(Quick(slow));
+    least_s = perf::Seconds() - begin_s;
+  }
+  EXPECT_LT(least_s, 1.0);
+}
+
 /// Phases and azimuths go with amplitudes that may be mere noise: their u is no promise.
 bool IsPromised(const std::string& scenario, const plan::Certainty& stated) {
   const bool is_known = std::ranges::any_of(kKnown, [&](const std::string& known) { return (scenario + " " + stated.name).starts_with(known); });

@@ -337,6 +337,18 @@ TEST(Mangled, AnAutocollimatorThatAnswersOneReadingLateIsDoubted) {
   EXPECT_THAT(Said(late, Benches()[1]), HasSubstr("answer one reading late"));
 }
 
+/// As a controller shows an axis that comes to one place again and again: its own last digits are no other place.
+TEST(Plausible, AnAxisThatOnlyStandsAtOnePlaceIsNotElsewhere) {
+  std::vector<Reading> readings = Readings(12);
+  for (Reading& r : readings) {
+    r.reference_rad = 0.0;
+    r.extra["reference_encoder_before_deg"] = r.reading % 4 == 1 ? "0.0003" : r.reading % 2 == 0 ? "0.0001" : "0.0000";
+  }
+  EXPECT_THAT(Lines(readings), Not(HasSubstr("at another place")));
+  readings[7].extra["reference_encoder_before_deg"] = "30.0";
+  EXPECT_THAT(Lines(readings), HasSubstr("reading 7 is the first of them"));
+}
+
 TEST(Mangled, AShaftThatStandsWhileItsEncoderCountsIsRefused) {
   const Scenario scenario = LoadScenario(test::ScenarioPath("encoder_comparison.toml"));
   EXPECT_KEPT(Said(Standing(test::RunBench(scenario).readings), scenario));

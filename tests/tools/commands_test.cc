@@ -55,6 +55,49 @@ TEST_F(Commands, ACheckSaysDurationLossesAndWhichUTheRunStates) {
   EXPECT_THAT(Succeed({"check", "small.toml"}), HasSubstr("U = 2 u"));
 }
 
+TEST_F(Commands, ACheckForetellsThatARunComesToNothingOrLosesReadings) {
+  Write("small.toml", kSmall);
+  const std::string dark = Succeed({"check", "small.toml", "--set", "psd_a.distance_mm=0.001"});
+  EXPECT_THAT(dark, testing::AllOf(HasSubstr("readings (full_circle): no_light\n"), HasSubstr("It would separate nothing: ")));
+  const nlohmann::json json = Json({"check", "small.toml", "--set", "psd_a.distance_mm=0.001", "--json", "-"});
+  EXPECT_TRUE(json.contains("not_separated"));
+  EXPECT_EQ(json.at("lost_readings").at(0).at("phase"), "calibration");
+  const std::string wide = Succeed({"check", "small.toml", "--set", "procedure.sweep_arcsec=5000"});
+  EXPECT_THAT(wide, testing::AllOf(HasSubstr(" readings (calibration): no_light\n"), HasSubstr("U = 2 u")));
+  EXPECT_THAT(Succeed({"check", "small.toml"}), testing::Not(HasSubstr("It would")));
+  // All numbers of results that were taken back are null, orders too.
+  EXPECT_THAT(Succeed({"check", "small.toml", "--set", "target.random.ez_arcsec=3600"}), HasSubstr("It would lose "));
+  Write("collimator.toml", "bench = \"turntable_autocollimator\"\n[turntable_procedure]\nphases = [\"full_circle\"]\n");
+  EXPECT_THAT(Succeed({"check", "collimator.toml", "--set", "turntable_procedure.positions=3", "--set", "multitooth.teeth=3"}),
+              HasSubstr("It would come to no result: "));
+}
+
+TEST_F(Commands, WithoutAnyNoiseEveryBenchIsCheckedRunAndScored) {
+  const std::map<std::string, std::vector<std::string>> none = {
+      {"rotary_4dof", {"amplifier.noise_mV=0"}},
+      {"turntable_autocollimator", {"autocollimator.noise_arcsec=0"}},
+      {"circular_motion", {"machine.noise_um=0", "bar.noise_um=0", "bar.resolution_um=0", "grid.noise_um=0", "encoder.noise_arcsec=0"}},
+      {"encoder_comparison", {"device.noise_deg=0"}},
+      {"hob_transmission", {"interferometer.noise_arcsec=0"}},
+      {"freeform_five_axis", {"qpd.noise_mV=0", "ccd.noise_px=0"}}};
+  for (const auto& [bench, sets] : none) {
+    Write(bench + ".toml", "bench = \"" + bench + "\"\n");
+    std::vector<std::string> without = {"--set", "environment.sensor_noise_mK=0"};
+    for (const std::string& set : sets) without.insert(without.end(), {"--set", set});
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"check", bench + ".toml"}, {"run", bench + ".toml", "-o", bench}})
+      EXPECT_NE(Call(With(command, without)).exit_code, 1) << bench << " " << command[0];
+    EXPECT_NE(Call({"score", bench}).exit_code, 1) << bench;
+  }
+}
+
+TEST_F(Commands, ARunWhoseEffectIsTooLargeForTheModelSaysSo) {
+  Write("large.toml", std::string(kSmall) + "[[effect]]\nname = \"psd_nonlinearity\"\nwhere = \"psd_b\"\ncubic_per_m2 = 600000.0\n");
+  const Outcome run = Call({"run", "large.toml", "-o", "large"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, testing::AllOf(HasSubstr("does not describe the readings"), HasSubstr("`twinbench diagnose` names")));
+  EXPECT_THAT(Call({"score", "large"}).err, HasSubstr("`twinbench diagnose` names"));
+}
+
 TEST_F(Commands, APlanWithoutTimeSaysWhatItLeavesOutAndStillProposesARun) {
   const nlohmann::json plan = Json({"plan", "small.toml", "--cpu", "0.001", "-o", "next.toml", "--json", "-"});
   EXPECT_TRUE(plan.at("left_out").contains("another run"));

@@ -99,6 +99,10 @@ TEST_F(Evaluate, AUsersOwnResultIsScoredInTheProgramsTableAndNothingWithoutATrut
               same.at("twinbench target").at("ez").at("rms_error_arcsec").get<double>(), 1e-9);
   Write("other.csv", "result,value\ntarget.ez_arcsec[0],1e3\n");
   EXPECT_THAT(Succeed({"score", "run", "--against", "other.csv"}), HasSubstr("yours target      ez_arcsec"));
+  Write("some.csv", "result,value,u\ntarget.ez_arcsec[0],1,0\ntarget.ez_arcsek[1],1,1\n");
+  const std::string some = Succeed({"score", "run", "--against", "some.csv"});
+  EXPECT_THAT(some, HasSubstr("no truth is known of target.ez_arcsek[1]\n"));
+  EXPECT_THAT(some, HasSubstr("u is 0, so that (error/u)^2 leaves it out, of target.ez_arcsec[0]\n"));
   Write("none.csv", "result,value\ntarget.ez_arcsek[0],1\n");
   ExpectRefused({"score", "run", "--against", "none.csv"}, "target.ez_arcsec[0]");
   Write("bare.csv", "name,value\ntarget.ez_arcsec[0],1\n");

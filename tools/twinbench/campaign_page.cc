@@ -26,7 +26,7 @@ nlohmann::json OrNull(double value) {
 nlohmann::json ResultJson(const std::string& name, const campaign::ResultSummary& r) {
   const double u_mean = IsList(name) || r.count < 2 ? NAN : r.sd / std::sqrt(static_cast<double>(r.count));
   return {{"name", name},           {"count", r.count},        {"mean", OrNull(r.mean)}, {"u_mean", OrNull(u_mean)}, {"sd", OrNull(r.sd)},
-          {"rms_u", OrNull(r.rms_u)}, {"scored", r.scored}, {"bias", OrNull(r.bias)}, {"coverage95", OrNull(r.coverage95)}};
+          {"rms_u", OrNull(r.rms_u)}, {"scored", r.scored}, {"rms_error", OrNull(r.rms_error)}, {"bias", OrNull(r.bias)}, {"coverage95", OrNull(r.coverage95)}};
 }
 
 /// Single numbers whose error is known first, then other single ones, then lists.

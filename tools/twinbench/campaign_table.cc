@@ -19,7 +19,7 @@ nlohmann::json SummaryJson(const campaign::Summary& summary) {
                          {"worst", nlohmann::json::array()}};
   for (const campaign::TrialRow& row : summary.Lost()) json["lost"].push_back({{"trial", row.trial}, {"failure", row.failure}});
   for (const auto& [name, r] : summary.Results())
-    json["results"][name] = {{"count", r.count}, {"mean", r.mean}, {"sd", r.sd}, {"rms_u", r.rms_u}, {"scored", r.scored}, {"bias", r.bias}, {"coverage95", r.coverage95}};
+    json["results"][name] = {{"count", r.count}, {"mean", r.mean}, {"sd", r.sd}, {"rms_u", r.rms_u}, {"scored", r.scored}, {"rms_error", r.rms_error}, {"bias", r.bias}, {"coverage95", r.coverage95}};
   for (const campaign::WorstTrial& worst : summary.Worst(kMostWorst))
     json["worst"].push_back({{"trial", worst.trial}, {"result", worst.result}, {"error_over_u", worst.normed}});
   return json;

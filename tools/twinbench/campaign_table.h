@@ -13,7 +13,7 @@ namespace twinbench::tools {
 /// @throws InputError if it is there without `resume`, or is of another study.
 campaign::Table OpenTable(const std::string& path, const campaign::Study& study, bool resume);
 
-/// {"trials", "lost", "verdicts", "results": {name: {"count", "mean", "sd", "rms_u", "scored", "bias", "coverage95"}}, "worst"}.
+/// {"trials", "lost", "verdicts", "results": {name: {"count", "mean", "sd", "rms_u", "scored", "rms_error", "bias", "coverage95"}}, "worst"}.
 nlohmann::json SummaryJson(const campaign::Summary& summary);
 
 }  // namespace twinbench::tools

@@ -1,19 +1,26 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <future>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/common_options.h"
 #include "tools/twinbench/json_answer.h"
+#include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/planned_run.h"
+#include "tools/twinbench/progress.h"
 #include "tools/twinbench/real_bench.h"
 #include "tools/twinbench/run_folder.h"
+#include "twin/benches/evaluated.h"
+#include "twin/benches/expected.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
+#include "twin/core/estimator.h"
 #include "twin/core/reading_clock.h"
 #include "twin/core/run_record.h"
 #include "twin/report/plan_text.h"
@@ -27,11 +34,42 @@ struct CheckOptions {
   std::vector<std::string> overrides;
 };
 
+/// Readings of one phase that end without numbers, for one reason.
+struct Lost {
+  Phase phase;
+  ReadingStatus why;
+  std::ptrdiff_t readings, of;
+};
+
 /// What the run would give; nothing but why, where its readings come to nothing.
 struct Expected {
-  std::optional<plan::Outlook> outlook;
-  std::string why_not;
+  std::optional<plan::Outlook> outlook = {};
+  std::string why_not = {};
+  std::vector<Lost> lost = {};
+  std::string not_separated = {};
 };
+
+std::vector<Lost> LostOf(const std::vector<Reading>& readings) {
+  std::map<std::pair<Phase, ReadingStatus>, std::ptrdiff_t> counts;
+  for (const Reading& r : readings)
+    if (r.status != ReadingStatus::kOk) ++counts[{r.phase, r.status}];
+  std::vector<Lost> lost;
+  for (const auto& [what, count] : counts)
+    lost.push_back({what.first, what.second, count, std::ranges::count(readings, what.first, &Reading::phase)});
+  return lost;
+}
+
+/// @param readings  Of the twin, judged as those of the run will be.
+/// @throws InputError if the run would be refused.
+Expected ExpectedOfReadings(const Scenario& scenario, const std::vector<Reading>& readings) {
+  plausible::RefuseFatal(DoubtsAbout(readings, scenario), "its run");
+  const auto is_usable = [](const Reading& r) { return r.status == ReadingStatus::kOk; };
+  if (std::ranges::none_of(readings, is_usable)) return {.why_not = fmt::format("none of its {} readings would have numbers", readings.size())};
+  const report::Evaluation evaluation = EvaluationOf(scenario, readings, Estimator::kRigorous);
+  if (evaluation.IsRefuted()) return {.why_not = evaluation.not_separated};
+  return {.outlook = plan::OutlookOf(evaluation.results, static_cast<int>(readings.size()), ToSeconds(readings.back().time)),
+          .not_separated = evaluation.Separated() ? "" : evaluation.not_separated};
+}
 
 /// The scenario of a recording that nobody timed states a procedure all the same; its minutes are nobody's.
 bool IsOfRunWithoutClock(const std::string& scenario) {
@@ -42,15 +80,35 @@ bool IsOfRunWithoutClock(const std::string& scenario) {
 }
 
 Expected ExpectedOf(const std::string& path, const Scenario& scenario) {
+  Doing("the run as the scenario says");
+  std::vector<Lost> lost;
   try {
-    Expected expected{OutlookAtOnce(scenario), ""};
-    if (IsOfRunWithoutClock(path)) expected.outlook->minutes = kNaN;
+    const Scenario quick = Quick(scenario);
+    const std::vector<Reading> readings = ReadingsOfTwin(quick);
+    lost = LostOf(readings);
+    Expected expected = ExpectedOfReadings(quick, readings);
+    if (expected.outlook && IsOfRunWithoutClock(path)) expected.outlook->minutes = kNaN;
+    expected.lost = lost;
     return expected;
   } catch (const InputError& refusal) {
-    return {{}, refusal.what()};
+    return {.why_not = refusal.what(), .lost = lost};
   } catch (const BenchError& failure) {
-    return {{}, failure.what()};
+    return {.why_not = failure.what(), .lost = lost};
   }
+}
+
+nlohmann::json LostJson(const std::vector<Lost>& lost) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const Lost& l : lost)
+    json.push_back({{"phase", PhaseName(l.phase)}, {"status", ReadingStatusName(l.why)}, {"readings", l.readings}, {"of", l.of}});
+  return json;
+}
+
+std::string LostText(const std::vector<Lost>& lost) {
+  std::string text;
+  for (const Lost& l : lost)
+    text += fmt::format("It would lose {} of {} readings ({}): {}\n", l.readings, l.of, PhaseName(l.phase), ReadingStatusName(l.why));
+  return text;
 }
 
 nlohmann::json JsonOf(const CheckOptions& options, const Scenario& scenario, int readings, const Expected& expected,
@@ -65,6 +123,8 @@ nlohmann::json JsonOf(const CheckOptions& options, const Scenario& scenario, int
     json["expected"] = report::OutlookJson({"as the scenario says", {}, *expected.outlook});
   else
     json["no_results"] = expected.why_not;
+  if (!expected.lost.empty()) json["lost_readings"] = LostJson(expected.lost);
+  if (!expected.not_separated.empty()) json["not_separated"] = expected.not_separated;
   if (on_real_bench) json["real_bench_minutes"] = *on_real_bench;
   return json;
 }
@@ -95,6 +155,8 @@ void Check(const CheckOptions& options, JsonAnswer& answer) {
   fmt::print("{}: fine. Bench {}, {}, {}, {} with a stated uncertainty\n", options.scenario, scenario.bench,
              Counted(static_cast<std::size_t>(readings), "reading"), Counted(scenario.effects.size(), "effect"),
              Counted(scenario.uncertainties.size(), "constant"));
+  fmt::print("{}", LostText(expected.lost));
+  if (!expected.not_separated.empty()) fmt::print("It would separate nothing: {}\n", expected.not_separated);
   if (!expected.outlook) return fmt::print("It would come to no result: {}\n", expected.why_not);
   fmt::print("{}\n\n{}", DurationOf(expected.outlook->minutes, on_real_bench),
              report::WithoutNoNumbers(report::OutlookText(*expected.outlook)));

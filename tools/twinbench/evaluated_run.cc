@@ -68,7 +68,7 @@ bool EvaluateRecord(const Scenario& scenario, const std::string& folder, RunReco
   WriteTables(folder, run.evaluation.tables);
   fmt::print("{}", run.text);
   answer.Write(RunJson({folder}, scenario, readings, run));
-  if (run.evaluation.IsRefuted()) throw InputError(folder, run.evaluation.not_separated, "readings of the bench in the scenario");
+  if (run.evaluation.IsRefuted()) throw InputError(folder, run.evaluation.not_separated, report::WhatItWouldTake(run.evaluation));
   return run.evaluation.Separated();
 }
 

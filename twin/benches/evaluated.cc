@@ -15,7 +15,7 @@ report::Evaluation EvaluationOf(const Scenario& scenario, const std::vector<Read
 report::ScoredRun ScoreOf(const Scenario& scenario, const std::vector<Reading>& readings, const nlohmann::json& truth,
                           Estimator estimator) {
   const report::Evaluation evaluation = EvaluationOf(scenario, readings, estimator);
-  if (evaluation.IsRefuted()) throw InputError("the run", evaluation.not_separated, "readings of the bench in the scenario");
+  if (evaluation.IsRefuted()) throw InputError("the run", evaluation.not_separated, report::WhatItWouldTake(evaluation));
   report::ScoredRun score = evaluation.score ? evaluation.score(truth) : BenchOf(scenario).score(scenario, readings, truth, estimator);
   score.text = report::WithoutNoNumbers(score.text);
   score.positions = report::WithoutNoNumbers(score.positions);

@@ -44,6 +44,7 @@ void Summary::Sums::Add(const TrialResult& r) {
   if (!std::isfinite(r.error) || !std::isfinite(r.u)) return;
   ++scored;
   sum_error += r.error;
+  sum_error2 += r.error * r.error;
   covered += std::abs(r.error) <= r.k * r.u ? 1 : 0;
 }
 
@@ -62,7 +63,7 @@ void Summary::Add(const TrialRow& row) {
 
 std::map<std::string, ResultSummary> Summary::Results() const {
   struct Pool {
-    double sum = 0.0, about_means = 0.0, dof = 0.0, sum_u2 = 0.0, count_u = 0.0, covered = 0.0;
+    double sum = 0.0, about_means = 0.0, dof = 0.0, sum_u2 = 0.0, count_u = 0.0, sum_error2 = 0.0, covered = 0.0;
     std::vector<double> biases;
   };
   std::map<std::string, ResultSummary> results;
@@ -79,6 +80,7 @@ std::map<std::string, ResultSummary> Summary::Results() const {
     pool.sum_u2 += s.sum_u2;
     pool.count_u += static_cast<double>(s.count_u);
     if (s.scored > 0) pool.biases.push_back(s.sum_error / static_cast<double>(s.scored));
+    pool.sum_error2 += s.sum_error2;
     pool.covered += static_cast<double>(s.covered);
   }
   for (auto& [name, result] : results) {
@@ -87,6 +89,7 @@ std::map<std::string, ResultSummary> Summary::Results() const {
     result.mean = pool.sum / static_cast<double>(result.count);
     result.sd = pool.dof > 0.0 ? std::sqrt(pool.about_means / pool.dof) : kNaN;
     result.rms_u = pool.count_u > 0.0 ? std::sqrt(pool.sum_u2 / pool.count_u) : kNaN;
+    result.rms_error = std::sqrt(pool.sum_error2 / scored);
     result.bias = BiasOf(pool.biases);
     result.coverage95 = pool.covered / scored;
   }

@@ -18,6 +18,7 @@ struct ResultSummary {
   double sd = 0.0;  // over trials; of a list, each number about its own mean
   double rms_u = 0.0;
   std::int64_t scored = 0;  // those whose error is known
+  double rms_error = 0.0;   // of values that differ from trial to trial, what u is to be held against
   double bias = 0.0;        // mean error; of a list, root mean square of those of its numbers
   double coverage95 = 0.0;  // share of errors within their k u
 
@@ -47,7 +48,7 @@ class Summary {
   /// Sums of one number; mean and sum of squares about it as Welford (Technometrics 4 (1962) 419-420) takes them.
   struct Sums {
     std::int64_t count = 0, scored = 0, covered = 0;
-    double mean = 0.0, about_mean = 0.0, sum_u2 = 0.0, sum_error = 0.0;
+    double mean = 0.0, about_mean = 0.0, sum_u2 = 0.0, sum_error = 0.0, sum_error2 = 0.0;
     std::int64_t count_u = 0;
     void Add(const TrialResult& result);
   };

@@ -15,8 +15,8 @@ std::string Cell(double value, const char* form) {
 }
 
 std::string ResultLine(const std::string& name, const ResultSummary& r) {
-  return fmt::format("{:<44} {:>8} {:>12} {:>10} {:>10} {:>11} {:>9}\n", name, r.count, Cell(r.ShownMean(), "{:.5g}"),
-                     Cell(r.sd, "{:.3g}"), Cell(r.rms_u, "{:.3g}"), Cell(r.bias, "{:.3g}"),
+  return fmt::format("{:<44} {:>8} {:>12} {:>10} {:>10} {:>10} {:>11} {:>9}\n", name, r.count, Cell(r.ShownMean(), "{:.5g}"),
+                     Cell(r.sd, "{:.3g}"), Cell(r.rms_error, "{:.3g}"), Cell(r.rms_u, "{:.3g}"), Cell(r.bias, "{:.3g}"),
                      Cell(100.0 * r.coverage95, "{:.1f} %"));
 }
 
@@ -41,8 +41,8 @@ std::string SummaryText(const Summary& summary, const std::string& study_path) {
   std::string text =
       fmt::format("{} trials, {} lost\n", summary.Trials(), summary.Lost().size()) + LostText(summary);
   for (const auto& [verdict, count] : summary.Verdicts()) text += fmt::format("diagnosis {}: {}\n", verdict, count);
-  text += fmt::format("{:<44} {:>8} {:>12} {:>10} {:>10} {:>11} {:>9}\n", "result ([]: all of a list)", "count",
-                      "mean", "sd", "rms u", "bias", "in k u");
+  text += fmt::format("{:<44} {:>8} {:>12} {:>10} {:>10} {:>10} {:>11} {:>9}\n", "result ([]: all of a list)", "count",
+                      "mean", "sd", "rms error", "rms u", "bias", "in k u");
   for (const auto& [name, result] : summary.Results()) text += ResultLine(name, result);
   const std::string worst = WorstText(summary);
   text += worst;

@@ -20,6 +20,7 @@ using NoOverflow = boost::math::policies::policy<
 
 double ChiSquaredExceedance(double chi2, double dof) {
   if (!(dof > 0.0) || std::isnan(chi2)) return std::numeric_limits<double>::quiet_NaN();
+  if (!(chi2 > 0.0)) return 1.0;  // nothing is left, but for the rounding error of a difference
   return std::isinf(chi2) ? 0.0 : boost::math::gamma_q(0.5 * dof, 0.5 * chi2, NoOverflow());
 }
 
@@ -29,7 +30,8 @@ double VarianceRatioExceedance(double ratio, double dof, double dof_below) {
 }
 
 double NormalExceededWith(double probability) {
-  return std::sqrt(2.0) * boost::math::erfc_inv(2.0 * probability);
+  if (!(probability >= 0.0 && probability <= 1.0)) return std::numeric_limits<double>::quiet_NaN();
+  return std::sqrt(2.0) * boost::math::erfc_inv(2.0 * probability, NoOverflow());
 }
 
 double NormalLogDensity(double value, double scale) {

@@ -8,7 +8,7 @@ namespace twinbench {
 inline constexpr double kLeastDof = 0.5;
 
 /// Probability that a chi-squared variable of `dof` degrees of freedom (any positive number) exceeds `chi2`; NaN
-/// unless dof > 0. Exact to rounding (Boost.Math's regularised incomplete gamma function).
+/// unless dof > 0, and 1 where nothing is left. Exact to rounding (Boost.Math's regularised incomplete gamma function).
 double ChiSquaredExceedance(double chi2, double dof);
 
 /// Probability that the ratio of two variances of these degrees of freedom (any positive numbers) that estimate the
@@ -18,7 +18,7 @@ double VarianceRatioExceedance(double ratio, double dof, double dof_below);
 /// ln Gamma(x), x > 0. From several threads at once, which std::lgamma must not be: it writes a sign for all of them.
 double LogGamma(double x);
 
-/// The value that a standard normal variable exceeds with this probability, between 0 and 1.
+/// The value that a standard normal variable exceeds with this probability: infinite at 0 and 1, NaN where it is no probability.
 double NormalExceededWith(double probability);
 
 /// Log density of a normal variable of this scale.

@@ -1,5 +1,6 @@
 #include "twin/plan/harmonics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -32,8 +33,14 @@ bool IsTerm(const Json& node) {
          !AmplitudeKey(node).empty();
 }
 
+/// A list of them; not that of results that were taken back, in which every number is null.
+bool HasOrders(const Json& node) {
+  if (!node.is_object() || !node.contains("order") || !node.at("order").is_array()) return false;
+  return std::ranges::all_of(node.at("order"), [](const Json& order) { return order.is_number_integer(); });
+}
+
 bool IsColumns(const Json& node) {
-  return node.is_object() && node.contains("order") && node.at("order").is_array() && !AmplitudeKey(node).empty();
+  return HasOrders(node) && !AmplitudeKey(node).empty();
 }
 
 HarmonicCertainty OfColumns(std::string name, const Json& orders, const Json& u) {
@@ -68,6 +75,7 @@ void Collect(const Json& node, const std::string& path, std::vector<HarmonicCert
         Collect(value, Below(path, key), found);
         continue;
       }
+      if (!HasOrders(value)) continue;
       for (const auto& [component, u] : value.items()) {
         if (component != "order") found.push_back(OfColumns(Below(path, component), value.at("order"), u));
       }

@@ -143,6 +143,13 @@ const ReadingColumn* FiledPlace(const BenchFormat& bench, const std::string& axi
   return nullptr;
 }
 
+/// Whether an axis went from one reading to the next: it was filed at another place, or stood further from where it was than an axis does that
+/// comes to one place again.
+bool Went(double filed_step, double step, double to_SI) {
+  const double rests_within = 0.1 * to_SI;
+  return step > 0.0 && (step > rests_within || std::abs(filed_step) > 0.5 * step);
+}
+
 /// How far an axis stood from the place that its readings are filed at, but for a constant of each set-up [SI].
 struct Elsewhere {
   std::vector<const Reading*> reading;
@@ -151,7 +158,8 @@ struct Elsewhere {
 
 Elsewhere ElsewhereOf(const std::vector<Reading>& readings, const ReadingColumn& place, const std::string& encoder, double to_SI) {
   Elsewhere found;
-  std::map<int, double> first, before;
+  std::map<int, double> first;
+  std::map<int, std::pair<double, double>> before;  // filed at, stood at
   for (const Reading& reading : readings) {
     const auto text = reading.extra.find(encoder);
     const auto stood = text == reading.extra.end() ? std::nullopt : ParseInUnit(text->second, to_SI);
@@ -160,9 +168,11 @@ Elsewhere ElsewhereOf(const std::vector<Reading>& readings, const ReadingColumn&
     const double off = first.try_emplace(reading.setup, *stood - at).first->second - (*stood - at);
     found.reading.push_back(&reading);
     found.off.push_back(std::abs(to_SI == units::deg ? std::remainder(off, units::turn) : off));
-    if (const auto last = before.find(reading.setup); last != before.end() && *stood != last->second)
-      found.step.push_back(std::abs(*stood - last->second));
-    before[reading.setup] = *stood;
+    if (const auto last = before.find(reading.setup); last != before.end()) {
+      const double step = std::abs(*stood - last->second.second);
+      if (Went(at - last->second.first, step, to_SI)) found.step.push_back(step);
+    }
+    before[reading.setup] = {at, *stood};
   }
   return found;
 }

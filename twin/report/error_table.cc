@@ -1,6 +1,7 @@
 #include "twin/report/error_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -109,6 +110,14 @@ double MeanOfAll(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
+/// "a, b, c and 7 more"
+std::string FirstOf(const std::vector<std::string>& names) {
+  constexpr std::size_t kTold = 3;
+  const std::size_t told = std::min(kTold, names.size());
+  const std::string text = fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(told), ", "));
+  return names.size() > told ? fmt::format("{} and {} more", text, names.size() - told) : text;
+}
+
 /// A list whose truth has no mean is one whose mean is not separable.
 void TakeOutMean(CurveScore& curve) {
   double largest = 0.0;
@@ -148,6 +157,12 @@ ScoredRun ScoreAgainst(const std::vector<ScoredValue>& truth, const std::string&
   if (lists.empty()) throw InputError(file, "it has no result that could be compared", "a row for each result");
   std::vector<CurveScore> curves;
   ScoredRun scored;
+  std::set<std::string> known(names.begin(), names.end());
+  std::vector<std::string> unknown, certain;  // the user's names without a truth, and those whose u is zero
+  for (const auto& [name, number] : own) {
+    if (!known.contains(name)) unknown.push_back(name);
+    if (number.u == 0.0 && known.contains(name)) certain.push_back(name);
+  }
   std::size_t compared = 0;
   for (auto& [list, both] : lists) {
     compared += both.first.truth.size();
@@ -157,6 +172,8 @@ ScoredRun ScoreAgainst(const std::vector<ScoredValue>& truth, const std::string&
   }
   scored.json = ToJson(curves);
   scored.text = fmt::format("{} of {} results in {} are compared with the truth\n", compared, own.size(), file) + ScoreTable(curves);
+  if (!unknown.empty()) scored.text += fmt::format("no truth is known of {}\n", FirstOf(unknown));
+  if (!certain.empty()) scored.text += fmt::format("u is 0, so that (error/u)^2 leaves it out, of {}\n", FirstOf(certain));
   scored.positions = PositionTable(curves);
   scored.values = ValuesOf(curves);
   return scored;

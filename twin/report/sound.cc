@@ -230,4 +230,10 @@ void KeepSound(const std::vector<Reading>& readings, Evaluation& evaluation) {
   evaluation.summary = sound + "-: " + why + "\n";
 }
 
+std::string WhatItWouldTake(const Evaluation& evaluation) {
+  if (!WorstOf(evaluation.misfits)) return "more readings that have numbers: an instrument that reaches what it reads, more positions or mountings";
+  return "readings that differ from the model by noise: what is larger in them than the scenario says (an effect, a wrong constant, another "
+         "bench) `twinbench diagnose` names";
+}
+
 }  // namespace twinbench::report

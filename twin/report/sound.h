@@ -46,4 +46,7 @@ int ClearNoNumbers(nlohmann::json& results);
 /// @param readings  Behind the evaluation.
 void KeepSound(const std::vector<Reading>& readings, Evaluation& evaluation);
 
+/// In the words of a refusal's "expected": what it would take for readings that come to nothing (Evaluation::IsRefuted) to come to something.
+std::string WhatItWouldTake(const Evaluation& evaluation);
+
 }  // namespace twinbench::report

@@ -91,6 +91,7 @@ json ErrorScores(const CircleFit& fit, const json& truth, report::ScoredRun& sco
     const double actual = p.Of(truth.at(p.amplitude).get<double>(), truth.at(p.azimuth).get<double>());
     scored.values.push_back({p.part.key, p.part.value, p.part.u, actual});
   }
+  scored.text += fmt::format("{:<34} {:>14}   {}\n", "error of", "estimate-truth", "stated u");
   for (const ErrorValue& e : ErrorsOf(fit)) {
     if (!truth.contains(e.key) || !std::isfinite(e.u) || e.unit == "deg") continue;
     const double actual = truth.at(e.key).get<double>(), error = e.value - actual;

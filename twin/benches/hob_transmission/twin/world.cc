@@ -47,11 +47,22 @@ void HobWorld::Arm(int edges, int samples) {
 void HobWorld::RunUntil(Time until) {
   while (Now() < until) {
     if (StandsStill()) return drive_.RunUntil(until);
-    // While nothing is counted, time may pass in one piece.
-    const Time end = hob_speed_rad_s_ == 0.0 ? std::min(until, at_rest_) : until;
-    const Duration piece = counters_.Armed() ? std::min<Duration>(piece_, end - Now()) : end - Now();
+    const Duration piece = PieceTo(hob_speed_rad_s_ == 0.0 ? std::min(until, at_rest_) : until);
     drive_.RunUntil(Now() + piece, [&] { Pass(piece); });
   }
+}
+
+Duration HobWorld::PieceTo(Time end) const {
+  const Duration rest = end - Now();
+  // While nothing is counted, time may pass in one piece.
+  if (!counters_.Armed()) return rest;
+  const bool is_steady = HobOf(actual()).mechanics.fidelity == "kinematic" && hob_speed_rad_s_ != 0.0 && Now() >= slowed_down_;
+  if (!is_steady) return std::min(piece_, rest);
+  // Up to the next edge nothing is counted either: half-way to it, as no error makes the table twice as fast.
+  const double fastest_rad_s = 2.0 * std::abs(HobOf(actual()).transmission.Ratio() * hob_speed_rad_s_);
+  const double way_rad = direction_ * (counters_.NextTableAngle_rad() - train_->State().table_rad);
+  const double pieces = std::floor(way_rad / fastest_rad_s / ToSeconds(piece_));
+  return ToSeconds(rest) < pieces * ToSeconds(piece_) ? rest : std::min(rest, piece_ * std::max(1L, static_cast<long>(pieces)));
 }
 
 /// What went on in the piece of time that ends now.

@@ -43,6 +43,8 @@ class HobWorld {
   /// What the counts do not say: time, speed, the interferometer, and what disturbs all of them.
   CounterSample Completed(CounterSample sample, const mechanics::GearTrainState& at, Time now);
   bool StandsStill() const { return hob_speed_rad_s_ == 0.0 && Now() >= at_rest_; }
+  /// Until when nothing need be looked at, `end` at most.
+  Duration PieceTo(Time end) const;
   void Pass(Duration piece);
   double Interferometer_rad(const mechanics::GearTrainState& at, double velocity_rad_s, Time now);
 
