@@ -67,9 +67,10 @@ TEST_F(Commands, ACheckForetellsThatARunComesToNothingOrLosesReadings) {
   EXPECT_THAT(Succeed({"check", "small.toml"}), testing::Not(HasSubstr("It would")));
   // All numbers of results that were taken back are null, orders too.
   EXPECT_THAT(Succeed({"check", "small.toml", "--set", "target.random.ez_arcsec=3600"}), HasSubstr("It would lose "));
-  Write("collimator.toml", "bench = \"turntable_autocollimator\"\n[turntable_procedure]\nphases = [\"full_circle\"]\n");
-  EXPECT_THAT(Succeed({"check", "collimator.toml", "--set", "turntable_procedure.positions=3", "--set", "multitooth.teeth=3"}),
-              HasSubstr("It would come to no result: "));
+  Write("collimator.toml",
+        "bench = \"turntable_autocollimator\"\n[multitooth]\nteeth = 3\n[turntable_procedure]\nphases = [\"full_circle\"]\npositions = 3\n"
+        "passes = [1]\ntilts_arcsec = [50.0]\neccentricities_um = [0.0]\n");
+  EXPECT_THAT(Succeed({"check", "collimator.toml"}), HasSubstr("It would come to no result: its run: there are only 3 readings"));
 }
 
 TEST_F(Commands, WithoutAnyNoiseEveryBenchIsCheckedRunAndScored) {
@@ -91,7 +92,7 @@ TEST_F(Commands, WithoutAnyNoiseEveryBenchIsCheckedRunAndScored) {
 }
 
 TEST_F(Commands, ARunWhoseEffectIsTooLargeForTheModelSaysSo) {
-  Write("large.toml", std::string(kSmall) + "[[effect]]\nname = \"psd_nonlinearity\"\nwhere = \"psd_b\"\ncubic_per_m2 = 600000.0\n");
+  Write("large.toml", std::string(kSmall) + "[psd_b]\ndistance_mm = 210.0\n[[effect]]\nname = \"psd_nonlinearity\"\nwhere = \"psd_b\"\ncubic_per_m2 = 600000.0\n");
   const Outcome run = Call({"run", "large.toml", "-o", "large"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, testing::AllOf(HasSubstr("does not describe the readings"), HasSubstr("`twinbench diagnose` names")));
