@@ -99,6 +99,13 @@ TEST_F(Commands, ARunWhoseEffectIsTooLargeForTheModelSaysSo) {
   EXPECT_THAT(Call({"score", "large"}).err, HasSubstr("`twinbench diagnose` names"));
 }
 
+TEST_F(Commands, ACirclesErrorsAreStatedToTheSecondDigitOfTheirU) {
+  Write("circle.toml", "bench = \"circular_motion\"\n");
+  const std::string said = Succeed({"run", "circle.toml", "-o", "circle"});
+  EXPECT_TRUE(std::regex_search(said, std::regex("machine\\.lag_x_s +(−)?0\\.\\d+ ± 0\\.0+\\d\\d s\n"))) << said;
+  EXPECT_THAT(Succeed({"score", "circle"}), HasSubstr("error of                           estimate-truth   stated u\n"));
+}
+
 TEST_F(Commands, APlanWithoutTimeSaysWhatItLeavesOutAndStillProposesARun) {
   const nlohmann::json plan = Json({"plan", "small.toml", "--cpu", "0.001", "-o", "next.toml", "--json", "-"});
   EXPECT_TRUE(plan.at("left_out").contains("another run"));

@@ -228,6 +228,13 @@ json RankedJson(const std::vector<RankedError>& ranked) {
   return list;
 }
 
+/// "-0.00049970 ± 0.00000052": both to the second digit of u.
+std::string ToDigitsOfU(double value, double u) {
+  constexpr int kMost = 12;
+  const int decimals = u > 0.0 && std::isfinite(u) ? std::clamp(1 - static_cast<int>(std::floor(std::log10(u))), 0, kMost) : 6;
+  return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, u, decimals);
+}
+
 /// Those that stand out of their uncertainty.
 std::string RankedText(const std::vector<RankedError>& ranked) {
   std::string text;
@@ -236,7 +243,7 @@ std::string RankedText(const std::vector<RankedError>& ranked) {
     if (!e.IsSignificant()) continue;
     if (!last || last->setup != e.setup || last->feed_m_s != e.feed_m_s)
       text += fmt::format("Ranked by G(b) of each alone, mounting {}, {}; the centre is no error:\n", e.setup, FeedText(e.feed_m_s));
-    text += fmt::format("  {:<26} {:>10.4g} ± {:.2g} {:<8} {:8.3f} µm {:4.0f} %\n", e.name, e.size.value, e.size.u, e.size.unit, e.alone_m / um, 100.0 * e.share);
+    text += fmt::format("  {:<26} {:>24} {:<8} {:8.3f} µm {:4.0f} %\n", e.name, ToDigitsOfU(e.size.value, e.size.u), e.size.unit, e.alone_m / um, 100.0 * e.share);
     last = &e;
   }
   return text;
@@ -269,7 +276,7 @@ std::string LagInWords(const std::string& kind) {
 std::string ErrorsText(const CircleAnalysis& a) {
   std::string text;
   for (const ErrorValue& e : ErrorsOf(a.fit))
-    text += std::isfinite(e.u) ? fmt::format("{:<34} {:14.6g} ± {:.2g} {}\n", e.key, e.value, e.u, e.unit) : "";
+    text += std::isfinite(e.u) ? fmt::format("{:<34} {:>24} {}\n", e.key, ToDigitsOfU(e.value, e.u), e.unit) : "";
   for (const std::string& words : a.fit.not_separable) text += "not separable: " + words + "\n";
   if (!a.lag_kind.empty()) text += "lag: " + LagInWords(a.lag_kind) + "\n";
   text += fmt::format("residual, in stated uncertainties: {:.3f} rms\n", a.fit.chi);
