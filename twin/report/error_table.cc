@@ -111,7 +111,7 @@ double MeanOfAll(const std::vector<double>& values) {
 }
 
 /// "a, b, c and 7 more"
-std::string FirstOf(const std::vector<std::string>& names) {
+std::string FirstNames(const std::vector<std::string>& names) {
   constexpr std::size_t kTold = 3;
   const std::size_t told = std::min(kTold, names.size());
   const std::string text = fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(told), ", "));
@@ -172,8 +172,8 @@ ScoredRun ScoreAgainst(const std::vector<ScoredValue>& truth, const std::string&
   }
   scored.json = ToJson(curves);
   scored.text = fmt::format("{} of {} results in {} are compared with the truth\n", compared, own.size(), file) + ScoreTable(curves);
-  if (!unknown.empty()) scored.text += fmt::format("no truth is known of {}\n", FirstOf(unknown));
-  if (!certain.empty()) scored.text += fmt::format("u is 0, so that (error/u)^2 leaves it out, of {}\n", FirstOf(certain));
+  if (!unknown.empty()) scored.text += fmt::format("no truth is known of {}\n", FirstNames(unknown));
+  if (!certain.empty()) scored.text += fmt::format("u is 0, so that (error/u)^2 leaves it out, of {}\n", FirstNames(certain));
   scored.positions = PositionTable(curves);
   scored.values = ValuesOf(curves);
   return scored;
