@@ -74,7 +74,7 @@ void LargeSearch::TakeOtherLag() {
   other.causes.front().parameters = LagNumbers({of["delay"], of["time_constant"]});
   other.effect.finding.u.clear();
   const AskedAgain asked = fit_->Ask(causes);
-  if (fit_->PowerOf(asked.left) < power_ - kBetter) Accept(asked, std::move(causes), kFewCauses);
+  if (IsClearlyLess(fit_->PowerOf(asked.left), asked.left)) Accept(asked, std::move(causes), kFewCauses);
 }
 
 /// All at once, if the first of them is held and they leave no more than half.
