@@ -231,7 +231,8 @@ void KeepSound(const std::vector<Reading>& readings, Evaluation& evaluation) {
 }
 
 std::string WhatItWouldTake(const Evaluation& evaluation) {
-  if (!WorstOf(evaluation.misfits)) return "more readings that have numbers: an instrument that reaches what it reads, more positions or mountings";
+  if (!WorstOf(evaluation.misfits)) return "more readings that have numbers: an instrument that reaches what it reads, more positions or "
+                                            "mountings, and a scenario that states some noise";
   return "readings that differ from the model by noise: what is larger in them than the scenario says (an effect, a wrong constant, another "
          "bench) `twinbench diagnose` names";
 }
