@@ -160,6 +160,13 @@ TEST(VerdictLine, BeginsWithWhatExplainsMost) {
   EXPECT_LT(line.find("small"), line.find("none")) << line;
 }
 
+TEST(VerdictLine, LeavesOutWhatIsLessLikelyThanNot) {
+  const std::string line = VerdictLine(Of(Verdict::kNamed, {Backlash(), Without("drift", 0.01, {}), Without("periodic", 0.06, {})}), "run.csv");
+  EXPECT_EQ(line.find("drift"), std::string::npos) << line;
+  EXPECT_EQ(line.find("periodic"), std::string::npos) << line;
+  EXPECT_NE(line.find("backlash"), std::string::npos) << line;
+}
+
 TEST(VerdictLine, SaysWhatIsUnknownOrThatNothingWasFound) {
   Diagnosis d = Of(Verdict::kUnknown, {});
   d.unknown.probability = 0.97;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "twin/diagnose/cause_groups.h"
@@ -78,6 +79,18 @@ std::string Causes(const Diagnosis& d, const std::vector<diagnose::CauseGroup>& 
   return text;
 }
 
+/// What is less likely than not is in the table: a headline says what was found, if anything was.
+std::vector<diagnose::CauseGroup> Likely(const std::vector<Cause>& causes, std::vector<diagnose::CauseGroup> groups) {
+  constexpr double kHalf = 0.5;
+  const auto is_likely = [&](const diagnose::CauseGroup& group) {
+    double probability = 0.0;
+    for (const std::size_t k : group) probability += causes[k].probability;
+    return probability >= kHalf;
+  };
+  if (std::ranges::any_of(groups, is_likely)) std::erase_if(groups, std::not_fn(is_likely));
+  return groups;
+}
+
 std::string ShortSource(const std::string& source) {
   if (WidthOf(source) <= kLongestSource) return source;
   const std::filesystem::path path(source);
@@ -87,7 +100,7 @@ std::string ShortSource(const std::string& source) {
 }  // namespace
 
 std::string VerdictLine(const Diagnosis& d, const std::string& source, const std::vector<double>& share) {
-  const std::vector<diagnose::CauseGroup> groups = GroupsByShare(d.causes, share);
+  const std::vector<diagnose::CauseGroup> groups = Likely(d.causes, GroupsByShare(d.causes, share));
   const std::string name = ShortSource(source), of = fmt::format("{} reading{} of {}", d.readings, d.readings == 1 ? "" : "s", name);
   const auto line = [&](const std::string& verdict) {
     for (const bool with_sizes : {true, false}) {
