@@ -152,7 +152,8 @@ void Check(const CheckOptions& options, JsonAnswer& answer) {
   const std::optional<double> on_real_bench = minutes.get();
   answer.Write(JsonOf(options, scenario, readings, expected, on_real_bench));
   if (answer.IsOnStdout()) return;
-  fmt::print("{}: fine. Bench {}, {}, {}, {} with a stated uncertainty\n", options.scenario, scenario.bench,
+  const bool is_fine = expected.outlook && expected.not_separated.empty();
+  fmt::print("{}: {}. Bench {}, {}, {}, {} with a stated uncertainty\n", options.scenario, is_fine ? "fine" : "every key is right, its run is not", scenario.bench,
              Counted(static_cast<std::size_t>(readings), "reading"), Counted(scenario.effects.size(), "effect"),
              Counted(scenario.uncertainties.size(), "constant"));
   fmt::print("{}", LostText(expected.lost));
