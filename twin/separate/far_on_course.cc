@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "twin/core/robust_scale.h"
@@ -138,6 +141,25 @@ std::vector<FarOnCourse> FarOnCourses(std::vector<std::vector<OnCourse>> passes,
   for (const Course& course : courses) all.push_back(&course);
   std::vector<FarOnCourse> far;
   for (const Course& course : courses) std::ranges::copy(FarOf(course, all, least, may_be_there), std::back_inserter(far));
+  return far;
+}
+
+std::vector<FarOnCourse> TakeOutFar(std::vector<Reading>& readings, const std::function<std::optional<OnCourse>(const Reading&)>& on_course,
+                                    double least, const MayBeThere& may_be_there) {
+  std::map<std::pair<int, int>, std::map<int, std::vector<OnCourse>>> that_way;  // set-up and direction; pass
+  for (const Reading& r : readings) {
+    const std::optional<OnCourse> at = r.status == ReadingStatus::kOk ? on_course(r) : std::nullopt;
+    if (at && std::isfinite(at->value)) that_way[{r.setup, r.direction}][r.pass].push_back(*at);
+  }
+  std::vector<FarOnCourse> far;
+  for (auto& [way, by_pass] : that_way) {
+    std::vector<std::vector<OnCourse>> passes;
+    for (auto& [number, pass] : by_pass) passes.push_back(std::move(pass));
+    std::ranges::copy(FarOnCourses(std::move(passes), least, may_be_there), std::back_inserter(far));
+  }
+  std::set<int> numbers;
+  for (const FarOnCourse& one : far) numbers.insert(one.reading);
+  std::erase_if(readings, [&](const Reading& r) { return numbers.contains(r.reading); });
   return far;
 }
 

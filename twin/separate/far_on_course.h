@@ -1,7 +1,10 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
+
+#include "twin/core/reading.h"
 
 /// Single readings that lie far from the course of their neighbours.
 namespace twinbench::separate {
@@ -27,5 +30,11 @@ using MayBeThere = std::function<bool(double angle_rad, double step_rad)>;
 /// @param may_be_there  Asked of what no other turn goes through.
 /// @return the farthest of each pass first; none of a pass where they are so many that the axis moves so.
 std::vector<FarOnCourse> FarOnCourses(std::vector<std::vector<OnCourse>> passes, double least, const MayBeThere& may_be_there);
+
+/// Takes single far readings of every set-up and direction out of the readings, turn by turn.
+/// @param on_course  Where a reading lies; nothing of one that is not looked at.
+/// @return what was taken out.
+std::vector<FarOnCourse> TakeOutFar(std::vector<Reading>& readings, const std::function<std::optional<OnCourse>(const Reading&)>& on_course,
+                                    double least, const MayBeThere& may_be_there);
 
 }  // namespace twinbench::separate

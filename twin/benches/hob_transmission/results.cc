@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <map>
 #include <optional>
-#include <set>
 
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
@@ -286,24 +284,11 @@ std::string SummaryOf(const HobAnalysis& a, const HobSettings& settings) {
 /// Single samples that no other turn of the table shows are as good as missing. Of one turn alone none is told from a fault of the gears.
 std::vector<separate::FarOnCourse> TakeOutFar(double ratio, std::vector<Reading>& readings) {
   constexpr double kLeast_rad = 1e-12;
-  std::map<std::pair<int, int>, std::map<int, std::vector<separate::OnCourse>>> that_way;  // set-up and direction; pass
-  for (const Reading& r : readings) {
-    const double error_rad = r.measured_rad - ratio * r.reference_rad;
-    if (r.status == ReadingStatus::kOk && std::isfinite(error_rad) && r.velocity_rad_s != 0.0)
-      that_way[{r.setup, r.direction}][r.pass].push_back({r.reading, r.measured_rad, error_rad});
-  }
-  std::set<int> numbers;
-  std::vector<separate::FarOnCourse> far;
-  for (auto& [way, by_pass] : that_way) {
-    std::vector<std::vector<separate::OnCourse>> passes;
-    for (auto& [number, pass] : by_pass) passes.push_back(std::move(pass));
-    for (const separate::FarOnCourse& one : separate::FarOnCourses(std::move(passes), kLeast_rad, [](double, double) { return true; })) {
-      far.push_back(one);
-      numbers.insert(one.reading);
-    }
-  }
-  std::erase_if(readings, [&](const Reading& r) { return numbers.contains(r.reading); });
-  return far;
+  const auto error = [ratio](const Reading& r) {
+    const separate::OnCourse at{r.reading, r.measured_rad, r.measured_rad - ratio * r.reference_rad};
+    return r.velocity_rad_s != 0.0 ? std::optional(at) : std::nullopt;
+  };
+  return separate::TakeOutFar(readings, error, kLeast_rad, [](double, double) { return true; });
 }
 
 std::string FarText(const std::vector<separate::FarOnCourse>& far) {
