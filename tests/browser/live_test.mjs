@@ -246,6 +246,9 @@ test("a campaign is seen with its means and lost trials, stopped by the page, an
   await until(async () => (await points()) > before, () => "the mean does not go on");
   assert.equal((await cells())[0], "reversal.mean_arcsec");
   assert.match((await cells())[2], /^\S+ \u00b1 \S+$/);
+  const heads = await page.locator("#results thead th").allTextContents();
+  const scored = page.locator("#results tbody tr", { hasText: "score.device.ez_arcsec[]" }).locator("th, td");
+  assert.match((await scored.allTextContents())[heads.indexOf("rms error")], /^\d/);
   assert.match(await page.locator("#counted").innerText(), /^\d+ of 20000 trials, 0 lost, [\d:]+ left$/);
   assert.match(await page.locator("h1").innerText(), /^campaign: long\.toml into long\.sqlite$/);
   assert.deepEqual(await faultsOf(page), []);

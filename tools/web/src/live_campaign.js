@@ -12,7 +12,7 @@ export function campaign(clock) {
   const body = element("tbody");
   const lost = element("ol", { class: "alarms", id: "lost" });
   const cards = element("div", { class: "cards" });
-  const heads = ["result", "count", "mean", "scatter", "rms u", "bias", "in k u"];
+  const heads = ["result", "count", "mean", "scatter", "rms error", "rms u", "bias", "in k u"];
   const part = element("section", { class: "part", "aria-label": "Campaign", hidden: true },
     element("h2", {}, "Results so far"), element("div", { role: "log", "aria-label": "Lost trials" }, lost),
     element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Results so far" },
@@ -30,7 +30,7 @@ export function campaign(clock) {
       }
       figures?.add({ trials, results });
       body.replaceChildren(...results.map((r) => element("tr", {}, element("th", { scope: "row" }, r.name),
-        ...[String(r.count), r.u_mean === null ? shownAs(r.mean) : `${number(r.mean)} \u00b1 ${number(Number(r.u_mean.toPrecision(2)))}`, shownAs(r.sd), shownAs(r.rms_u), shownAs(r.scored ? r.bias : null), percent(r.scored ? r.coverage95 : null)]
+        ...[String(r.count), r.u_mean === null ? shownAs(r.mean) : `${number(r.mean)} \u00b1 ${number(Number(r.u_mean.toPrecision(2)))}`, shownAs(r.sd), shownAs(r.rms_error), shownAs(r.rms_u), shownAs(r.scored ? r.bias : null), percent(r.scored ? r.coverage95 : null)]
           .map((text) => element("td", { class: "number" }, text)))));
       return `${done} of ${planned} trials, ${failed} lost, ${clock(left_s)} left`;
     },
