@@ -5,6 +5,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include "twin/core/scenario_schema.h"
 #include "twin/core/scenario_uncertainty.h"
@@ -18,9 +19,7 @@ constexpr const char* kSecondOrder = "second order";
 
 using Values = std::map<std::string, double>;
 
-Values ValuesWith(Scenario scenario, const std::string& key, std::size_t element, double change,
-                  const Evaluate& evaluate) {
-  NumbersAt(scenario, key)[element] += change;
+Values ValuesOf(const Scenario& scenario, const Evaluate& evaluate) {
   Values values;
   for (const Quantity& q : evaluate(scenario)) values[q.name] = q.value;
   return values;
@@ -38,7 +37,7 @@ Source LineOf(const StatedUncertainty& stated, std::size_t element, std::size_t 
   return line;
 }
 
-Unit UnitOfKey(Scenario scenario, const std::string& key) {
+Unit UnitOfKey(Scenario& scenario, const std::string& key) {
   for (const ScenarioKey& known : KeysOf(scenario)) {
     if (known.Path() == key) return known.unit;
   }
@@ -130,13 +129,17 @@ std::vector<Budget> Budgets(const Scenario& scenario, const Evaluate& evaluate) 
     budgets.push_back({quantity, OfReadings(quantity)});
   std::vector<double> second_order2(budgets.size(), 0.0);
   for (const StatedUncertainty& stated : scenario.uncertainties) {
-    Scenario copy = scenario;
-    const std::size_t count = NumbersAt(copy, stated.key).size();
-    const Unit unit = UnitOfKey(scenario, stated.key);
-    for (std::size_t element = 0; element < count; ++element) {
-      const Values up = ValuesWith(scenario, stated.key, element, stated.u, evaluate),
-                   down = ValuesWith(scenario, stated.key, element, -stated.u, evaluate);
-      AddSource(LineOf(stated, element, count, unit), up, down, budgets, second_order2);
+    Scenario changed = scenario;
+    const std::span<double> numbers = NumbersAt(changed, stated.key);
+    const Unit unit = UnitOfKey(changed, stated.key);
+    for (std::size_t element = 0; element < numbers.size(); ++element) {
+      const double nominal = numbers[element];
+      numbers[element] = nominal + stated.u;
+      const Values up = ValuesOf(changed, evaluate);
+      numbers[element] = nominal - stated.u;
+      const Values down = ValuesOf(changed, evaluate);
+      numbers[element] = nominal;
+      AddSource(LineOf(stated, element, numbers.size(), unit), up, down, budgets, second_order2);
     }
   }
   for (std::size_t i = 0; i < budgets.size(); ++i) {

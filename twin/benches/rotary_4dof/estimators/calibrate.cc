@@ -18,8 +18,7 @@ using Block = Eigen::Matrix<double, kChannels, kUnknowns>;
 
 /// One reading of the sweeps, referred to the PSDs' surfaces.
 struct SweepPoint {
-  double yaw_rad;
-  double tilt_rad;
+  Matrix3 turn;  // by the autocollimator
   Vector4 shown_m;
   Vector4 variance_m2;
   Vector4 of_autocollimator;  // share of it
@@ -60,49 +59,54 @@ Sweep CollectSweep(const std::vector<Reading>& readings, const BenchGeometry& ge
     sweep.noise_known = sweep.noise_known && noise_m2.has_value();
     const Vector4 variance_m2 = noise_m2.value_or(Vector4::Constant(kAssumedNoise_m * kAssumedNoise_m));
     const double gain = geometry.autocollimator_gain;
-    sweep.points.push_back({r.autocollimator_yaw_rad / gain, r.autocollimator_tilt_rad / gain,
-                            OnSurface(r.mean_V, geometry), variance_m2 + autocollimator_m2,
+    const Eigen::AngleAxisd yaw(r.autocollimator_yaw_rad / gain, Vector3::UnitZ()),
+        tilt(r.autocollimator_tilt_rad / gain, Vector3::UnitX());
+    sweep.points.push_back({(yaw * tilt).toRotationMatrix(), OnSurface(r.mean_V, geometry),
+                            variance_m2 + autocollimator_m2,
                             autocollimator_m2.cwiseQuotient(variance_m2 + autocollimator_m2)});
   }
   return sweep;
 }
 
-/// By the way from the unknowns to the shown spots: only the mounting constants move the spots.
-class Shown {
- public:
-  Shown(const SweepPoint& point, const BenchGeometry& geometry)
-      : geometry_(geometry),
-        turn_((Eigen::AngleAxisd(point.yaw_rad, Vector3::UnitZ()) * Eigen::AngleAxisd(point.tilt_rad, Vector3::UnitX()))
-                  .toRotationMatrix()) {}
-  Vector4 Spots_m(const Unknowns& x) const {
-    const Vector4 mount = x.tail<kDofs>();
-    return PredictSpots(turn_ * MotionRotation(mount), mount[3], geometry_);
-  }
-  static Vector4 At(const Vector4& spots_m, const Unknowns& x) { return ShownSpots(spots_m, x.head<4>(), x.segment<2>(4)); }
-
- private:
-  const BenchGeometry& geometry_;
-  Matrix3 turn_;
+/// What the channels of a point show, by the unknowns.
+struct Shown {
+  Vector4 at_m;
+  Block jacobian = Block::Zero();
 };
 
-Vector4 Predict(const Unknowns& x, const SweepPoint& point, const BenchGeometry& geometry) {
-  return Shown::At(Shown(point, geometry).Spots_m(x), x);
-}
-
-Block PredictJacobian(const Unknowns& x, const SweepPoint& point, const BenchGeometry& geometry) {
-  constexpr double kStep = 1e-5;
-  const Shown shown(point, geometry);
-  const Vector4 spots_m = shown.Spots_m(x);
-  Block jacobian;
-  for (int i = 0; i < kUnknowns; ++i) {
-    const Unknowns step = kStep * Unknowns::Unit(i), above = x + step, below = x - step;
-    const bool moves = i >= kCalibrationParameters;
-    jacobian.col(i) = (Shown::At(moves ? shown.Spots_m(above) : spots_m, above) -
-                       Shown::At(moves ? shown.Spots_m(below) : spots_m, below)) /
-                      (2.0 * kStep);
+/// How the grating is mounted, and how the channels show a spot.
+class Model {
+ public:
+  Model(const Unknowns& x, const BenchGeometry& geometry)
+      : x_(x),
+        geometry_(geometry),
+        mount_(MotionRotation(x.tail<kDofs>())),
+        mount_axes_(MotionAxes(x.tail<kDofs>(), mount_)) {
+    for (int c = 0; c < kChannels; ++c)
+      shows_.col(c) = ShownSpots(Vector4::Unit(c), Vector4::Ones(), x.segment<2>(4));
   }
-  return jacobian;
-}
+  Shown At(const SweepPoint& point) const {
+    const Spots spots = SpotsAt(point.turn * mount_, x_[kUnknowns - 1], geometry_);
+    const Vector4 turned_m = shows_ * spots.at_m, gain = x_.head<4>();
+    Shown shown{turned_m.cwiseProduct(gain)};
+    shown.jacobian.leftCols<4>() = turned_m.asDiagonal();
+    for (int p = 0; p < 2; ++p) {
+      shown.jacobian.block<2, 1>(2 * p, 4 + p) << gain[2 * p] * turned_m[2 * p + 1],
+          -gain[2 * p + 1] * turned_m[2 * p];
+    }
+    Matrix4 axes = mount_axes_;
+    axes.topRows<3>() = point.turn * mount_axes_.topRows<3>();
+    shown.jacobian.rightCols<kDofs>() = gain.asDiagonal() * shows_ * spots.slopes * axes;
+    return shown;
+  }
+
+ private:
+  const Unknowns& x_;
+  const BenchGeometry& geometry_;
+  Matrix3 mount_;
+  Matrix4 mount_axes_;
+  Matrix4 shows_;  // of a spot, with gains of 1
+};
 
 Unknowns PriorValues() {
   Unknowns x = Unknowns::Zero();
@@ -131,12 +135,14 @@ void Step(const Sweep& sweep, const BenchGeometry& geometry, SweepFit& fit) {
   Normal normal = PriorInformation(1.0);
   Unknowns right = normal * (PriorValues() - fit.x);
   fit.of_autocollimator.setZero();
+  const Model model(fit.x, geometry);
   for (const SweepPoint& point : sweep.points) {
-    const Block jacobian = PredictJacobian(fit.x, point, geometry);
+    const auto [shown_m, jacobian] = model.At(point);
     const Vector4 weight = point.variance_m2.cwiseInverse();
     normal += jacobian.transpose() * weight.asDiagonal() * jacobian;
-    fit.of_autocollimator += jacobian.transpose() * weight.cwiseProduct(point.of_autocollimator).asDiagonal() * jacobian;
-    right += jacobian.transpose() * weight.asDiagonal() * (point.shown_m - Predict(fit.x, point, geometry));
+    fit.of_autocollimator +=
+        jacobian.transpose() * weight.cwiseProduct(point.of_autocollimator).asDiagonal() * jacobian;
+    right += jacobian.transpose() * weight.asDiagonal() * (point.shown_m - shown_m);
   }
   const Eigen::LDLT<Normal> ldlt(normal);
   fit.x += ldlt.solve(right);
@@ -144,8 +150,9 @@ void Step(const Sweep& sweep, const BenchGeometry& geometry, SweepFit& fit) {
 }
 
 void AddResiduals(const Sweep& sweep, const BenchGeometry& geometry, SweepFit& fit) {
+  const Model model(fit.x, geometry);
   for (const SweepPoint& point : sweep.points) {
-    const Vector4 squares_m2 = (point.shown_m - Predict(fit.x, point, geometry)).cwiseAbs2();
+    const Vector4 squares_m2 = (point.shown_m - model.At(point).at_m).cwiseAbs2();
     fit.squares_m2 += squares_m2;
     fit.chi2 += squares_m2.cwiseQuotient(point.variance_m2).sum();
   }

@@ -11,21 +11,30 @@ namespace twinbench::measure {
 /// Each order leaves with unit wave vector k = t + sqrt(1 - |t|^2) N, where t = d - (d.N) N + m lambda rho g holds
 /// the components along the grating (d incident direction, N normal, g across the grooves, rho lines per metre).
 ///
+struct Spots {
+  Vector4 at_m;  // [a_u, a_v, b_u, b_v], coordinates on the two PSDs; NaN if an order is evanescent or leaves away
+                 // from its PSD
+  Matrix4 slopes;  // per rad that the grating turns about x, y, z of L, and per m of dy
+};
+
 /// @param rotation_LG  Rotation of the grating frame G in L.
 /// @param dy_m         Where the laser beam (along -y through the origin of L) meets the grating.
-/// @return [a_u, a_v, b_u, b_v], spot coordinates on the two PSDs in m; NaN if an order is evanescent or leaves
-/// away
-///         from its PSD.
+Spots SpotsAt(const Matrix3& rotation_LG, double dy_m, const BenchGeometry& geometry);
+
+/// Without slopes.
 Vector4 PredictSpots(const Matrix3& rotation_LG, double dy_m, const BenchGeometry& geometry);
 
 /// The same for a motion [ez, ex, ey, dy].
 Vector4 PredictSpots(const Vector4& motion, const BenchGeometry& geometry);
 
-/// d spots / d motion by central differences; relative error about 1e-9 (step 1e-5 rad and 1e-5 m).
+/// d spots / d motion.
 Matrix4 SpotJacobian(const Vector4& motion, const BenchGeometry& geometry);
 
 /// The rotation of a motion, Rz(ez) Ry(ey) Rx(ex).
 Matrix3 MotionRotation(const Vector4& motion);
+
+/// d [turn about x, y, z of L; dy] / d motion, where the rotation is that of the motion.
+Matrix4 MotionAxes(const Vector4& motion, const Matrix3& rotation_LG);
 
 /// Result of inverting the model.
 struct MotionFit {
