@@ -45,6 +45,23 @@ TEST(RigorousCircle, LeavesNothingOfAnOffset) {
     EXPECT_LT(Deviation_m(p, {}, mounting, {1.0, 1.0, 1.0, 0.0}).norm(), 1e-15);
 }
 
+/// An encoder errs by where the bar is, and not by what it shows.
+TEST(RigorousCircle, LeavesNothingOfAnEncoderThatErrsByADegreeOrIsAskew) {
+  CircleErrors wavy;
+  wavy.eccentricity_rad = {0.5 * units::deg, 0.4 * units::deg};
+  wavy.ellipticity_rad = {-0.7 * units::deg, 0.7 * units::deg};
+  for (const AxisPair& tilt_rad : {AxisPair{0.0, 0.0}, AxisPair{-0.1, 0.08}}) {
+    const CircleConstants known{1.0, 1.0, 1.0, 5.0 * mm, 0.0, tilt_rad};
+    for (CirclePoint p : OffCentre({0.0, 0.0})) {
+      p.is_bar = p.has_angle = true;
+      const Eigen::Vector2d shown_m = Shown_m(p, wavy, {}, known);
+      p.radial_m = shown_m.x();
+      p.tangential_m = shown_m.y();
+      EXPECT_LT(Deviation_m(p, wavy, {}, known).norm(), 1e-9) << tilt_rad[0] << " at " << p.commanded_rad;
+    }
+  }
+}
+
 /// The run of an independent implementation and what it was made with.
 struct OracleRun {
   Scenario scenario;

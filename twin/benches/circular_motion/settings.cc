@@ -41,7 +41,7 @@ void AddMachine(Keys& keys, CircularMachineSettings& s) {
   Table t(keys, "machine");
   AddPair(t, "lag", kSecond, Within(1), s.lag_s, "of the servo; of bodies it follows from [drives]");
   t.Text("lag_kind", &s.lag_kind, {"first_order", "fixed_delay"}, "an axis answers 1 / (1 + lag s), or comes so much later");
-  t.Add("span", kMm, Positive(10000), &s.span_m, "half the travel over which straightness is stated");
+  t.Add("span", kMm, Between(1, 10000), &s.span_m, "half the travel over which straightness is stated");
   t.Add("cyclic_pitch", kMm, Positive(1000), &s.cyclic_pitch_m, "of the screw or scale");
   t.Add("spike_time", kSecond, Positive(100), &s.spike_time_s, "from a reversal to the largest excursion");
   t.Add("noise", kUm, UpTo(100), &s.noise_m, "repeatability, an axis and reading, standard deviation");

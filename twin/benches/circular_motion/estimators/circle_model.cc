@@ -150,14 +150,24 @@ Vector2d FromRadialBar_m(const CirclePoint& p, const CircleErrors& e, const Circ
   return Turned({flat_m - offset_m.x() - p.radius_m, 0.0}, p.commanded_rad);
 }
 
+/// The encoder errs, and is askew, by where the bar is, not by what is shown.
+double TrueAzimuth_rad(const CirclePoint& p, const CircleErrors& e, const CircleConstants& known, double shown_rad) {
+  constexpr int kIterations = 6;  // each leaves a tenth at most, of encoders that err by degrees
+  const TiltTurns tilt = TurnsOf(known);
+  double seen_rad = shown_rad;
+  for (int k = 0; k < kIterations; ++k) seen_rad = shown_rad - ScaleError_rad(e, seen_rad);
+  double azimuth_rad = seen_rad;
+  for (int k = 0; k < kIterations; ++k)
+    azimuth_rad -= std::remainder(SeenAzimuth_rad(Turned({p.radius_m, 0.0}, azimuth_rad), known, tilt) - seen_rad, units::turn);
+  return azimuth_rad;
+}
+
 Vector2d FromBar_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
                    const CircleConstants& known) {
   const double longer_m = Longer_m(p, e);
   const double shown_rad = p.commanded_rad + p.tangential_m / p.radius_m - m.rotation_rad;
-  double azimuth_rad = shown_rad - ScaleError_rad(e, shown_rad);
-  azimuth_rad -=
-      std::remainder(SeenAzimuth_rad(Turned({p.radius_m, 0.0}, azimuth_rad), known, TurnsOf(known)) - azimuth_rad, units::turn);
-  azimuth_rad += p.rate_rad_s * (e.encoder_latency_s - known.bar_latency_s);  // where it was when the bar was read
+  // Where it was when the bar was read.
+  const double azimuth_rad = TrueAzimuth_rad(p, e, known, shown_rad) + p.rate_rad_s * (e.encoder_latency_s - known.bar_latency_s);
   const double length_m = BarLength_m(p, e, m) + longer_m - BallForm_m(e, azimuth_rad);
   const double flat_m = std::sqrt(length_m * length_m - known.height_m * known.height_m);
   const Vector2d then_m = Turned({flat_m, 0.0}, azimuth_rad) - Vector2d(m.offset_m[0], m.offset_m[1]);
