@@ -172,6 +172,17 @@ TEST(HobTransmission, KnowsItsEncoderAtRestNoBetterThanInItsSteps) {
   }
 }
 
+/// The gears err by their own angle, which wind-up and backlash hold from the table's; and a fast table is looked at more often.
+TEST(HobTransmission, FindsTheGearsErrorsHoweverSoftWornOrFastItIs) {
+  for (const char* how : {"transmission.stiffness_Nm_mrad=2", "transmission.backlash_arcsec=1000",
+                          "hob_procedure.hob_speeds_rev_min=[20000]"}) {
+    const test::BenchRun run = Shipped("hob_transmission.toml", {how, "mechanics.fidelity=kinematic", "hob_procedure.turns=2", "hob_procedure.samples_per_turn=360"});
+    const auto scored = benches::hob::ScoreRun(run.scenario, run.readings, run.truth, Estimator::kRigorous).json;
+    for (const char* direction : {"transmission +1", "transmission -1"})
+      EXPECT_LT(scored.at(direction).at("amplitude").at("mean_chi2").get<double>(), 2.0) << how << ", " << direction;
+  }
+}
+
 TEST(HobTransmission, AgreesInMotionWithAnInterferometerThatErrsItself) {
   const HobAnalysis a =
       Analysed(Shipped("hob_transmission.toml", {"interferometer.stops=0"}), Estimator::kPublished);

@@ -23,13 +23,14 @@ using separate::hob::OrderStatus;
 using separate::hob::SeparatedOrder;
 
 /// Coefficients A exp(j phase) of each order, cosine convention.
-std::map<int, std::complex<double>> TruthOf(const nlohmann::json& harmonics) {
+/// @param ahead_rad  Of the angle that the table has, what errs so is at that angle and this.
+std::map<int, std::complex<double>> TruthOf(const nlohmann::json& harmonics, double ahead_rad = 0.0) {
   std::map<int, std::complex<double>> truth;
   for (const nlohmann::json& h : harmonics) {
     const double order = h.at("order").get<double>();
     if (order != std::floor(order)) continue;
     truth[static_cast<int>(order)] +=
-        std::polar(h.at("amplitude_arcsec").get<double>(), h.at("phase_deg").get<double>() * units::deg);
+        std::polar(h.at("amplitude_arcsec").get<double>(), h.at("phase_deg").get<double>() * units::deg + order * ahead_rad);
   }
   return truth;
 }
@@ -64,13 +65,15 @@ report::CurveScore CurveOf(const std::string& name, const HarmonicSeries& series
 
 report::ScoredRun ScoreOf(const HobAnalysis& analysis, const nlohmann::json& truth) {
   if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with complete turns");
-  const auto transmission = TruthOf(truth.at("transmission")), encoder = TruthOf(truth.at("table_encoder"));
+  const auto encoder = TruthOf(truth.at("table_encoder"));
+  const double ahead_rad = truth.value("gears_ahead_deg", 0.0) * units::deg;
   std::set<int> lost;
   for (const SeparatedOrder& order : analysis.separation->orders)
     if (order.status == OrderStatus::kSumOnly) lost.insert(order.order);
   std::vector<report::CurveScore> curves;
   for (const DirectionResult& direction : analysis.directions) {
     const std::string name = fmt::format("transmission {:+d}", direction.direction);
+    const auto transmission = TruthOf(truth.at("transmission"), direction.direction * ahead_rad);
     curves.push_back(CurveOf(name, direction.transmission, transmission, lost));
   }
   curves.push_back(CurveOf("table encoder", analysis.encoder, encoder));

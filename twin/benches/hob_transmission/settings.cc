@@ -13,6 +13,7 @@ namespace {
 using namespace schema;
 
 constexpr int kFewestStops = 8;
+constexpr double kMostWindUp_rad = 10.0 * units::deg;
 
 void AddTransmission(Keys& keys, TransmissionSettings& s) {
   Table t(keys, "transmission");
@@ -119,6 +120,11 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
   CheckAngles(text, "table_encoder.graduation", own.table_encoder.graduation);
   CheckAngles(text, "hob_encoder.graduation", own.hob_encoder.graduation);
   CheckAngles(text, "interferometer.calibrator", own.interferometer.calibrator);
+  const double wind_up_rad = own.transmission.friction_Nm / own.transmission.stiffness_Nm_rad;
+  if (wind_up_rad > kMostWindUp_rad)
+    throw InputError(Place(text, "transmission.stiffness_Nm_mrad"),
+                     fmt::format("the friction of {:.4g} Nm winds the table up by {:.3g} deg", own.transmission.friction_Nm, wind_up_rad / units::deg),
+                     fmt::format("at most {:.0f} deg", kMostWindUp_rad / units::deg));
   if (own.table_encoder.lines % own.hob_procedure.samples_per_turn != 0)
     throw InputError(Place(text, "hob_procedure.samples_per_turn"),
                      fmt::format("{} samples per turn", own.hob_procedure.samples_per_turn),

@@ -33,6 +33,8 @@ class HobPath {
 
   /// Of the gears, by turns of the table: what the chain would err if it ran infinitely slowly.
   std::vector<mechanics::AngleHarmonic> Transmission() const;
+  /// By which the gears are ahead of the table that they drag: half of the backlash, and wind-up. They err by their own angle.
+  double GearsAhead_rad() const { return 0.5 * train_.backlash_rad + train_.friction.coulomb_Nm / train_.stiffness_Nm_rad; }
 
  private:
   std::vector<std::unique_ptr<HobEffect>> effects_;

@@ -139,6 +139,7 @@ MachineBench HobTwin::Devices() {
 
 nlohmann::json HobTwin::Truth() const {
   nlohmann::json json = {{"transmission", nlohmann::json::array()},
+                         {"gears_ahead_deg", impl_->world->GearsAhead_rad() / units::deg},
                          {"table_encoder", RingHarmonics(impl_->world->counters())},
                          {"effects", nlohmann::json::array()},
                          {"seed", impl_->scenario.seed}};

@@ -9,9 +9,15 @@
 namespace twinbench::sim {
 namespace {
 
-/// Short enough for the cubic between two states: a line of 10 Hz is met to 1e-6 of its size.
-Duration PieceOf(const Scenario& actual) {
-  return HobOf(actual).mechanics.fidelity == "bullet" ? std::chrono::milliseconds(1) : std::chrono::milliseconds(2);
+/// Short enough for the cubic between two states: a line of 10 Hz is met to 1e-6 of its size, and so is the highest at any speed.
+Duration PieceOf(const HobPath& path, double table_speed_rad_s) {
+  const bool has_bodies = HobOf(path.actual()).mechanics.fidelity == "bullet";
+  const Duration longest = has_bodies ? std::chrono::milliseconds(1) : std::chrono::milliseconds(2);
+  const double most_rad = units::turn * 10.0 * 2e-3;
+  double highest = 1.0;
+  for (const mechanics::AngleHarmonic& h : path.Transmission()) highest = std::max(highest, h.order);
+  const double fastest_rad_s = highest * std::abs(table_speed_rad_s);
+  return fastest_rad_s * ToSeconds(longest) > most_rad ? FromSeconds(most_rad / fastest_rad_s) : longest;
 }
 
 }  // namespace
@@ -21,12 +27,13 @@ HobWorld::HobWorld(const Scenario& nominal)
       train_(
           mechanics::MakeGearTrain(mechanics::FidelityFromName(HobOf(actual()).mechanics.fidelity), path_.train())),
       counters_(actual(), path_.HobSignals()),
-      interferometer_noise_(actual().RunSeed(), "interferometer.noise"),
-      piece_(PieceOf(actual())) {}
+      interferometer_noise_(actual().RunSeed(), "interferometer.noise") {}
 
 void HobWorld::Run(double hob_speed_rad_s, Duration ramp) {
   if (hob_speed_rad_s != 0.0)
     direction_ = (hob_speed_rad_s > 0.0) == (HobOf(actual()).transmission.Ratio() > 0.0) ? 1 : -1;
+  const double fastest_rad_s = std::max(std::abs(hob_speed_rad_s), std::abs(hob_speed_rad_s_));
+  piece_ = PieceOf(path_, HobOf(actual()).transmission.Ratio() * fastest_rad_s);
   hob_speed_rad_s_ = hob_speed_rad_s;
   constexpr Duration kRinging = std::chrono::seconds(5);  // 20 Hz servo, torsion with 1 % of damping: long over
   slowed_down_ = Now() + ramp;

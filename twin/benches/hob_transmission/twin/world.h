@@ -36,6 +36,7 @@ class HobWorld {
   const Counters& counters() const { return counters_; }
   /// Of the gears, by turns of the table: what the chain would err if it ran infinitely slowly.
   std::vector<mechanics::AngleHarmonic> Transmission() const { return path_.Transmission(); }
+  double GearsAhead_rad() const { return path_.GearsAhead_rad(); }
 
  private:
   void TakeSamples(const mechanics::GearTrainState& before, const mechanics::GearTrainState& after, Time begin);
@@ -54,7 +55,7 @@ class HobWorld {
   std::unique_ptr<mechanics::GearTrain> train_;
   Counters counters_;
   Stream interferometer_noise_;
-  Duration piece_;
+  Duration piece_{};  // of time, at the present speed
   Time slowed_down_{};  // the last change of speed has ended
   Time at_rest_{};  // from then on nothing moves, unless the drive is told to
   double hob_speed_rad_s_ = 0.0;
