@@ -1,57 +1,65 @@
-#include <gtest/gtest.h>
-
 #include <random>
 
 #include "tests/diagnose/encoder_record.h"
 #include "twin/benches/encoder_comparison/diagnosis/memory.h"
-#include "twin/core/reading_clock.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
 
 using namespace lab;
+using testing::HasSubstr, testing::Not, testing::StartsWith;
 
 // Recordings whose noise remembers what it was.
 
-/// x_k = 1.2 x_(k-1) - 0.6 x_(k-2) + e_k: the noise of a sensor that rings, of this deviation.
-class RingingNoise {
- public:
-  RingingNoise(double deviation, unsigned seed) : random_(seed), step_(0.0, deviation * std::sqrt(0.28)) {}
-
-  double Next() {
-    const double x = 1.2 * last_ - 0.6 * before_ + step_(random_);
-    before_ = last_;
-    return last_ = x;
-  }
-
- private:
-  std::mt19937_64 random_;
-  std::normal_distribution<double> step_;
-  double last_ = 0.0, before_ = 0.0;
-};
-
-/// Six seconds of a motor that swings once a second, and a tilt sensor that is late and shows too little.
+/// Six seconds of a motor that swings once a second, and a tilt sensor that is late, shows too little and whose
+/// noise rings: x_k = 1.2 x_(k-1) - 0.6 x_(k-2) + e_k.
 Record LateAndShort(double late_s, double scale, double noise_deg, unsigned seed) {
   const Swing swing{36.0, 1.0, -18.0};
-  RingingNoise noise(noise_deg, seed);
-  return Swung(swing, 0.0, 6.0, 0.002, 1e-6, seed,
-               [&](double t_s) { return (1.0 + scale) * swing.At(t_s - late_s) + noise.Next(); });
+  Noise step_deg(noise_deg * std::sqrt(0.28), seed);
+  double last_deg = 0.0, before_deg = 0.0;
+  return Swung(swing, 0.0, 6.0, 0.002, 1e-6, seed, [&](double t_s) {
+    before_deg = std::exchange(last_deg, 1.2 * last_deg - 0.6 * before_deg + step_deg());
+    return (1.0 + scale) * swing.At(t_s - late_s) + last_deg;
+  });
 }
 
-TEST(EncoderMemory, ALagAndAScaleAreNoLoopThatFollowsBoth) {
-  for (const unsigned seed : Seeds({1u, 2u, 3u})) {
-    const Answer answer = Ask(LateAndShort(0.0114, -0.05, 0.1, seed));
-    SCOPED_TRACE(answer.Words());
-    EXPECT_TRUE(answer.Names("latency"));
-    EXPECT_TRUE(answer.Names("scale"));
-    EXPECT_FALSE(answer.Names("hysteresis", 0.5) || answer.Names("backlash", 0.5));
-    // Its velocity is that of what it shows: a twentieth less.
-    EXPECT_NEAR(answer.Value("latency", "delay"), 0.95 * 0.0114, 0.02 * 0.0114);
-    EXPECT_NEAR(answer.Value("scale", "ratio"), -0.05, 0.02 * 0.05);
-  }
+/// A walk of steps of `step_deg` beside noise.
+Record Walked(const Course& course, double step_deg, double noise_deg, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> step(0.0, step_deg), noise(0.0, noise_deg);
+  double walk_deg = 0.0;
+  return Listed(course, [&](const Place& at) {
+    walk_deg += step(random);
+    return at.deg + walk_deg + noise(random);
+  });
 }
 
-/// Forward and back once; the noise has a deviation of 0.02 deg and remembers this much of what it was a reading ago.
+const Row kMemory[] = {
+    {"ALagAndAScaleAreNoLoopThatFollowsBoth",
+     [](unsigned seed) { return LateAndShort(0.0114, -0.05, 0.1, seed); },
+     {Named("latency"), Named("scale"), NotNamed({"hysteresis", "backlash"}, 0.5),
+      // Its velocity is that of what it shows: a twentieth less.
+      Size("latency", "delay", 0.95 * 0.0114, 0.02 * 0.0114), Size("scale", "ratio", -0.05, 0.02 * 0.05)},
+     {1, 2, 3}},
+    {"ARandomWalkIsNoDriftAndNoScale",
+     [](unsigned seed) {
+       return Walked({0.0, 2.0, 900, 1, 0.5, "sweep"}, 0.001, 0.0015, seed);
+     },
+     {Is(Verdict::kUnknown), Says(HasSubstr("random walk")),
+      NotNamed({"drift", "scale", "clock_rate", "slip"}, 0.5)},
+     {7, 8, 9, 10}},
+    // In one pass of one turn every low order, a drift and a scale are pieces of it; it is seen before any of them
+    // is sought.
+    {"AWalkWithinOneTurnIsNoOrder",
+     [](unsigned seed) {
+       return Walked({0.0, 0.018, 20000, 1, 0.01, "sweep"}, 0.002, 0.002, seed);
+     },
+     {Says(StartsWith("random walk")), HasCauses(0)},
+     {3}}};  // one that does not come back to where it was by chance
+INSTANTIATE_TEST_SUITE_P(Memory, EncoderAnswer, testing::ValuesIn(kMemory), NameOfRow);
+
+/// Forward and back once; the noise has a deviation of 0.02 deg and remembers this much of what it was a reading
+/// ago.
 Record Remembering(int readings, double correlation, unsigned seed) {
   Noise unit(1.0, seed);
   Record record;
@@ -88,117 +96,77 @@ TEST(EncoderMemory, AWalkIsToldAsLargeAsItShows) {
   EXPECT_GE(told, 2);
 }
 
-TEST(EncoderMemory, ARandomWalkIsNoDriftAndNoScale) {
-  for (const unsigned seed : Seeds({7u, 8u, 9u, 10u})) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> step_deg(0.0, 0.001), noise_deg(0.0, 0.0015);
-    Record record;
-    double walk_deg = 0.0;
-    for (int k = 0; k < 900; ++k) {
-      walk_deg += step_deg(random);
-      record.Add(0.5 * k, 2.0 * k, 2.0 * k + walk_deg + noise_deg(random), 1, k / 180);
-    }
-    const Answer answer = Ask(record);
-    SCOPED_TRACE(answer.Words());
-    EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kUnknown);
-    EXPECT_NE(answer.run.diagnosis.unknown.signature.find("random walk"), std::string::npos);
-    for (const char* slow : {"drift", "scale", "clock_rate", "slip"}) EXPECT_FALSE(answer.Names(slow, 0.5)) << slow;
-  }
-}
-
-/// In one pass of one turn every low order, a drift and a scale are pieces of it; it is seen before any of them is sought.
-TEST(EncoderMemory, AWalkWithinOneTurnIsNoOrder) {
-  std::mt19937_64 random(3);  // one that does not come back to where it was by chance
-  std::normal_distribution<double> step_deg(0.0, 0.002);
-  Record record;
-  double walk_deg = 0.0;
-  for (int k = 0; k < 20000; ++k) {
-    walk_deg += step_deg(random);
-    record.Add(0.01 * k, 0.018 * k, 0.018 * k + walk_deg + step_deg(random), 1, 0);
-  }
-  const Diagnosis found = Ask(record).run.diagnosis;
-  EXPECT_TRUE(found.unknown.signature.starts_with("random walk")) << found.unknown.signature;
-  EXPECT_TRUE(found.causes.empty());
-}
-
 // What laboratories record most: positioning tests, rooms that warm up, zeros that walk. By closed forms.
 
-constexpr int kTargets = 9, kCycles = 5;
-const double kCurve_deg[kTargets] = {0.031, -0.012, 0.044, 0.006, -0.038, 0.021, -0.027, 0.013, -0.009};
-const double kReversalAt_deg[kTargets] = {0.0030, -0.0021, 0.0012, -0.0034, 0.0018, 0.0007, -0.0026, 0.0031, -0.0017};
+const std::array kCurve_deg = {0.031, -0.012, 0.044, 0.006, -0.038, 0.021, -0.027, 0.013, -0.009};
+const std::array kReversalAt_deg = {0.0030, -0.0021, 0.0012, -0.0034, 0.0018, 0.0007, -0.0026, 0.0031, -0.0017};
 
 /// Five times to every target from either side, without a clock: a curve, a reversal that differs from target to
 /// target, and a creep from cycle to cycle.
-Record PositioningTest(double reversal_deg, double noise_deg, unsigned seed) {
-  Noise noise(noise_deg, seed);
-  Record record{"stops"};
-  for (int cycle = 0; cycle < kCycles; ++cycle) {
-    for (int k = 0; k < 2 * kTargets; ++k) {
-      const int target = k < kTargets ? k : 2 * kTargets - 1 - k, sense = k < kTargets ? 1 : -1;
-      const double at_deg = 5.0 * target - 20.0;
-      const double error_deg = kCurve_deg[target] - 0.5 * sense * (reversal_deg + kReversalAt_deg[target]) - 0.0015 * cycle;
-      record.Add(cycle * 2 * kTargets + k, at_deg, at_deg + error_deg + noise(), sense, 2 * cycle + (sense < 0));
-      record.readings.back().extra[kClockColumn] = kNoClock;
+Record PositioningTest(double noise_deg, unsigned seed) {
+  return Listed({-20.0, 5.0, 9, 10}, noise_deg, seed, [](const Place& at) {
+    const auto k = static_cast<std::size_t>(at.stop);
+    return kCurve_deg[k] - 0.5 * at.direction * (0.021 + kReversalAt_deg[k]) - 0.0015 * (at.pass / 2);
+  });
+}
+
+/// What lags behind the temperature of the room by a first order, exact for one that goes straight from reading to
+/// reading.
+Record FollowsTheRoom(double lag_s, unsigned seed) {
+  double follower_K = 0.0, last_K = 0.0;
+  const auto room_K = [](double t_s) { return 1.5 * std::sin(2.0 * units::kPi * t_s / 3600.0) + 1e-4 * t_s; };
+  Record record = Listed({0.0, 0.9, 400, 1, 20.0, "sweep"}, 0.001, seed, [&](const Place& at) {
+    if (at.stop > 0) {
+      const double behind_K = (room_K(at.t_s) - last_K) / 20.0 * lag_s;
+      follower_K = room_K(at.t_s) - behind_K + (follower_K - last_K + behind_K) * std::exp(-20.0 / lag_s);
     }
+    last_K = room_K(at.t_s);
+    return 0.01 * follower_K + Sum({{1, 0.02, 0.0}}, at.deg);
+  });
+  for (Reading& r : record.readings) r.temperature_degC = 20.0 + room_K(20.0 * r.reading);
+  return record;
+}
+
+/// Neighbours in time are far apart on the axis, whose scale is then no noise.
+Record InAnyOrder(double ratio, unsigned seed) {
+  Noise noise_deg(0.02, seed);
+  Record record{"stops"};
+  double before_deg = 0.0;
+  for (const double at_deg :
+       {-30.0, 60.0, 0.0, -90.0, 45.0, 30.0, -60.0, 90.0, -45.0, 60.0, -90.0, 0.0, 90.0, -30.0}) {
+    const auto n = static_cast<int>(std::ssize(record.readings));
+    record.Add(4.0 * n, at_deg, (1.0 + ratio) * at_deg + noise_deg(), at_deg > before_deg ? 1 : -1, n);
+    before_deg = at_deg;
   }
   return record;
 }
 
-TEST(EncoderPositioning, TheReversalIsTheMeanOverAllTargetsBesideTheirErrors) {
-  for (const unsigned seed : Seeds({1u, 2u, 3u})) {
-    const Answer answer = Ask(PositioningTest(0.021, 0.0008, seed));
-    SCOPED_TRACE(answer.Words());
-    EXPECT_TRUE(answer.Names("backlash", 0.75));
-    EXPECT_NEAR(answer.Value("backlash", "width"), 0.021, 0.0008);  // theirs have a mean of 0
-    EXPECT_EQ(answer.run.diagnosis.unknown.signature.find("lost counts"), std::string::npos);
-    EXPECT_NE(answer.run.diagnosis.unknown.signature.find("error of its own at each of 9 targets"), std::string::npos);
-    EXPECT_EQ(answer.Again().verdict, Verdict::kNone) << "the file holds the curve, too";
-  }
-}
+const Row kPositioning[] = {
+    {"TheReversalIsTheMeanOverAllTargetsBesideTheirErrors",
+     [](unsigned seed) { return PositioningTest(0.0008, seed); },
+     {Named("backlash", 0.75), Size("backlash", "width", 0.021, 0.0008),  // theirs have a mean of 0
+      Says(Not(HasSubstr("lost counts"))), Says(HasSubstr("error of its own at each of 9 targets")), kSilentAgain},
+     {1, 2, 3}},
+    {"AZeroThatFollowsTheTemperatureIsNoFunctionOfTime",
+     [](unsigned seed) { return FollowsTheRoom(900.0, seed); },
+     {Found("zero_temperature", "coefficient", 0.01), Found("zero_temperature", "lag", 900.0),
+      NotNamed({"drift"}, 0.0), kSilentAgain},
+     {6}},
+    OfCourse("ASlipIsOneWhereItIsSuddenAndSmall", {0.0, 2.0, 600, 1, 0.5, "sweep"}, 0.004,
+             [](const Place& at) { return at.stop < 350 ? 0.0 : 0.006; },
+             {Named("slip", 0.5), Size("slip", "step", 0.006, 0.0015)}, {10, 11, 12}),
+    {"TargetsInAnyOrderShowAScale",
+     [](unsigned seed) { return InAnyOrder(0.012, seed); },
+     {Found("scale", "ratio", 0.012, 1e-3), kSilentAgain},
+     {140}}};
+INSTANTIATE_TEST_SUITE_P(Positioning, EncoderAnswer, testing::ValuesIn(kPositioning), NameOfRow);
 
 TEST(EncoderPositioning, TheFileOfOneTestPredictsTheCurveOfTheNext) {
-  const Record first = PositioningTest(0.021, 0.0005, 4), next = PositioningTest(0.021, 0.0005, 5);
+  const Record first = PositioningTest(0.0005, 4), next = PositioningTest(0.0005, 5);
   const Scenario extended = Extend(first.Believed(), Diagnosed(first, first.Believed()), "test");
   const Diagnosis again = Diagnosed(next, extended).diagnosis;
   // Ten readings behind each number of the curve.
   EXPECT_EQ(again.unknown.signature.find("error of its own"), std::string::npos) << again.unknown.signature;
-}
-
-TEST(EncoderPositioning, AZeroThatFollowsTheTemperatureIsNoFunctionOfTime) {
-  Noise noise_deg(0.001, 6);
-  Record record;
-  constexpr double kLag_s = 900.0;
-  double follower_K = 0.0, last_K = 0.0;
-  for (int k = 0; k < 400; ++k) {
-    const double t_s = 20.0 * k, room_K = 1.5 * std::sin(2.0 * units::kPi * t_s / 3600.0) + 1e-4 * t_s;
-    // Exact for a room that goes straight from reading to reading.
-    if (k > 0) {
-      const double slope = (room_K - last_K) / 20.0, behind = slope * kLag_s;
-      follower_K = room_K - behind + (follower_K - last_K + behind) * std::exp(-20.0 / kLag_s);
-    }
-    last_K = room_K;
-    const double at_deg = 0.9 * k;
-    record.Add(t_s, at_deg, at_deg + 0.01 * follower_K + 0.02 * std::cos(at_deg * units::deg) + noise_deg(), 1, 0);
-    record.readings.back().temperature_degC = 20.0 + room_K;
-  }
-  const Answer answer = Ask(record);
-  SCOPED_TRACE(answer.Words());
-  EXPECT_TRUE(answer.Names("zero_temperature"));
-  EXPECT_NEAR(answer.Value("zero_temperature", "coefficient"), 0.01, 4.0 * answer.Uncertainty("zero_temperature", "coefficient"));
-  EXPECT_NEAR(answer.Value("zero_temperature", "lag"), kLag_s, 4.0 * answer.Uncertainty("zero_temperature", "lag"));
-  EXPECT_EQ(answer.Find("drift"), nullptr);
-  EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
-}
-
-TEST(EncoderPositioning, ASlipIsOneWhereItIsSuddenAndSmall) {
-  for (const unsigned seed : Seeds({10u, 11u, 12u})) {
-    Noise noise_deg(0.004, seed);
-    Record record;
-    for (int k = 0; k < 600; ++k) record.Add(0.5 * k, 2.0 * k, 2.0 * k + (k < 350 ? 0.0 : 0.006) + noise_deg(), 1, 0);
-    const Answer answer = Ask(record);
-    EXPECT_TRUE(answer.Names("slip", 0.5)) << answer.Words();
-    EXPECT_NEAR(answer.Value("slip", "step"), 0.006, 0.0015) << answer.Words();
-  }
 }
 
 TEST(Memory, OfWhiteNoiseIsOneAndOfAWalkIsLongAlongWhatIsSlow) {
@@ -218,21 +186,6 @@ TEST(Memory, OfWhiteNoiseIsOneAndOfAWalkIsLongAlongWhatIsSlow) {
   }
   EXPECT_NEAR(of_white, 1.0, 0.15);  // twelve stretches of unlike weight scatter by some 0.6 a run
   EXPECT_GT(of_walk, 50.0);          // a stretch of 100 readings that hardly changes counts for one
-}
-
-/// Neighbours in time are far apart on the axis, whose scale is then no noise.
-TEST(EncoderPositioning, TargetsInAnyOrderShowAScale) {
-  constexpr double kRatio = 0.012;
-  std::mt19937 random(140);
-  std::normal_distribution<double> noise(0.0, 0.02);
-  Record record{"stops"};
-  double before_deg = 0.0;
-  for (const double at_deg : {-30.0, 60.0, 0.0, -90.0, 45.0, 30.0, -60.0, 90.0, -45.0, 60.0, -90.0, 0.0, 90.0, -30.0}) {
-    const auto n = static_cast<int>(std::ssize(record.readings));
-    record.Add(4.0 * n, at_deg, (1.0 + kRatio) * at_deg + noise(random), at_deg > before_deg ? 1 : -1, n);
-    before_deg = at_deg;
-  }
-  ExpectFound(Ask(record), {{"scale", "ratio", kRatio, 1e-3}});
 }
 
 }  // namespace

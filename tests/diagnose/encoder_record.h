@@ -1,7 +1,7 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,7 @@
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
+#include "twin/core/reading_clock.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/extend.h"
 
@@ -26,7 +27,9 @@ struct Record {
   std::vector<Reading> readings = {};
 
   void Add(double time_s, double reference_deg, double measured_deg, int direction, int pass) {
-    Reading r{.reading = static_cast<int>(readings.size()), .time = Time(FromSeconds(time_s)), .pass = pass,
+    Reading r{.reading = static_cast<int>(readings.size()),
+              .time = Time(FromSeconds(time_s)),
+              .pass = pass,
               .direction = direction};
     r.position = r.reading;
     r.reference_rad = reference_deg * units::deg;
@@ -77,6 +80,19 @@ struct Answer {
     const ParameterEstimate* const p = Find(effect, parameter);
     return p ? p->u / p->to_SI : kNaN;
   }
+  /// Of the wave of this order, whatever its name is.
+  double SizeOfOrder(int order) const {
+    if (order == 1) return Value("eccentricity", "amplitude");
+    if (order == 2) return Value("ellipticity", "amplitude");
+    for (const Cause& cause : run.diagnosis.causes) {
+      const auto of = [&cause](const char* name) {
+        return *std::ranges::find(cause.parameters, name, &ParameterEstimate::name);
+      };
+      if (cause.effect == "periodic" && of("order").value == order)
+        return of("amplitude").value / of("amplitude").to_SI;
+    }
+    return kNaN;
+  }
   bool Names(const std::string& effect, double from = 0.8) const {
     const Cause* const cause = Find(effect);
     return cause && cause->probability >= from;
@@ -89,27 +105,7 @@ struct Answer {
   std::string Words() const { return WordsOf(run.diagnosis) + (again ? " | again: " + WordsOf(*again) : ""); }
 };
 
-inline Answer Ask(const Record& record) {
-  return {record};
-}
-
-/// What must be found, and how sharply for it to be worth something.
-struct Expected {
-  const char *effect, *parameter;
-  double value, sharp = 1e9;
-};
-
-/// Each is named, in its size; and the file that is written says it all.
-inline void ExpectFound(const Answer& answer, const std::vector<Expected>& all) {
-  SCOPED_TRACE(answer.Words());
-  for (const Expected& e : all) {
-    EXPECT_TRUE(answer.Names(e.effect)) << e.effect;
-    const double u = answer.Uncertainty(e.effect, e.parameter);
-    EXPECT_NEAR(answer.Value(e.effect, e.parameter), e.value, 4.0 * u) << e.effect;
-    EXPECT_LT(u, e.sharp) << e.effect;
-  }
-  EXPECT_EQ(answer.Again().verdict, Verdict::kNone);
-}
+inline Answer Ask(const Record& record) { return {record}; }
 
 /// To and fro, as a hand wheel is turned: there and back over `range_deg` in `period_s`.
 struct Swing {
@@ -132,21 +128,155 @@ Record Swung(const Swing& swing, double first_s, double end_s, double every_s, d
   return record;
 }
 
-/// Stops of 6 deg, two turns there and back twice; the error is a function of time and angle.
-template <class Error>
-Record Stops(double noise_deg, double step_deg, unsigned seed, Error error_deg) {
-  Noise noise(noise_deg, seed);
-  Record record{"stops"};
-  for (int pass = 0; pass < 4; ++pass) {
-    for (int k = 0; k < 120; ++k) {
-      const double reference_deg = 0.4 + 6.0 * (pass % 2 == 0 ? k : 119 - k);
-      const double time_s = 5.0 * static_cast<double>(record.readings.size());
-      double measured_deg = reference_deg + error_deg(time_s, reference_deg) + noise();
-      if (step_deg > 0.0) measured_deg = step_deg * std::round(measured_deg / step_deg);
-      record.Add(time_s, reference_deg, measured_deg, pass % 2 == 0 ? 1 : -1, pass);
-    }
+/// `order` periods in a turn.
+struct Wave {
+  int order;
+  double size_deg, phase_deg;
+};
+
+inline double Sum(const std::vector<Wave>& waves, double angle_deg) {
+  double sum = 0.0;
+  for (const Wave& w : waves) sum += w.size_deg * std::cos((w.order * angle_deg + w.phase_deg) * units::deg);
+  return sum;
+}
+
+/// Where and when a reading is taken.
+struct Place {
+  double deg, t_s;
+  int stop, direction, pass;
+};
+
+/// Stops from `from_deg` on, there and back in turn.
+struct Course {
+  double from_deg, step_deg;
+  int stops, passes = 1;
+  double every_s = 0.0;  // 0: no clock, one after the other
+  const char* kind = "stops";
+};
+
+/// @param shows_deg  What the device shows at a place.
+template <class Shows>
+Record Listed(const Course& course, Shows shows_deg) {
+  Record record{course.kind};
+  for (int k = 0; k < course.passes * course.stops; ++k) {
+    const int pass = k / course.stops, at = k % course.stops, direction = pass % 2 == 0 ? 1 : -1;
+    const int stop = direction > 0 ? at : course.stops - 1 - at;
+    const Place place{course.from_deg + course.step_deg * stop, (course.every_s > 0.0 ? course.every_s : 1.0) * k,
+                      stop, direction, pass};
+    record.Add(place.t_s, place.deg, shows_deg(place), direction, pass);
+    if (course.every_s == 0.0) record.readings.back().extra[kClockColumn] = kNoClock;
   }
   return record;
 }
+
+using Error = std::function<double(const Place& at)>;
+
+inline Record Listed(const Course& course, double noise_deg, unsigned seed, const Error& error_deg) {
+  Noise noise(noise_deg, seed);
+  return Listed(course, [&](const Place& at) { return at.deg + error_deg(at) + noise(); });
+}
+
+/// Stops of 6 deg, two turns there and back twice, shown in whole steps.
+inline Record Stops(double noise_deg, double step_deg, unsigned seed, const Error& error_deg) {
+  Noise noise(noise_deg, seed);
+  return Listed({0.4, 6.0, 120, 4, 5.0}, [&](const Place& at) {
+    const double shown_deg = at.deg + error_deg(at) + noise();
+    return step_deg > 0.0 ? step_deg * std::round(shown_deg / step_deg) : shown_deg;
+  });
+}
+
+/// Read in motion, whose direction and passes are those of the reference.
+/// @param at_deg  Of the reference, by the time.
+template <class At, class Shows>
+Record Chirped(double first_s, double end_s, double every_s, At at_deg, Shows shows_deg) {
+  Record record;
+  int direction = 1, pass = 0;
+  for (double t_s = first_s; t_s < end_s; t_s += every_s) {
+    const int now = at_deg(t_s + 1e-4) > at_deg(t_s - 1e-4) ? 1 : -1;
+    pass += now == direction ? 0 : 1;
+    direction = now;
+    record.Add(t_s, at_deg(t_s), shows_deg(t_s), direction, pass);
+  }
+  return record;
+}
+
+/// What is asked of an answer.
+using Check = std::function<void(const Answer&)>;
+
+inline Check Is(Verdict v) {
+  return [=](const Answer& a) { EXPECT_EQ(a.run.diagnosis.verdict, v); };
+}
+inline Check HasCauses(std::size_t n) {
+  return [=](const Answer& a) { EXPECT_EQ(a.run.diagnosis.causes.size(), n); };
+}
+inline Check HasUnnamed(bool has) {
+  return [=](const Answer& a) { EXPECT_EQ(HasUnmodelled(a.run.diagnosis), has); };
+}
+inline Check Named(const std::string& effect, double from = 0.8) {
+  return [=](const Answer& a) { EXPECT_TRUE(a.Names(effect, from)) << effect; };
+}
+inline Check NotNamed(const std::vector<std::string>& effects, double from = 0.1) {
+  return [=](const Answer& a) {
+    for (const std::string& effect : effects) EXPECT_FALSE(a.Names(effect, from)) << effect;
+  };
+}
+inline Check NoneFrom(double probability) {
+  return [=](const Answer& a) {
+    for (const Cause& cause : a.run.diagnosis.causes) EXPECT_LT(cause.probability, probability) << cause.effect;
+  };
+}
+inline Check Says(const testing::Matcher<std::string>& words) {
+  return [=](const Answer& a) { EXPECT_THAT(a.run.diagnosis.unknown.signature, words); };
+}
+inline Check Notes(const std::string& words) {
+  return [=](const Answer& a) { EXPECT_THAT(a.run.diagnosis.notes, testing::Contains(testing::HasSubstr(words))); };
+}
+/// Within `within` and so many of its uncertainties.
+inline Check Size(const std::string& effect, const std::string& parameter, double value, double within,
+                  double of_u = 0.0) {
+  return [=](const Answer& a) {
+    const double u = of_u > 0.0 ? of_u * a.Uncertainty(effect, parameter) : 0.0;
+    EXPECT_NEAR(a.Value(effect, parameter), value, within + u) << effect;
+  };
+}
+/// Whatever its sign.
+inline Check Play(double width_deg, double within_deg) {
+  return [=](const Answer& a) { EXPECT_NEAR(std::abs(a.Value("backlash", "width")), width_deg, within_deg); };
+}
+inline Check Order(int order, double size_deg, double within_deg) {
+  return [=](const Answer& a) { EXPECT_NEAR(a.SizeOfOrder(order), size_deg, within_deg) << order; };
+}
+/// Named, in its size, and so sharply that it is worth something.
+inline Check Found(const std::string& effect, const std::string& parameter, double value, double u = 1e9) {
+  return [=](const Answer& a) {
+    Named(effect)(a);
+    Size(effect, parameter, value, 0.0, 4.0)(a);
+    EXPECT_LT(a.Uncertainty(effect, parameter), u) << effect;
+  };
+}
+/// The file that was written says it all.
+inline const Check kSilentAgain = [](const Answer& a) {
+  EXPECT_EQ(a.Again().verdict, Verdict::kNone) << a.Words();
+};
+
+/// A recording and its answer.
+struct Row {
+  std::string name;
+  std::function<Record(unsigned seed)> record;
+  std::vector<Check> checks;
+  std::vector<unsigned> seeds = {1};
+};
+using Rows = std::vector<Row>;
+
+inline Row OfCourse(const std::string& name, const Course& course, double noise_deg, const Error& error_deg,
+                    const std::vector<Check>& checks, const std::vector<unsigned>& seeds = {1}) {
+  return {name, [=](unsigned seed) { return Listed(course, noise_deg, seed, error_deg); }, checks, seeds};
+}
+
+inline void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
+inline std::string NameOfRow(const testing::TestParamInfo<Row>& row) { return row.param.name; }
+
+/// Its one test is in encoder_dominant_test.cc; the rows of every file are instances.
+class EncoderAnswer : public testing::TestWithParam<Row> {};
 
 }  // namespace twinbench::diagnose::encoder::lab

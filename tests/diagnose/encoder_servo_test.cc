@@ -1,6 +1,4 @@
-#include <gmock/gmock.h>
-
-#include <array>
+#include <random>
 
 #include "tests/diagnose/encoder_record.h"
 #include "twin/benches/encoder_comparison/diagnosis/few_counts.h"
@@ -16,48 +14,67 @@ using namespace lab;
 namespace servo {
 
 /// An axis that goes to and fro the faster the longer, and a device that is behind its command.
-double Chirp_deg(double t_s) {
-  return 17.0 * std::sin(2.0 * units::kPi * (0.2 * t_s + 0.03 * t_s * t_s));
+double Chirp_deg(double t_s) { return 17.0 * std::sin(2.0 * units::kPi * (0.2 * t_s + 0.03 * t_s * t_s)); }
+
+/// x' = (command - x) / lag in steps of 0.1 ms; it has been in motion for some seconds.
+Record Followed(double lag_s, double gain, unsigned seed) {
+  Noise noise_deg(0.02, seed);
+  double at_deg = 0.0, at_s = -3.0;
+  return Chirped(0.0, 14.0, 0.018, Chirp_deg, [&](double t_s) {
+    for (; at_s <= t_s; at_s += 1e-4) at_deg += (Chirp_deg(at_s) - at_deg) * 1e-4 / lag_s;
+    return gain * at_deg + noise_deg();
+  });
 }
 
-/// x' = (command - x) / lag in steps of 0.1 ms.
-Answer Followed(double lag_s, double gain, unsigned seed) {
-  constexpr double kStep_s = 1e-4, kEvery_s = 0.018;
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise_deg(0.0, 0.02);
-  Record record;
-  double at_deg = 0.0, next_s = 0.0;  // it has been in motion for some seconds
-  int direction = 1, pass = 0;
-  for (double t_s = -3.0; t_s < 14.0; t_s += kStep_s) {
-    at_deg += (Chirp_deg(t_s) - at_deg) * kStep_s / lag_s;
-    if (t_s < next_s) continue;
-    next_s += kEvery_s;
-    const int now = Chirp_deg(t_s + 1e-4) > Chirp_deg(t_s - 1e-4) ? 1 : -1;
-    pass += now == direction ? 0 : 1;
-    direction = now;
-    record.Add(t_s, Chirp_deg(t_s), gain * at_deg + noise_deg(random), direction, pass);
+/// A servo between two places, three means of each rest: the first began on the way, and where it comes to rest is
+/// one count of 0.00307 deg or the next.
+Record Rests() {
+  const std::array counts = {162, -162, 162, -163, 162, -163, 162, -162};
+  const std::array began = {0.145, 0.122, 0.165};
+  Record record{"stops"};
+  for (int rest = 0; rest < 8; ++rest) {
+    for (int k = 0; k < 3; ++k) {
+      const double at = counts[static_cast<std::size_t>(rest)],
+                   shown = at - (rest == 0 ? began[static_cast<std::size_t>(k)] : 0.0);
+      record.Add(1.25 * rest + 0.277 * k, at > 0.0 ? 0.5 : -0.5, 0.00307 * shown,
+                 rest % 2 == 0 && rest > 0 ? 1 : -1, std::max(0, rest - 1));
+    }
   }
-  return Ask(record);
+  return record;
 }
 
-TEST(EncoderServo, ThatFollowsWithALagOfFirstOrderHasATimeConstant) {
+Rows ServoRows() {
+  Rows rows;
   for (const double lag_s : {0.11, 0.19}) {
-    const Answer answer = Followed(lag_s, 1.0, 91);
-    SCOPED_TRACE(answer.Words());
-    EXPECT_TRUE(answer.Names("latency"));
-    // Straight lines from reading to reading: the square of 18 ms beside the period.
-    EXPECT_NEAR(answer.Value("latency", "time_constant"), lag_s, 0.02 * lag_s);
-    EXPECT_EQ(answer.Value("latency", "delay"), 0.0);
-    EXPECT_FALSE(answer.Names("backlash") || answer.Names("hysteresis"));
+    rows.push_back({fmt::format("AServoThatFollowsWithALagOfFirstOrderHasATimeConstant_{:.0f}", 1e3 * lag_s),
+                    [=](unsigned seed) { return Followed(lag_s, 1.0, seed); },
+                    // Straight lines from reading to reading: the square of 18 ms beside the period.
+                    {Named("latency"), Size("latency", "time_constant", lag_s, 0.02 * lag_s),
+                     Size("latency", "delay", 0.0, 0.0), NotNamed({"backlash", "hysteresis"}, 0.8)},
+                    {91}});
   }
+  rows.push_back({"AServoThatFallsShortAsWellHasAScale",
+                  [](unsigned seed) { return Followed(0.15, 0.93, seed); },
+                  {Size("latency", "time_constant", 0.15, 0.004), Size("scale", "ratio", -0.07, 0.004)},
+                  {92}});
+  // Once through a part of a turn.
+  rows.push_back(OfCourse("ACurveThatHasNotRepeatedIsNoOrder", {0.0, 3.0, 36, 1, 1.0}, 0.05,
+                          [](const Place& at) {
+                            return 8.0 * (1.0 - std::exp(-at.deg / 30.0)) +
+                                   4.0 * std::pow((at.deg - 60.0) / 45.0, 3);
+                          },
+                          {NotNamed({"periodic"}, 0.7)}, {61, 62, 63}));
+  rows.push_back(OfCourse("AnOrderThatIsSharperThanAnyCurveIsOne", {0.0, 110.0 / 59.0, 60, 1, 1.0}, 0.01,
+                          [](const Place& at) {
+                            return Sum({{5, 0.5, 0.0}}, at.deg);
+                          },
+                          {Named("periodic"), Size("periodic", "order", 5.0, 0.0)}, {65}));
+  rows.push_back({"CountsOfAServoAtRestAreNoSlipAndNoReversal",
+                  [](unsigned) { return Rests(); },
+                  {NoneFrom(0.8), [](const Answer& a) { EXPECT_LT(a.run.diagnosis.unknown.probability, 0.8); }}});
+  return rows;
 }
-
-TEST(EncoderServo, ThatFallsShortAsWellHasAScale) {
-  const Answer answer = Followed(0.15, 0.93, 92);
-  SCOPED_TRACE(answer.Words());
-  EXPECT_NEAR(answer.Value("latency", "time_constant"), 0.15, 0.004);
-  EXPECT_NEAR(answer.Value("scale", "ratio"), -0.07, 0.004);
-}
+INSTANTIATE_TEST_SUITE_P(Servo, EncoderAnswer, testing::ValuesIn(ServoRows()), NameOfRow);
 
 LargeCause Latency(double delay_s, double lag_s) {
   LargeCause latency;
@@ -138,67 +155,6 @@ TEST(EncoderServo, OfWhichARestSwingsHasTheMemoryOfASwing) {
   EXPECT_NEAR(MemoryOf(steady, pass), 3.0, 0.6) << "(1 + 0.5) / (1 - 0.5)";
 }
 
-}  // namespace servo
-
-namespace part_of_turn {
-
-/// Once through a part of a turn.
-template <class Error>
-Answer Table(double range_deg, int readings, double noise_deg, unsigned seed, Error error_deg) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, noise_deg);
-  Record record;
-  record.kind = "stops";
-  for (int k = 0; k < readings; ++k) {
-    const double at_deg = range_deg * k / (readings - 1);
-    record.Add(k, at_deg, at_deg + error_deg(at_deg) + noise(random), 1, 0);
-  }
-  return Ask(record);
-}
-
-TEST(EncoderPart, ACurveThatHasNotRepeatedIsNoOrder) {
-  for (const unsigned seed : {61u, 62u, 63u}) {
-    const auto error_deg = [](double a_deg) { return 8.0 * (1.0 - std::exp(-a_deg / 30.0)) + 4.0 * std::pow((a_deg - 60.0) / 45.0, 3); };
-    const Answer answer = Table(105.0, 36, 0.05, seed, error_deg);
-    EXPECT_FALSE(answer.Names("periodic", 0.7)) << seed << ": " << answer.Words();
-  }
-}
-
-TEST(EncoderPart, AnOrderThatIsSharperThanAnyCurveIsOne) {
-  const Answer answer = Table(110.0, 60, 0.01, 65, [](double a_deg) { return 0.5 * std::cos(5.0 * a_deg * units::deg); });
-  EXPECT_TRUE(answer.Names("periodic")) << answer.Words();
-  EXPECT_EQ(answer.Value("periodic", "order"), 5.0) << answer.Words();
-}
-
-}  // namespace part_of_turn
-
-namespace coarse {
-
-constexpr double kCount_deg = 0.00307;
-
-/// A servo between two places, three means of each rest: the first began on the way, and where it comes to rest is one count or
-/// the next.
-Record Rests() {
-  const std::array counts = {162, -162, 162, -163, 162, -163, 162, -162};
-  const std::array began = {0.145, 0.122, 0.165};
-  Record record;
-  record.kind = "stops";
-  for (int rest = 0; rest < 8; ++rest) {
-    for (int k = 0; k < 3; ++k) {
-      const double shown = counts[static_cast<std::size_t>(rest)] - (rest == 0 ? began[static_cast<std::size_t>(k)] : 0.0);
-      record.Add(1.25 * rest + 0.277 * k, counts[static_cast<std::size_t>(rest)] > 0 ? 0.5 : -0.5, kCount_deg * shown, rest % 2 == 0 && rest > 0 ? 1 : -1,
-                 std::max(0, rest - 1));
-    }
-  }
-  return record;
-}
-
-TEST(EncoderCounts, OfAServoAtRestAreNoSlipAndNoReversal) {
-  const Answer answer = Ask(Rests());
-  for (const Cause& cause : answer.run.diagnosis.causes) EXPECT_LT(cause.probability, 0.8) << answer.Words();
-  EXPECT_LT(answer.run.diagnosis.unknown.probability, 0.8) << answer.Words();
-}
-
 TEST(EncoderCounts, AreSeenInAFewValuesThatComeAgain) {
   Eigen::VectorXd shown(8);
   shown << 7, 7, 8, 8, -100, -100, -101, -101;
@@ -209,6 +165,6 @@ TEST(EncoderCounts, AreSeenInAFewValuesThatComeAgain) {
   EXPECT_EQ(CountOfFewValues(0.0031 * shown), 0.0) << "none comes again";
 }
 
-}  // namespace coarse
+}  // namespace servo
 }  // namespace
 }  // namespace twinbench::diagnose::encoder
