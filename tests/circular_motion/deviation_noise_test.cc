@@ -1,4 +1,4 @@
-#include "twin/benches/circular_motion/estimators/iso230_4.h"
+#include "tests/circular_motion/written_circles.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
 
@@ -13,36 +13,23 @@ struct Kind {
   int readings = 360;
 };
 
-/// 3 um cos(order a) about a centre that is some um off, as a bar of this noise and step shows it. Noise is stated as 0.25 um.
-CirclePath Shown(const Kind& kind, int direction, Stream& stream) {
-  constexpr double kStated_m = 0.25 * um;
-  CirclePath path{0, direction > 0 ? 0 : 1, direction, true, 150.0 * mm, 0.01, {}, false};
-  const double phase_rad = units::turn * stream.Uniform(), x_m = 7.0 * um * stream.Normal(), y_m = 7.0 * um * stream.Normal();
-  for (int i = 0; i < kind.readings; ++i) {
-    PathPoint& point = path.points.emplace_back();
-    const double a = direction * units::turn * (i + 0.3) / kind.readings;
-    const Eigen::Vector2d outwards(std::cos(a), std::sin(a));
-    const double off_m = x_m * outwards.x() + y_m * outwards.y(), lobes_m = kind.order > 0.0 ? 3.0 * um * std::cos(kind.order * a + phase_rad) : 0.0;
-    point.commanded_rad = a;
-    point.shown_m = off_m + lobes_m + kind.noise_um * um * stream.Normal();
+/// 3 um cos(order a) about a centre that is some um off, as a bar of this noise and step shows it. Noise is stated as
+/// 0.25 um.
+CirclePath Shown(const Kind& kind, Stream& stream) {
+  const double phase_rad = units::turn * stream.Uniform();
+  const Eigen::Vector2d centre_m(7.0 * um * stream.Normal(), 7.0 * um * stream.Normal());
+  const auto show = [&](PathPoint& point, const Eigen::Vector2d& outwards) {
+    const double lobes_m = kind.order > 0.0 ? 3.0 * um * std::cos(kind.order * point.commanded_rad + phase_rad) : 0.0;
+    point.shown_m = centre_m.dot(outwards) + lobes_m + kind.noise_um * um * stream.Normal();
     if (kind.step_um > 0.0) point.shown_m = kind.step_um * um * std::round(point.shown_m / (kind.step_um * um));
-    point.d_m = (point.shown_m - off_m) * outwards;
-    point.slope = outwards;
-    point.u_own_m = Eigen::Vector2d::Constant(kStated_m);
-  }
-  return path;
+    point.d_m = (point.shown_m - centre_m.dot(outwards)) * outwards;
+    point.u_own_m = Eigen::Vector2d::Constant(0.25 * um);
+  };
+  return test::WrittenPath(1, 150.0 * mm, kind.readings, 0.3 * units::turn / kind.readings, show);
 }
 
 /// One unknown that is known as good as exactly.
-SharedUncertainty NearlyNothing() {
-  SharedUncertainty shared;
-  shared.cov = Eigen::MatrixXd::Constant(1, 1, std::pow(1e-6 * um, 2));
-  shared.hidden = Eigen::MatrixXd(1, 0);
-  shared.typical = Eigen::VectorXd::Ones(1);
-  shared.of_machine = 0.0 * shared.cov;
-  shared.of_steps = 0.0 * shared.cov;
-  return shared;
-}
+SharedUncertainty NearlyNothing() { return test::SharedLength(1e-6 * um); }
 
 TEST(CircularDeviationNoise, IsInTheUncertaintyWithWhatItMakesExtremesLargerBy) {
   constexpr int kTrials = 20;
@@ -51,7 +38,7 @@ TEST(CircularDeviationNoise, IsInTheUncertaintyWithWhatItMakesExtremesLargerBy) 
   for (const double order : {0.0, 2.0, 5.0}) {
     for (const auto& [noise_um, step_um] : {std::pair{0.0, 0.1}, {0.0, 1.0}, {0.05, 0.0}, {0.1, 1.0}, {0.5, 0.1}, {2.0, 0.0}}) {
       for (int k = 0; k < kTrials; ++k) {
-        const Iso230_4 d = CircularDeviations({Shown({order, noise_um, step_um}, 1, stream)}, NearlyNothing())[0];
+        const Iso230_4 d = CircularDeviations({Shown({order, noise_um, step_um}, stream)}, NearlyNothing())[0];
         const double size_m = order > 0.0 ? 3.0 * um : 0.0;
         for (const auto& [value, of_path_m] : {std::pair{d.G_ccw, 2.0 * size_m}, {d.G_mz_ccw, 2.0 * size_m}, {d.Fmax_ccw, size_m}, {d.Fmin_ccw, -size_m}}) {
           ++all;
@@ -65,7 +52,9 @@ TEST(CircularDeviationNoise, IsInTheUncertaintyWithWhatItMakesExtremesLargerBy) 
 
 TEST(CircularDeviationNoise, IsThatOfTheReadingsAndNotTheOneThatIsStated) {
   Stream stream(8, "bar");
-  const auto u_um = [&](const Kind& kind) { return CircularDeviations({Shown(kind, 1, stream)}, NearlyNothing())[0].G_ccw.u_m / um; };
+  const auto u_um = [&](const Kind& kind) {
+    return CircularDeviations({Shown(kind, stream)}, NearlyNothing())[0].G_ccw.u_m / um;
+  };
   // Of pure noise, the largest of n normal deviates at either end: 2.9 deviations for 360, of which some 2.4 are told.
   EXPECT_NEAR(u_um({0.0, 0.02, 0.0}), 0.1, 0.025);
   EXPECT_NEAR(u_um({0.0, 2.0, 0.0}), 10.0, 2.5);
@@ -75,7 +64,7 @@ TEST(CircularDeviationNoise, IsThatOfTheReadingsAndNotTheOneThatIsStated) {
 
 TEST(CircularDeviationNoise, OfASingleReadingThatIsFarOffIsThatOfTheOthers) {
   Stream stream(9, "bar");
-  CirclePath path = Shown({2.0, 0.1, 0.0}, 1, stream);
+  CirclePath path = Shown({2.0, 0.1, 0.0}, stream);
   path.points[123].d_m = 60.0 * um * path.points[123].slope.col(0);
   const Iso230_4Value far = CircularDeviations({path}, NearlyNothing())[0].Fmax_ccw;
   EXPECT_NEAR(far.u_m / um, 0.1, 0.02) << "no other reading is near it";
@@ -83,19 +72,13 @@ TEST(CircularDeviationNoise, OfASingleReadingThatIsFarOffIsThatOfTheOthers) {
 
 TEST(CircularDeviationNoise, OfAMeanInCoarseStepsIsNotThatOfSoManyReadings) {
   // 360 readings on the two sides of one step: as good as two rounding errors of half of the readings each.
-  CirclePath there, back;
-  for (CirclePath* path : {&there, &back}) {
-    *path = {0, path == &there ? 0 : 1, path == &there ? 1 : -1, true, 150.0 * mm, 0.01, {}, false};
-    for (int i = 0; i < 360; ++i) {
-      PathPoint& point = path->points.emplace_back();
-      const Eigen::Vector2d outwards(std::cos(i * deg), std::sin(i * deg));
-      point.commanded_rad = i * deg;
-      point.shown_m = i < 180 ? 0.0 : um;
-      point.d_m = point.shown_m * outwards;
-      point.slope = outwards;
-      point.u_own_m = Eigen::Vector2d::Constant(0.25 * um);
-    }
-  }
+  const auto show = [](PathPoint& point, const Eigen::Vector2d& outwards) {
+    point.shown_m = outwards.y() >= 0.0 ? 0.0 : um;
+    point.d_m = point.shown_m * outwards;
+    point.u_own_m = Eigen::Vector2d::Constant(0.25 * um);
+  };
+  const CirclePath there = test::WrittenPath(1, 150.0 * mm, 360, 0.5 * deg, show),
+                   back = test::WrittenPath(-1, 150.0 * mm, 360, 0.5 * deg, show);
   const Iso230_4Value d = CircularDeviations({there, back}, NearlyNothing())[0].D;
   EXPECT_NEAR(d.u_m / um, std::sqrt(4.0 / 16.0 / 12.0), 0.02);
 }

@@ -1,4 +1,4 @@
-#include "twin/benches/circular_motion/columns.h"
+#include "tests/circular_motion/written_circles.h"
 #include "twin/benches/circular_motion/twin/live.h"
 #include "twin/benches/evaluated.h"
 #include "twin/core/stream.h"
@@ -7,6 +7,7 @@
 namespace twinbench::benches::circular {
 namespace {
 
+using test::ExpectCircleError;
 using units::arcsec, units::mm, units::um;
 
 constexpr double kCircle_m = 50.0 * mm;
@@ -26,48 +27,24 @@ double Along_m(const Drives& d, double phase_rad, double rate_rad_s, double late
 /// Once round each way at every feed.
 std::vector<Reading> Logged(const Drives& d, const std::vector<double>& feeds_mm_min,
                             const std::vector<int>& directions = {1, -1}) {
-  constexpr int kRows = 720;
   Stream noise(4, "drive");
   std::vector<Reading> readings;
-  int pass = 0;
   for (const double feed_mm_min : feeds_mm_min) {
-    for (const int direction : directions) {
-      const double rate_rad_s = direction * feed_mm_min * mm / 60.0 / kCircle_m;
-      for (int k = 0; k < kRows; ++k) {
-        Reading& r = readings.emplace_back();
-        const double phase_rad = direction * units::turn * (k + 0.3) / kRows;
-        r.reading = static_cast<int>(readings.size()) - 1;
-        r.time = Time(FromSeconds(0.01 * r.reading));
-        r.pass = pass;
-        r.direction = direction;
-        r.position = k;
-        kFeed_m_s(r) = feed_mm_min * mm / 60.0;
-        kCommandedX_m(r) = kCircle_m * std::cos(phase_rad);
-        kCommandedY_m(r) = kCircle_m * std::sin(phase_rad);
-        const double x_m = Along_m(d, phase_rad, rate_rad_s, d.late_x_s);
-        const double y_m = Along_m(d, phase_rad - 0.5 * units::kPi, rate_rad_s, d.late_y_s);
-        kGridX_m(r) = x_m * (1.0 + d.scale_x) - d.squareness_rad * y_m + 0.1 * um * noise.Normal();
-        kGridY_m(r) = y_m * (1.0 + d.scale_y) + 0.1 * um * noise.Normal();
-      }
-      ++pass;
-    }
+    const test::WrittenCircles circles{kCircle_m, feed_mm_min * mm / 60.0, 720, 0.3, 0.0, 360.0, directions};
+    const auto show = [&](Reading& r, double a) {
+      const double rate_rad_s = r.direction * circles.feed_m_s / kCircle_m;
+      const double x_m = Along_m(d, a, rate_rad_s, d.late_x_s);
+      const double y_m = Along_m(d, a - 0.5 * units::kPi, rate_rad_s, d.late_y_s);
+      kGridX_m(r) = x_m * (1.0 + d.scale_x) - d.squareness_rad * y_m + 0.1 * um * noise.Normal();
+      kGridY_m(r) = y_m * (1.0 + d.scale_y) + 0.1 * um * noise.Normal();
+    };
+    readings = Written(circles, show, std::move(readings));
   }
   return readings;
 }
 
 nlohmann::json ResultsOf(const std::vector<Reading>& readings) {
-  const Scenario scenario = ParseScenario(
-      "bench = \"circular_motion\"\n", "log", "",
-      {"circular_procedure.setups=[{instrument=\"drive\", radius_mm=50}]", "circular_procedure.stops=0"});
-  return EvaluationOf(scenario, readings, Estimator::kRigorous).results;
-}
-
-/// Within three of its standard uncertainties, which are no larger than the value needs.
-void ExpectError(const nlohmann::json& results, const std::string& key, double value, double largest_u) {
-  ASSERT_TRUE(results.at("errors").contains(key)) << key;
-  const double u = results.at("errors").at(key).at("u");
-  EXPECT_NEAR(results.at("errors").at(key).at("value").get<double>(), value, 3.0 * u) << key;
-  EXPECT_LT(u, largest_u) << key;
+  return EvaluationOf(test::ToldOfCircles("drive", kCircle_m), readings, Estimator::kRigorous).results;
 }
 
 TEST(Drive, IsLateByAFixedTimeOrByFirstOrderAsTwoFeedsSay) {
@@ -75,11 +52,11 @@ TEST(Drive, IsLateByAFixedTimeOrByFirstOrderAsTwoFeedsSay) {
     const nlohmann::json results = ResultsOf(Logged({.are_delayed = are_delayed}, {1000.0, 3000.0}));
     EXPECT_EQ(results.at("lag_kind"), are_delayed ? "fixed_delay" : "first_order");
     EXPECT_EQ(results.at("setups")[0].at("instrument"), "drive");
-    ExpectError(results, "machine.scale_x_um_m", 20.0, 1.0);
-    ExpectError(results, "machine.scale_y_um_m", -10.0, 1.0);
-    ExpectError(results, "machine.lag_x_s", 5e-3, 1e-5);
-    ExpectError(results, "machine.lag_y_s", 6e-3, 1e-5);
-    ExpectError(results, "machine.squareness_arcsec", 30e-6 / arcsec, 1.5);
+    ExpectCircleError(results, "machine.scale_x_um_m", 20.0, 1.0);
+    ExpectCircleError(results, "machine.scale_y_um_m", -10.0, 1.0);
+    ExpectCircleError(results, "machine.lag_x_s", 5e-3, 1e-5);
+    ExpectCircleError(results, "machine.lag_y_s", 6e-3, 1e-5);
+    ExpectCircleError(results, "machine.squareness_arcsec", 30e-6 / arcsec, 1.5);
   }
 }
 
@@ -117,22 +94,20 @@ TEST(Drive, IsAmbiguousAtOneFeed) {
       << "1 ms at 50 mm/s makes an ellipse of 50 um";
   EXPECT_NEAR(results.at("ranked")[0].at("share_um").get<double>(), 50.0, 0.5);
   EXPECT_FALSE(results.at("errors").contains("machine.scale_x_um_m"));
-  ExpectError(results, "machine.lag_x_s", 5e-3, 1e-5);
-  ExpectError(results, "machine.squareness_arcsec", 30e-6 / arcsec, 1.5);
+  ExpectCircleError(results, "machine.lag_x_s", 5e-3, 1e-5);
+  ExpectCircleError(results, "machine.squareness_arcsec", 30e-6 / arcsec, 1.5);
 }
 
 /// A grid plate that is turned looks as axes do that are late alike; a controller's axes are not turned.
 TEST(Drive, ShowsItsLagOneWayRound) {
-  ExpectError(ResultsOf(Logged({}, {1000.0, 3000.0}, {1})), "machine.lag_x_s", 5e-3, 1e-5);
+  ExpectCircleError(ResultsOf(Logged({}, {1000.0, 3000.0}, {1})), "machine.lag_x_s", 5e-3, 1e-5);
 }
 
 TEST(Drive, IsLateByAFixedTimeWhereTheScenarioSaysSo) {
-  const Scenario scenario =
-      ParseScenario("bench = \"circular_motion\"\n", "twin", "",
-                    {"circular_procedure.setups=[{instrument=\"drive\", radius_mm=50}]",
-                     "circular_procedure.stops=0", "noise_free=true", "circular_procedure.feeds_mm_min=[3000]",
-                     "machine.lag_x_s=0.005", "machine.lag_y_s=0.006", "machine.lag_kind=fixed_delay"});
-  const sim::CircleRun run(scenario);
+  const sim::CircleRun run(
+      test::ToldOfCircles("drive", kCircle_m,
+                          {"noise_free=true", "circular_procedure.feeds_mm_min=[3000]", "machine.lag_x_s=0.005",
+                           "machine.lag_y_s=0.006", "machine.lag_kind=fixed_delay"}));
   const Reading r = run.Take(7);
   const double at_rad = std::atan2(kCommandedY_m(r), kCommandedX_m(r));  // and a radian a second
   EXPECT_NEAR(kGridX_m(r) / mm, 50.0 * std::cos(at_rad - 0.005), 1e-9);

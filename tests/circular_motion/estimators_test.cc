@@ -1,4 +1,5 @@
 #include "tests/circular_motion/oracle.h"
+#include "tests/circular_motion/written_circles.h"
 #include "twin/benches/circular_motion/analysis.h"
 #include "twin/benches/circular_motion/twin/live.h"
 
@@ -192,13 +193,8 @@ constexpr int kPoints = 8, kHighest = 1, kLowest = 6;
 /// What the uncertainties of ISO 230-4 are made of, against sums by hand: one unknown that makes the radius larger by as much, known to 0.2 um: a quarter of the variance is left over beyond what is stated, another
 /// quarter the machine's.
 SharedUncertainty OfTheLength() {
-  const double variance = 0.04 * um * um;
-  SharedUncertainty shared;
-  shared.cov = Eigen::MatrixXd::Constant(1, 1, variance);
-  shared.hidden = Eigen::MatrixXd(1, 0);
-  shared.typical = Eigen::VectorXd::Ones(1);
+  SharedUncertainty shared = test::SharedLength(0.2 * um);
   shared.of_machine = 0.25 * shared.cov;
-  shared.of_steps = 0.0 * shared.cov;
   shared.excess = 0.25;
   return shared;
 }
@@ -206,19 +202,15 @@ SharedUncertainty OfTheLength() {
 /// A circle with one reading far out (u 0.3 um, half of it the machine's, a tenth the quanta's) and one far in (0.4 um; a fifth, none).
 /// @param beyond_um  Of the one far out.
 CirclePath Circle(int direction, double beyond_um = 0.0) {
-  CirclePath path{0, direction > 0 ? 0 : 1, direction, true, 0.1, 0.01, {}};
-  for (int i = 0; i < kPoints; ++i) {
-    PathPoint& point = path.points.emplace_back();
-    point.commanded_rad = units::turn * i / kPoints;
-    const Eigen::Vector2d outwards(std::cos(point.commanded_rad), std::sin(point.commanded_rad));
-    const double radial_m = um * (i == kHighest ? 9.0 + beyond_um : i == kLowest ? -9.0 : 0.0);
-    point.d_m = radial_m * outwards;
-    point.slope = outwards;
-    point.u_own_m = um * Eigen::Vector2d::Constant(i == kHighest ? 0.3 : 0.4);
-    point.of_machine.setConstant(i == kHighest ? 0.5 : 0.2);
-    point.of_steps.setConstant(i == kHighest ? 0.1 : 0.0);
-  }
-  return path;
+  int i = 0;
+  return test::WrittenPath(direction, 0.1, kPoints, 0.0, [&](PathPoint& point, const Eigen::Vector2d& outwards) {
+    const bool is_high = i == kHighest;
+    point.d_m = um * (is_high ? 9.0 + beyond_um : i == kLowest ? -9.0 : 0.0) * outwards;
+    point.u_own_m = um * Eigen::Vector2d::Constant(is_high ? 0.3 : 0.4);
+    point.of_machine.setConstant(is_high ? 0.5 : 0.2);
+    point.of_steps.setConstant(is_high ? 0.1 : 0.0);
+    ++i;
+  });
 }
 
 void ExpectParts(const Iso230_4Value& value, double variance_um2, double machine_um2, double steps_um2) {

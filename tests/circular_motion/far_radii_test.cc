@@ -1,11 +1,5 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <nlohmann/json.hpp>
-
+#include "tests/circular_motion/written_circles.h"
 #include "twin/benches/circular_motion/bench.h"
-#include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/estimators/far_radii.h"
 #include "twin/benches/evaluated.h"
 #include "twin/core/stream.h"
@@ -23,22 +17,9 @@ constexpr double kFarCircle_m = 120.0 * mm;
 template <class More_m>
 std::vector<Reading> TurnsEachWay(int turns, const More_m& more_m) {
   Stream noise(11, "bar");
-  std::vector<Reading> readings;
-  for (const int direction : {1, -1}) {
-    for (int k = 0; k < 360 * turns; ++k) {
-      Reading& r = readings.emplace_back();
-      const double a = direction * (k + 0.4) * deg;
-      r.reading = static_cast<int>(readings.size()) - 1;
-      r.time = Time(FromSeconds(0.1 * r.reading));
-      r.pass = direction > 0 ? 0 : 1;
-      r.direction = direction;
-      kFeed_m_s(r) = 0.02;
-      kCommandedX_m(r) = kFarCircle_m * std::cos(a);
-      kCommandedY_m(r) = kFarCircle_m * std::sin(a);
-      kBar_m(r) = 2.5 * um * std::cos(4.0 * a) + 0.1 * um * noise.Normal() + more_m(k, direction);
-    }
-  }
-  return WithAngles(std::move(readings));
+  return WithAngles(test::Written({kFarCircle_m, 0.02, 360, 0.4, 0.0, 360.0 * turns}, [&](Reading& r, double a) {
+    kBar_m(r) = 2.5 * um * std::cos(4.0 * a) + 0.1 * um * noise.Normal() + more_m(r.position, r.direction);
+  }));
 }
 
 TEST(FarRadii, ASingleOneIsTakenOutWithItsPlace) {
@@ -61,9 +42,8 @@ TEST(FarRadii, WhatEveryTurnShowsAStepAndWhatFollowsAReversalStay) {
 }
 
 TEST(FarRadii, ACircularDeviationIsWithoutThem) {
-  const auto scenario = ParseScenario("bench = \"circular_motion\"\n", "bar", "",
-                                      {"circular_procedure.setups=[{instrument=\"radial_bar\", radius_mm=120}]", "circular_procedure.stops=0"});
   const std::vector<Reading> readings = TurnsEachWay(1, [](int k, int way) { return k == 300 && way > 0 ? 60.0 * um : 0.0; });
+  const Scenario scenario = test::ToldOfCircles("radial_bar", kFarCircle_m);
   const nlohmann::json results = EvaluationOf(scenario, readings, Estimator::kRigorous).results;
   // 5 um, and by two extremes of about 60 readings each of the noise: 4.6 x 0.1 um.
   EXPECT_NEAR(results.at("iso230_4").at(0).at("G_ccw_um").get<double>(), 5.3, 0.4);
@@ -73,23 +53,13 @@ TEST(FarRadii, ACircularDeviationIsWithoutThem) {
 
 TEST(CircleLogs, OfManyReadingsAreDiagnosedByAPartWithAllReversals) {
   constexpr int kRows = 9000;
-  std::vector<Reading> readings;
-  for (const int direction : {1, -1}) {
-    for (int k = 0; k < kRows; ++k) {
-      Reading& r = readings.emplace_back();
-      const double a = direction * units::turn * (3.0 * k + 0.5) / kRows;
-      r.reading = static_cast<int>(readings.size()) - 1;
-      r.time = Time(FromSeconds(0.002 * r.reading));
-      r.pass = direction > 0 ? 0 : 1;
-      r.direction = direction;
-      kFeed_m_s(r) = 0.05;
-      kGridX_m(r) = kCommandedX_m(r) = kFarCircle_m * std::cos(a);
-      kGridY_m(r) = kCommandedY_m(r) = kFarCircle_m * std::sin(a);
-    }
-  }
-  const auto scenario = ParseScenario("bench = \"circular_motion\"\n", "log", "",
-                                      {"circular_procedure.setups=[{instrument=\"drive\", radius_mm=120}]", "circular_procedure.stops=0"});
-  const diagnose::LinearRun run = Linear(readings, scenario, Estimator::kRigorous);
+  const std::vector<Reading> readings =
+      test::Written({kFarCircle_m, 0.05, kRows / 3, 0.5, 0.0, 1080.0}, [](Reading& r, double) {
+        kGridX_m(r) = kCommandedX_m(r);
+        kGridY_m(r) = kCommandedY_m(r);
+      });
+  const diagnose::LinearRun run =
+      Linear(readings, test::ToldOfCircles("drive", kFarCircle_m), Estimator::kRigorous);
   EXPECT_LT(run.schedule.Readings(), 2200);
   for (int quarter = 1; quarter < 12; ++quarter)  // an axis turns round at each
     for (int k = quarter * kRows / 12 - 5; k < quarter * kRows / 12 + 5; ++k) EXPECT_EQ(std::ranges::count(run.schedule.reading, k), 1) << k;

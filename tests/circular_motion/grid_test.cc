@@ -1,8 +1,8 @@
 #include <numbers>
 
+#include "tests/circular_motion/written_circles.h"
 #include "tests/support/thresholds.h"
 #include "twin/benches/circular_motion/bench.h"
-#include "twin/benches/circular_motion/columns.h"
 #include "twin/core/stream.h"
 
 // A grid plate on a circle. Its readings are written here from what each error does to the path.
@@ -25,26 +25,21 @@ double Behind_m(double width_m, double from_turn_rad, int direction) {
   return sense * (std::min(since_m, width_m) - 0.5 * width_m);
 }
 
-std::vector<Reading> Readings(const Plane& plane, double noise_m, double first_deg) {
+/// @param show  What else is done to a reading.
+template <class Show>
+diagnose::Diagnosis DiagnosisOf(const Plane& plane, double feed_m_s, Show show) {
   Stream stream(7, "grid");
-  std::vector<Reading> readings;
-  for (const int direction : {1, -1}) {
-    for (int k = 0; k < 360; ++k) {
-      const double a = (first_deg + direction * k) * deg, x_m = kRadius_m * std::cos(a), y_m = kRadius_m * std::sin(a);
-      Reading& r = readings.emplace_back();
-      r.reading = static_cast<int>(readings.size()) - 1;
-      r.time = Time(FromSeconds(0.5 * r.reading));
-      r.pass = direction > 0 ? 0 : 1;
-      r.direction = direction;
-      r.position = k;
-      kCommandedX_m(r) = x_m;
-      kCommandedY_m(r) = y_m;
-      kFeed_m_s(r) = 1000.0 * mm / 60.0;
-      kGridX_m(r) = x_m * (1.0 + plane.scale_x) - plane.squareness_rad * y_m + Behind_m(plane.backlash_x_m, a, direction) + noise_m * stream.Normal();
-      kGridY_m(r) = y_m * (1.0 + plane.scale_y) + Behind_m(plane.backlash_y_m, a - 90.0 * deg, direction) + noise_m * stream.Normal();
-    }
-  }
-  return readings;
+  const auto readings = test::Written({kRadius_m, feed_m_s, 360, 0.0, 5.7}, [&](Reading& r, double a) {
+    const double x_m = kCommandedX_m(r), y_m = kCommandedY_m(r);
+    kGridX_m(r) = x_m * (1.0 + plane.scale_x) - plane.squareness_rad * y_m +
+                  Behind_m(plane.backlash_x_m, a, r.direction) + 0.05 * um * stream.Normal();
+    kGridY_m(r) = y_m * (1.0 + plane.scale_y) + Behind_m(plane.backlash_y_m, a - 90.0 * deg, r.direction) +
+                  0.05 * um * stream.Normal();
+    show(r, a);
+  });
+  const Scenario scenario =
+      test::ToldOfCircles("grid", kRadius_m, {"machine.lag_x_s=0", "machine.lag_y_s=0", "machine.span_mm=80"});
+  return Diagnose(readings, scenario, test::QuickOptions(100)).diagnosis;
 }
 
 const diagnose::Cause* Named(const diagnose::Diagnosis& d, const std::string& effect, const std::string& where) {
@@ -54,12 +49,8 @@ const diagnose::Cause* Named(const diagnose::Diagnosis& d, const std::string& ef
 }
 
 TEST(GridPlate, HasItsSquarenessScalesAndBacklashesNamedTogether) {
-  const Scenario scenario =
-      ParseScenario("bench = \"circular_motion\"\n[machine]\nlag_x_s = 0.0\nlag_y_s = 0.0\nspan_mm = 80.0\n[circular_procedure]\n"
-                    "setups = [{instrument = \"grid\", radius_mm = 80.0}]\n",
-                    "grid", ".", {});
   const Plane plane{12.0 * arcsec, 20e-6, -25e-6, 4.0 * um, 6.0 * um};
-  const diagnose::Diagnosis d = Diagnose(Readings(plane, 0.05 * um, 5.7), scenario, test::QuickOptions(100)).diagnosis;
+  const diagnose::Diagnosis d = DiagnosisOf(plane, 1000.0 * mm / 60.0, [](Reading&, double) {});
   for (const auto& [effect, where, size] :
        {std::tuple{"squareness", "", plane.squareness_rad}, {"scale", "x", plane.scale_x}, {"scale", "y", plane.scale_y},
         {"backlash", "x", plane.backlash_x_m}, {"backlash", "y", plane.backlash_y_m}}) {
@@ -72,23 +63,16 @@ TEST(GridPlate, HasItsSquarenessScalesAndBacklashesNamedTogether) {
 }
 
 TEST(GridPlate, HasTheScaleOfAnAxisBesideLagsThatAreNotAlike) {
-  const Scenario scenario =
-      ParseScenario("bench = \"circular_motion\"\n[machine]\nlag_x_s = 0.0\nlag_y_s = 0.0\nspan_mm = 80.0\n[circular_procedure]\n"
-                    "setups = [{instrument = \"grid\", radius_mm = 80.0}]\n",
-                    "grid", ".", {});
   // Of first order: along each axis 1 / (1 + lag s) at the circle's rate.
   constexpr double kLagX_s = 3.0e-3, kLagY_s = 3.6e-3, kScaleX = 20e-6, kFeed = 15.0 * units::mm * 1000.0 / 60.0;
-  std::vector<Reading> readings = Readings({}, 0.05 * um, 5.7);
-  for (Reading& r : readings) {
-    const double a = std::atan2(kCommandedY_m(r), kCommandedX_m(r)), rate = r.direction * kFeed / kRadius_m;
+  const diagnose::Diagnosis d = DiagnosisOf({}, kFeed, [&](Reading& r, double a) {
     const auto lagging_m = [&](double from_rad, double lag_s) {
-      return kRadius_m / std::hypot(1.0, rate * lag_s) * std::cos(from_rad - std::atan(rate * lag_s));
+      const double lag_rad = r.direction * kFeed / kRadius_m * lag_s;
+      return kRadius_m / std::hypot(1.0, lag_rad) * std::cos(from_rad - std::atan(lag_rad));
     };
-    kFeed_m_s(r) = kFeed;
     kGridX_m(r) += (1.0 + kScaleX) * lagging_m(a, kLagX_s) - kCommandedX_m(r);
     kGridY_m(r) += lagging_m(a - 90.0 * deg, kLagY_s) - kCommandedY_m(r);
-  }
-  const diagnose::Diagnosis d = Diagnose(readings, scenario, test::QuickOptions(100)).diagnosis;
+  });
   const diagnose::Cause* const scale = Named(d, "scale", "x");
   ASSERT_TRUE(scale);
   EXPECT_NEAR(scale->parameters[0].value, kScaleX, 4.0 * scale->parameters[0].u);

@@ -1,7 +1,7 @@
+#include "tests/circular_motion/written_circles.h"
 #include "tests/support/thresholds.h"
 #include "twin/benches/circular_motion/analysis.h"
 #include "twin/benches/circular_motion/bench.h"
-#include "twin/benches/circular_motion/columns.h"
 #include "twin/core/stream.h"
 #include "twin/report/sound.h"
 
@@ -33,32 +33,17 @@ double Radial_m(const Machine& m, double a, int direction) {
          kRadius_m;
 }
 
-/// One circle each way, of the angles of `from_deg` and on.
+/// One circle each way.
 std::vector<Reading> Readings(const Machine& m, double noise_m = 0.0, double arc_deg = 360.0) {
   Stream stream(5, "bar");
-  std::vector<Reading> readings;
-  for (const int direction : {1, -1}) {
-    for (double at_deg = 0.25; at_deg < arc_deg; at_deg += 1.0) {
-      Reading& r = readings.emplace_back();
-      r.reading = static_cast<int>(readings.size()) - 1;
-      r.time = Time(FromSeconds(0.15 * r.reading));
-      r.pass = direction > 0 ? 0 : 1;
-      r.direction = direction;
-      r.position = static_cast<int>(at_deg);
-      const double a = (direction > 0 ? at_deg : arc_deg - at_deg) * deg;
-      kCommandedX_m(r) = kRadius_m * std::cos(a);
-      kCommandedY_m(r) = kRadius_m * std::sin(a);
-      kFeed_m_s(r) = 1000.0 * mm / 60.0;
-      kBar_m(r) = Radial_m(m, a, direction) + noise_m * stream.Normal();
-    }
-  }
-  return readings;
+  return test::Written({kRadius_m, 1000.0 * mm / 60.0, 360, 0.25, 0.0, arc_deg}, [&](Reading& r, double a) {
+    kBar_m(r) = Radial_m(m, a, r.direction) + noise_m * stream.Normal();
+  });
 }
 
-Scenario Usual(const std::vector<std::string>& set = {}) {
-  return ParseScenario("bench = \"circular_motion\"\n[machine]\nlag_x_s = 0.0\nlag_y_s = 0.0\n[circular_procedure]\n"
-                       "setups = [{instrument = \"radial_bar\", radius_mm = 150.0}]\n",
-                       "usual", ".", set);
+Scenario Usual(std::vector<std::string> set = {}) {
+  set.insert(set.end(), {"machine.lag_x_s=0", "machine.lag_y_s=0"});
+  return test::ToldOfCircles("radial_bar", kRadius_m, set);
 }
 
 ErrorValue Found(const CircleAnalysis& a, const std::string& key) {
@@ -127,16 +112,11 @@ TEST(RadialBar, KeepsTheBallsFormAndTheGainThatTheScenarioStates) {
 // 1000 mm/min by 0.02 um. Its length takes up one of both; the other was spikes of 0.5 um and backlash.
 TEST(RadialBar, TakesTheSizeOfCirclesAtSeveralFeedsForWhatBothAxesLag) {
   constexpr double kLag_s = 5e-3;
-  std::vector<Reading> readings;
-  for (const double feed_m_s : {1.0 / 60.0, 6.0 / 60.0}) {
-    for (Reading r : Readings({})) {
-      r.reading = static_cast<int>(readings.size());
-      r.pass += feed_m_s > 0.05 ? 2 : 0;
-      kFeed_m_s(r) = feed_m_s;
-      kBar_m(r) = kRadius_m / std::hypot(1.0, kLag_s * feed_m_s / kRadius_m) - kRadius_m;
-      readings.push_back(r);
-    }
-  }
+  const auto show = [](Reading& r, double) {
+    kBar_m(r) = kRadius_m / std::hypot(1.0, kLag_s * kFeed_m_s(r) / kRadius_m) - kRadius_m;
+  };
+  const std::vector<Reading> slow = test::Written({kRadius_m, 1.0 / 60.0}, show);
+  const std::vector<Reading> readings = test::Written({kRadius_m, 6.0 / 60.0}, show, slow);
   const CircleAnalysis a = Analyse(Usual(), readings, Estimator::kRigorous);
   EXPECT_NEAR(Found(a, "machine.servo_mean_square_s2").value, kLag_s * kLag_s, 1e-3 * kLag_s * kLag_s);
   for (const char* key : {"machine.spike_x_um", "machine.spike_y_um", "machine.backlash_x_um", "machine.backlash_y_um"})
@@ -157,13 +137,9 @@ TEST(RadialBar, StatesUncertaintiesThatMatchItsErrors) {
 
 /// A path of radial deviations alone.
 CirclePath PathOf(int direction, double first_deg, const std::function<double(double)>& radial_m) {
-  CirclePath path{0, direction > 0 ? 0 : 1, direction, true, kRadius_m, 0.01, {}, false};
-  for (int k = 0; k < 360; ++k) {
-    PathPoint& point = path.points.emplace_back();
-    point.commanded_rad = (first_deg + k) * deg;
-    point.d_m = radial_m(point.commanded_rad) * Eigen::Vector2d(std::cos(point.commanded_rad), std::sin(point.commanded_rad));
-  }
-  return path;
+  return test::WrittenPath(direction, kRadius_m, 360, first_deg * deg, [&](PathPoint& p, const Eigen::Vector2d& outwards) {
+    p.d_m = radial_m(p.commanded_rad) * outwards;
+  });
 }
 
 TEST(CircularDeviations, HaveTheHysteresisBetweenReadingsAtOtherAngles) {
@@ -227,15 +203,13 @@ TEST(CircularDeviations, OfAnArcHaveTheMeanOfTheCircleThatTheirRadiiAreAbout) {
   // Of cos 2a on an arc of 200 deg about 0: centre (x, 0) and radius by their two normal equations.
   const double half = 100.0 * deg;
   double c1 = 0.0, c2 = 0.0, r0 = 0.0, r1 = 0.0, n = 0.0;
-  CirclePath there{0, 0, 1, true, kRadius_m, 0.01, {}, false}, back{0, 1, -1, true, kRadius_m, 0.01, {}, false};
+  CirclePath there = PathOf(1, -100.0, [](double a) { return std::cos(2.0 * a) * um; });
+  there.points.resize(201);
+  CirclePath back = there;
+  back.pass = 1, back.direction = -1;
   for (double a = -half; a <= half + 1e-9; a += deg) {
     const double radial = std::cos(2.0 * a);
     n += 1.0, c1 += std::cos(a), c2 += std::pow(std::cos(a), 2), r0 += radial, r1 += radial * std::cos(a);
-    for (CirclePath* path : {&there, &back}) {
-      PathPoint& point = path->points.emplace_back();
-      point.commanded_rad = a;
-      point.d_m = radial * um * Eigen::Vector2d(std::cos(a), std::sin(a));
-    }
   }
   const double mean_um = (c2 * r0 - c1 * r1) / (n * c2 - c1 * c1);
   const Iso230_4 d = CircularDeviations({there, back}, {})[0];
