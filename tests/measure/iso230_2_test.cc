@@ -361,14 +361,6 @@ TEST(PositioningOf, NotesReadingsThatAreNotAtOneTarget) {
   EXPECT_KEPT(PositioningOf(readings, 0).notes[0]);
 }
 
-TEST(PositioningOf, FeedsTheEvaluation) {
-  // Forward runs of a target lie 20 arcsec apart, s = sqrt(200); backward ones too and 9 further on, B_i = -9.
-  const auto p = EvaluatePositioning(PositioningOf(Stops(), 0).targets, {.replicas = 0});
-  EXPECT_NEAR(p[AxisValue::kB].value / units::arcsec, 9.0, 1e-9);
-  EXPECT_NEAR(p[AxisValue::kEForward].value / units::arcsec, 7.0, 1e-9);
-  EXPECT_NEAR(p[AxisValue::kR].value / units::arcsec, 4.0 * std::sqrt(200.0) + 9.0, 1e-9);
-}
-
 std::vector<PositioningTarget> TestOf(std::size_t targets, std::size_t forward, std::size_t backward) {
   return std::vector(targets, PositioningTarget{0.0, std::vector<double>(forward), std::vector<double>(backward)});
 }
@@ -448,15 +440,6 @@ TEST(EvaluateVdi3441, StatesTheScatterOfOneTargetAsItsDistributionHasIt) {
   EXPECT_NEAR(p[kPs].bias, 6.0 * s * (c4 - 1.0), 5.0 * u_scatter / std::sqrt(2000.0));
   EXPECT_NEAR(p[kU].u, u_reversal, 0.08 * u_reversal);
   EXPECT_NEAR(p[kP].u, std::hypot(u_scatter, u_reversal), 0.08 * u_scatter);
-}
-
-/// What ISO 230-2 calls M and B are Pa and U here.
-TEST(EvaluateVdi3441, SharesDeviationAndReversalWithIso230OnAPublishedTest) {
-  const VdiPositioning p = Evaluated(PublishedLinearAxis());
-  EXPECT_NEAR(p[kPa].value, 2.77e-5, 0.51e-8);  // half a unit of the last digit printed
-  EXPECT_NEAR(p[kU].value, 1.22e-5, 0.51e-7);
-  EXPECT_GE(p[kP].value, p[kPa].value);
-  EXPECT_GE(p[kPs].value, p[kMeanPs].value);
 }
 
 TEST(EvaluateVdi3441, GivesNothingThatNeedsASideThatWasNotMeasured) {
