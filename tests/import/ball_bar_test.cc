@@ -28,6 +28,11 @@ std::string Circles(const Row& row, const std::function<std::string(int directio
   return text;
 }
 
+/// @param form  Of 0 the angle in deg, 1 the deviation in um, 2 the way's sign, 3 its word, 4 its number.
+std::string Circles(const std::string& form, const char* ccw = "CCW", const char* cw = "CW") {
+  return Circles([&](double a, int d) { return fmt::format(fmt::runtime(form), a, Deviation_um(a, d), d, d > 0 ? ccw : cw, d > 0 ? 1 : 2); });
+}
+
 class BallBar : public Importing {
  protected:
   /// Every reading is the one that the file has, on a circle of this radius at this feed.
@@ -46,9 +51,7 @@ class BallBar : public Importing {
 };
 
 TEST_F(BallBar, IsGuessedByAnAngleAndADeviationInALength) {
-  const Imported taken = Take("run,direction,angle_deg,deviation_um\n" + Circles([](double a, int d) {
-                                return fmt::format("{},{},{},{:.4f}\n", d > 0 ? 1 : 2, d, a, Deviation_um(a, d));
-                              }));
+  const Imported taken = Take("run,direction,angle_deg,deviation_um\n" + Circles("{4},{2},{0},{1:.4f}\n"));
   Expect(taken, 150.0, 1000.0);
   EXPECT_THAT(taken.story, HasSubstr("taken as --map ball_bar"));
   EXPECT_THAT(taken.story, HasSubstr("the radius is not stated: taken as 150 mm"));
@@ -90,7 +93,7 @@ TEST_F(BallBar, MayShowItsLengthInPlaceOfTheDeviation) {
 }
 
 TEST_F(BallBar, TellsTheWayRoundByTheAngleWhereNothingElseDoes) {
-  const Imported taken = Take("Radius: 100 mm\nTheta (deg)\tError (micron)\n" + Circles([](double a, int d) { return fmt::format("{}\t{:.4f}\n", a, Deviation_um(a, d)); }));
+  const Imported taken = Take("Radius: 100 mm\nTheta (deg)\tError (micron)\n" + Circles("{}\t{:.4f}\n"));
   Expect(taken, 100.0, 1000.0);
   EXPECT_THAT(taken.story, HasSubstr("counter-clockwise where it rises"));
 }
@@ -106,7 +109,7 @@ TEST_F(BallBar, MayHaveArcsAtSeveralFeeds) {
 }
 
 TEST_F(BallBar, IsToldWhatItsFileDoesNotSay) {
-  const std::string text = "a,b\n" + Circles([](double a, int d) { return fmt::format("{},{:.4f}\n", a, Deviation_um(a, d)); });
+  const std::string text = "a,b\n" + Circles("{},{:.4f}\n");
   Expect(Take(text, "ball_bar", {"angle_deg=a", "deviation_um=b", "radius_inch=4", "feed_mm_min=800"}), 101.6, 800.0);
   EXPECT_THROW(Take(text, "ball_bar"), InputError) << "no column says what it is";
 }
@@ -174,15 +177,12 @@ TEST(UnitsOverATime, AreUnitsInNamesAndInBrackets) {
 
 TEST_F(BallBar, NamesThePlaneAndRefusesSeveral) {
   const auto circles = [](const char* first, const char* second) {
-    return "angle_deg,deviation_um,direction,plane\n" + Circles([&](double a, int d) {
-             return fmt::format("{},{:.4f},{},{}\n", a, Deviation_um(a, d), d, d > 0 ? first : second);
-           });
+    return "angle_deg,deviation_um,direction,plane\n" + Circles("{},{:.4f},{},{}\n", first, second);
   };
   EXPECT_THAT(Take(circles("Y-Z", "YZ")).story, HasSubstr("the circle is in the plane YZ: x of the results is Y, y is Z"));
   EXPECT_THAT(Take(circles("XY", "G17")).story, Not(HasSubstr("the plane")));
   EXPECT_THAT(MessageOf([&] { Take(circles("XY", "ZX")); }), HasSubstr("circles in the planes XY, ZX are in one file"));
-  EXPECT_THAT(Take("Ebene: ZX\nangle_deg,deviation_um\n" + Circles([](double a, int d) { return fmt::format("{},{:.4f}\n", a, Deviation_um(a, d)); })).story,
-              HasSubstr("x of the results is Z"));
+  EXPECT_THAT(Take("Ebene: ZX\nangle_deg,deviation_um\n" + Circles("{},{:.4f}\n")).story, HasSubstr("x of the results is Z"));
 }
 
 /// A column of "G02" says the way round whatever it is called; lines of names and values above may be separated as the rows are.
@@ -204,10 +204,7 @@ TEST_F(BallBar, LogsWithoutUnitsAreNamed) {
 }
 
 TEST_F(BallBar, MayBeFrench) {
-  const Imported taken = Take("Rayon (mm);100\nAvance (mm/min);500\nAngle (°);Écart (µm);Sens\n" + Circles([](double a, int d) {
-                                return fmt::format("{};{:.4f};{}\n", a, Deviation_um(a, d), d > 0 ? "antihoraire" : "horaire");
-                              }));
-  Expect(taken, 100.0, 500.0);
+  Expect(Take("Rayon (mm);100\nAvance (mm/min);500\nAngle (°);Écart (µm);Sens\n" + Circles("{0};{1:.4f};{3}\n", "antihoraire", "horaire")), 100.0, 500.0);
 }
 
 /// Each run an object of lists, and what holds for all beside them.

@@ -6,8 +6,6 @@
 #include <array>
 
 #include "tests/import/importing.h"
-#include "twin/benches/evaluated.h"
-#include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/core/stream.h"
 
 // Polygons without a certificate in several clampings: said by columns, by their names, by lines above blocks, or
@@ -137,8 +135,7 @@ TEST_F(ClampingTable, ReadBothWaysShowsItsHysteresis) {
           text += fmt::format("{},{:.4f},{},{}\n", 36 * place, Shown_arcsec(place, place + kTurned[static_cast<std::size_t>(c)], 0) + 0.5 * hysteresis_arcsec * way + 0.03 * noise.Normal(), c + 1, way);
         }
     const Imported taken = Take(text);
-    const diagnose::Diagnosis found =
-        benches::turntable::Diagnose(taken.readings, ParseScenario("bench = \"" + taken.bench + "\"\n", "faces.csv", "", taken.set), {}).diagnosis;
+    const diagnose::Diagnosis found = DiagnosedTurntable(taken);
     EXPECT_EQ(found.verdict, diagnose::Verdict::kNamed) << hysteresis_arcsec;
     ASSERT_EQ(found.causes.size(), 1U) << hysteresis_arcsec;
     EXPECT_EQ(found.causes[0].effect, "backlash");
@@ -182,7 +179,7 @@ TEST_F(ClampingTable, OfFewPositionsHasNoOrders) {
   for (int c = 0; c < 3; ++c)
     for (int k = 0; k < 5; ++k) text += fmt::format("{},{:.4f},{}\n", 72 * k, (k == 2 ? 3.0 : 0.0) + (k + c == 4 ? 1.0 : 0.0) + 0.02 * noise.Normal(), 72 * c);
   const Imported taken = Take(text);
-  const auto evaluated = EvaluationOf(ParseScenario("bench = \"" + taken.bench + "\"\n", "faces.csv", "", taken.set), taken.readings, Estimator::kRigorous);
+  const report::Evaluation evaluated = Evaluated(taken);
   EXPECT_THAT(evaluated.summary, HasSubstr("harmonic model          no order")) << evaluated.summary;
 }
 

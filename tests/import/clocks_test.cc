@@ -12,9 +12,9 @@ namespace {
 using testing::HasSubstr, testing::Not;
 
 /// A sine of 5 mm in 2 s, the device 4 ms late; a row every 10 ms.
-std::string Rows(const char* format, int from = 0) {
+std::string Rows(const char* format) {
   std::string text;
-  for (int i = from; i < 600; ++i) {
+  for (int i = 0; i < 600; ++i) {
     const double command = -5.0 * std::cos(0.01 * i * units::kPi), device = -5.0 * std::cos((0.01 * i - 0.004) * units::kPi);
     text += fmt::format(fmt::runtime(format), 10 * i, command, device);
   }

@@ -27,6 +27,11 @@ std::string Dressed(const std::string& head, Row row) {
   return text;
 }
 
+/// @param form  Of 0 the angle, 1 what is shown, in deg.
+std::string Dressed(const std::string& head, const char* form) {
+  return Dressed(head, [form](double a, double b) { return fmt::format(fmt::runtime(form), a, b); });
+}
+
 std::string Grouped(double x, char thousands, char decimal) {
   std::string digits = fmt::format("{:.1f}", x);
   digits[digits.size() - 2] = decimal;
@@ -34,9 +39,9 @@ std::string Grouped(double x, char thousands, char decimal) {
   return digits;
 }
 
-std::string Dms(double x) {
+std::string Dms(double x, const char* form) {
   const auto tenths = std::lround(std::abs(x) * 36000.0);
-  return fmt::format("{}{}° {:02d}' {:04.1f}\"", x < 0.0 ? "-" : "", tenths / 36000, tenths / 600 % 60, 0.1 * static_cast<double>(tenths % 600));
+  return fmt::format(fmt::runtime(form), tenths / 36000, tenths / 600 % 60, 0.1 * static_cast<double>(tenths % 600));
 }
 
 class Dress : public Importing {
@@ -62,18 +67,15 @@ TEST_F(Dress, HasMarksOfThousands) {
 }
 
 TEST_F(Dress, HasUnitsInItsCells) {
-  ExpectIt(Dressed("target,actual\n", [](double a, double b) { return fmt::format("{} deg,{:.4f} deg\n", a, b); }), "deg");
-  ExpectIt(Dressed("target;actual\n", [](double a, double b) { return Dms(a) + ";" + Dms(b) + "\n"; }), "degrees, minutes, seconds");
+  ExpectIt(Dressed("target,actual\n", "{} deg,{:.4f} deg\n"), "deg");
+  ExpectIt(Dressed("target;actual\n", [](double a, double b) { return Dms(a, "{}° {:02d}' {:04.1f}\"") + ";" + Dms(b, "{}° {:02d}' {:04.1f}\"") + "\n"; }), "degrees, minutes, seconds");
   ExpectIt(Dressed("ref mrad;enc arcmin\n", [](double a, double b) { return fmt::format("{:.5f};{:.4f}\n", a * units::deg / units::mrad, 60 * b); }),
            "each its own");
 }
 
 /// "359:30:12.5", as theodolites have it; the clock beside it is one.
 TEST_F(Dress, HasDegreesMinutesAndSecondsBetweenColons) {
-  const auto colons = [](double x) {
-    const auto tenths = std::lround(std::abs(x) * 36000.0);
-    return fmt::format("{}{}:{:02d}:{:04.1f}", x < 0.0 ? "-" : "", tenths / 36000, tenths / 600 % 60, 0.1 * static_cast<double>(tenths % 600));
-  };
+  const auto colons = [](double x) { return Dms(x, "{}:{:02d}:{:04.1f}"); };
   for (const char* head : {"reference;measured\n", "target [deg];actual [deg]\n", "angle 1 [d:mm:ss];angle 2 [d:mm:ss]\n"})
     ExpectIt(Dressed(head, [&](double a, double b) { return colons(a) + ";" + colons(b) + "\n"; }), head);
   const Imported timed = Take(Dressed("time;reference;measured\n", [&](double a, double b) {
@@ -84,20 +86,20 @@ TEST_F(Dress, HasDegreesMinutesAndSecondsBetweenColons) {
 }
 
 TEST_F(Dress, IsALineOfNamesAndValues) {
-  ExpectIt(Dressed("", [](double a, double b) { return fmt::format("target={} actual={:.4f}\n", a, b); }), "=");
-  ExpectIt(Dressed("boot ok\n", [](double a, double b) { return fmt::format("ref:{},enc:{:.4f}\n", a, b); }), "a serial plotter's");
+  ExpectIt(Dressed("", "target={} actual={:.4f}\n"), "=");
+  ExpectIt(Dressed("boot ok\n", "ref:{},enc:{:.4f}\n"), "a serial plotter's");
 }
 
 TEST_F(Dress, HasHeadsAndMarksOfItsProgram) {
-  const auto row = [](double a, double b) { return fmt::format("{};{:.4f}\n", a, b); };
+  const char* row = "{};{:.4f}\n";
   ExpectIt(Dressed("sep=;\nreference [deg];measured [deg]\n", row), "a spreadsheet's first line");
-  ExpectIt(Dressed("'reference [deg]';'measured [deg]'\n", [](double a, double b) { return fmt::format("'{}';'{:.4f}'\n", a, b); }), "quotes");
+  ExpectIt(Dressed("'reference [deg]';'measured [deg]'\n", "'{}';'{:.4f}'\n"), "quotes");
   ExpectIt(Dressed("Winkel soll [\xB0];Winkel ist [\xB0]\n", row), "Latin 1");
-  ExpectIt(Dressed("  Reference   Measured\n    (deg)      (deg)\n", [](double a, double b) { return fmt::format("{:11.3f}{:11.4f}\n", a, b); }),
+  ExpectIt(Dressed("  Reference   Measured\n    (deg)      (deg)\n", "{:11.3f}{:11.4f}\n"),
            "units below the names");
-  ExpectIt(Dressed("| ref [deg] | enc [deg] |\n|---|---|\n", [](double a, double b) { return fmt::format("| {} | {:.4f} |\n", a, b); }), "Markdown");
+  ExpectIt(Dressed("| ref [deg] | enc [deg] |\n|---|---|\n", "| {} | {:.4f} |\n"), "Markdown");
   std::string again = "reference [deg];measured [deg]\n";
-  for (int i = 0; i < kRows; ++i) again += (i == 40 ? "reference [deg];measured [deg]\n" : "") + row(Angle_deg(i), Shown_deg(i));
+  for (int i = 0; i < kRows; ++i) again += (i == 40 ? "reference [deg];measured [deg]\n" : "") + fmt::format(fmt::runtime(row), Angle_deg(i), Shown_deg(i));
   ExpectIt(again, "its head again");
 }
 
@@ -110,7 +112,7 @@ TEST_F(Dress, HasTheMinusOfAWordProcessor) {
 }
 
 TEST_F(Dress, SaysThatGradAreReadAsDegrees) {
-  EXPECT_THAT(Take(Dressed("Soll [Grad];Ist [Grad]\n", [](double a, double b) { return fmt::format("{};{:.4f}\n", a, b); })).story,
+  EXPECT_THAT(Take(Dressed("Soll [Grad];Ist [Grad]\n", "{};{:.4f}\n")).story,
               HasSubstr("read as degrees"));
 }
 

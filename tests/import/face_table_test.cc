@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include "tests/import/importing.h"
-#include "twin/benches/evaluated.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/stream.h"
@@ -31,6 +30,13 @@ std::string Faces(int faces, const FaceRow& row) {
   }
   return text;
 }
+/// @param form  Of 0 the face, 1 its angle in deg, 2 forward, 3 reverse, 4 certified, in arcsec.
+std::string Faces(int faces, const std::string& form) {
+  return Faces(faces, [&](int face, double angle, double forward, double reverse) {
+    return fmt::format(fmt::runtime(form), face, angle, forward, reverse, Certified_arcsec(face - 1));
+  });
+}
+const std::string kBothWays = "{1:g},{2:.4f},{3:.4f},{4:.4f}\n";
 
 class FaceTable : public Importing {
  protected:
@@ -52,14 +58,12 @@ class FaceTable : public Importing {
 
 TEST_F(FaceTable, IsGuessedByItsCertifiedDeviations) {
   const Imported taken = Take("face,nominal_deg,certified_dev_arcsec,reading_forward_arcsec,reading_reverse_arcsec\n" +
-                              Faces(12, [](int face, double angle, double forward, double reverse) {
-                                return fmt::format("{},{:g},{:.4f},{:.4f},{:.4f}\n", face, angle, Certified_arcsec(face - 1), forward, reverse);
-                              }));
+                              Faces(12, "{0},{1:g},{4:.4f},{2:.4f},{3:.4f}\n"));
   Expect(taken, 12);
   EXPECT_THAT(taken.story, HasSubstr("taken as --map face_table"));
   EXPECT_THAT(taken.story, Not(HasSubstr("no certified deviations")));
   // The second axis of the autocollimator was not read, and a compensation needs none.
-  const Scenario scenario = ParseScenario("bench = \"" + taken.bench + "\"\n", "faces.csv", "", taken.set);
+  const Scenario scenario = Made(taken);
   EXPECT_EQ(BenchOf(scenario).index_errors(scenario, taken.readings).Count(), 12);
 }
 
@@ -79,47 +83,35 @@ TEST_F(FaceTable, MayBeGermanInRadAndSayTheDirectionInAColumn) {
 }
 
 TEST_F(FaceTable, WithoutCertifiedDeviationsSaysSo) {
-  const Imported taken = Take("nominal [deg],autocollimator [arcsec]\n" + Faces(36, [](int, double angle, double forward, double) {
-                                return fmt::format("{:g},{:.4f}\n", angle, forward);
-                              }), "face_table");
+  const Imported taken = Take("nominal [deg],autocollimator [arcsec]\n" + Faces(36, "{1:g},{2:.4f}\n"), "face_table");
   EXPECT_EQ(taken.readings.size(), 36U);
   EXPECT_THAT(taken.story, HasSubstr("no certified deviations were found"));
 }
 
 /// Columns that are called by the way round alone, a certificate's expanded uncertainty, and a face's number beside them.
 TEST_F(FaceTable, MayCallItsColumnsByTheWayRoundAlone) {
-  const auto text = [](const char* names) {
-    return names + Faces(8, [](int face, double angle, double forward, double reverse) {
-             return fmt::format("{},{:g},{:.4f},{:.4f},{:.4f},0.1\n", face, angle, forward, reverse, Certified_arcsec(face - 1));
-           });
-  };
-  const Imported taken = Take(text("Face,Nominal [°],Forward [\"],Reverse [\"],Certified [\"],U (k=2) [\"]\n"));
+  const std::string rows = Faces(8, "{},{:g},{:.4f},{:.4f},{:.4f},0.1\n");
+  const Imported taken = Take("Face,Nominal [°],Forward [\"],Reverse [\"],Certified [\"],U (k=2) [\"]\n" + rows);
   Expect(taken, 8);
   EXPECT_THAT(taken.set, Contains("multitooth.u_tooth_arcsec=0.05"));
-  Expect(Take(text("No.,Soll [°],Run 1 fwd (\"),Run 1 rev (\"),Kalibrierwert (\"),u (\")\n")), 8);
+  Expect(Take("No.,Soll [°],Run 1 fwd (\"),Run 1 rev (\"),Kalibrierwert (\"),u (\")\n" + rows), 8);
 }
 
 /// "rück" beside "vor" is the way back; what nothing is made of is said.
 TEST_F(FaceTable, MayAbbreviateTheWayBackAndSaysWhatItLeaves) {
-  const auto text = [](const char* names) {
-    return names + Faces(12, [](int face, double angle, double forward, double reverse) {
-             return fmt::format("{:g};{:.4f};{:.4f};{:.4f}\n", angle, forward, reverse, Certified_arcsec(face - 1));
-           });
-  };
+  const std::string rows = Faces(12, "{1:g};{2:.4f};{3:.4f};{4:.4f}\n");
   for (const char* names : {"Sollwinkel [°];Ablesung vor [″];Ablesung rück [″];Kalibrierwert [″]\n", "angolo [°];lettura andata [\"];lettura ritorno [\"];certificato [\"]\n",
                             "angle [deg];reading fwd [arcsec];reading back [arcsec];certified [arcsec]\n"}) {
-    const Imported taken = Take(text(names));
+    const Imported taken = Take(names + rows);
     Expect(taken, 12);
     EXPECT_THAT(taken.story, Not(HasSubstr("left out"))) << names;
   }
-  EXPECT_THAT(Take(text("Sollwinkel [°];Ablesung [″];Nullkontrolle [″];Kalibrierwert [″]\n")).story, HasSubstr("left out, for by its name nothing of this map is meant: \"Nullkontrolle\""));
+  EXPECT_THAT(Take("Sollwinkel [°];Ablesung [″];Nullkontrolle [″];Kalibrierwert [″]\n" + rows).story, HasSubstr("left out, for by its name nothing of this map is meant: \"Nullkontrolle\""));
 }
 
 /// Old instruments are read in seconds and mean those of arc.
 TEST_F(FaceTable, MayBeInSecondsOfArc) {
-  const Imported taken = Take("Angle,Reading forward (sec),Reading reverse (sec),Certified (sec)\n" + Faces(12, [](int face, double angle, double forward, double reverse) {
-                                return fmt::format("{:g},{:.4f},{:.4f},{:.4f}\n", angle, forward, reverse, Certified_arcsec(face - 1));
-                              }));
+  const Imported taken = Take("Angle,Reading forward (sec),Reading reverse (sec),Certified (sec)\n" + Faces(12, kBothWays));
   Expect(taken, 12);
   EXPECT_THAT(taken.story, HasSubstr("\"Certified\" is no time: its \"sec\" is taken as arcsec"));
   std::string logged = "time (sec),target (deg),error (sec),dwell (sec)\n";
@@ -153,13 +145,8 @@ TEST_F(FaceTable, TakesTheSecondAxis) {
 
 /// Each run has a column, "up" and "down" say the way, and two apostrophes are seconds.
 TEST_F(FaceTable, MayHaveAColumnForEachRun) {
-  const auto text = [](const char* names) {
-    return names + Faces(12, [](int face, double angle, double forward, double reverse) {
-             return fmt::format("{:g},{:.4f},{:.4f},{:.4f}\n", angle, forward, reverse, Certified_arcsec(face - 1));
-           });
-  };
-  Expect(Take(text("angle (deg),reading up (''),reading down (''),certified ('')\n")), 12);
-  const Imported taken = Take(text("nominal_deg,run1_arcsec,run2_arcsec,certified_arcsec\n"));
+  Expect(Take("angle (deg),reading up (''),reading down (''),certified ('')\n" + Faces(12, kBothWays)), 12);
+  const Imported taken = Take("nominal_deg,run1_arcsec,run2_arcsec,certified_arcsec\n" + Faces(12, kBothWays));
   ASSERT_EQ(taken.readings.size(), 24U) << taken.story;
   EXPECT_NE(taken.readings.front().pass, taken.readings.back().pass);
 }
@@ -188,20 +175,15 @@ TEST_F(FaceTable, TakesCertificatesOfOtherKinds) {
 
 /// An error beside an angle is that of a device; what an autocollimator read at nominal angles is a face table.
 TEST_F(FaceTable, OfReadingsAloneIsGuessedWhereTheyAreNoErrors) {
-  const auto named = [](const char* name) {
-    return fmt::format("angle_deg,{}\n", name) +
-           Faces(36, [](int, double angle, double forward, double) { return fmt::format("{:g},{:.4f}\n", angle, forward); });
-  };
-  EXPECT_EQ(Take(named("x_arcsec")).bench, "turntable_autocollimator");
-  EXPECT_EQ(Take(named("measured error [arcsec]")).bench, "encoder_comparison");
+  const std::string rows = Faces(36, "{1:g},{2:.4f}\n");
+  EXPECT_EQ(Take("angle_deg,x_arcsec\n" + rows).bench, "turntable_autocollimator");
+  EXPECT_EQ(Take("angle_deg,measured error [arcsec]\n" + rows).bench, "encoder_comparison");
 }
 
 /// Nothing is left over, and nothing is invented.
 TEST_F(FaceTable, ReadOnceHasErrorsWithoutAnUncertainty) {
-  const Imported taken = Take("nominal [deg],reading [arcsec],certified [arcsec]\n" + Faces(8, [](int face, double angle, double forward, double) {
-                                return fmt::format("{:g},{:.4f},{:.4f}\n", angle, forward, Certified_arcsec(face - 1));
-                              }));
-  const auto evaluated = EvaluationOf(ParseScenario("bench = \"" + taken.bench + "\"\n", "faces.csv", "", taken.set), taken.readings, Estimator::kRigorous);
+  const Imported taken = Take("nominal [deg],reading [arcsec],certified [arcsec]\n" + Faces(8, "{1:g},{2:.4f},{4:.4f}\n"));
+  const report::Evaluation evaluated = Evaluated(taken);
   EXPECT_EQ(evaluated.not_separated, "");
   EXPECT_THAT(evaluated.summary, HasSubstr("no position was read twice"));
   const auto& turntable = evaluated.results.at("separation").at("turntable");
@@ -209,21 +191,25 @@ TEST_F(FaceTable, ReadOnceHasErrorsWithoutAnUncertainty) {
   EXPECT_NEAR(turntable.at("ez_arcsec").at(2).get<double>(), 3.0, 0.01);
 }
 
+/// 24 places up and down so often, of a certificate of zeros.
+std::string Repeats(int runs, const std::function<double(double angle_deg, int way, int run)>& shown_arcsec) {
+  std::string text = "position (deg),reading (arcsec),certified (arcsec),direction,run\n";
+  for (int row = 0; row < 48 * runs; ++row) {
+    const int run = row / 48 + 1, way = row % 48 < 24 ? 1 : -1;
+    const double angle_deg = 15.0 * (way > 0 ? row % 24 : 23 - row % 24);
+    text += fmt::format("{:g},{:.2f},0.00,{},{}\n", angle_deg, shown_arcsec(angle_deg, way, run), way > 0 ? "up" : "down", run);
+  }
+  return text;
+}
+
 /// The noise that the made scenario states is that of its repeats, which one disturbed reading does not widen; without any nothing is known.
 TEST_F(FaceTable, StatesTheNoiseOfItsRepeats) {
   for (const int runs : {1, 4}) {
     Stream noise(5, "autocollimator.noise");
-    std::string text = "position (deg),reading (arcsec),certified (arcsec),direction,run\n";
-    for (int run = 1; run <= runs; ++run)
-      for (const int way : {1, -1})
-        for (int k = 0; k < 24; ++k) {
-          const double angle_deg = 15.0 * (way > 0 ? k : 23 - k), disturbed = run == 2 && way > 0 && k == 7 ? 40.0 : 0.0;
-          const double shown_arcsec = Table_arcsec(angle_deg, way) + 0.5 * noise.Normal() + disturbed;
-          text += fmt::format("{:g},{:.2f},0.10,{},{}\n", angle_deg, shown_arcsec, way > 0 ? "up" : "down", run);
-        }
-    const Imported taken = Take(text);
-    const Scenario made = ParseScenario("bench = \"" + taken.bench + "\"\n", "faces.csv", "", taken.set);
-    const double stated_arcsec = TurntableOf(made).autocollimator.noise_rad / units::arcsec;
+    const Imported taken = Take(Repeats(runs, [&](double angle_deg, int way, int run) {
+      return Table_arcsec(angle_deg, way) + 0.5 * noise.Normal() + (run == 2 && way > 0 && angle_deg == 105.0 ? 40.0 : 0.0);
+    }));
+    const double stated_arcsec = TurntableOf(Made(taken)).autocollimator.noise_rad / units::arcsec;
     EXPECT_NEAR(stated_arcsec, runs > 1 ? 0.5 : 0.02, runs > 1 ? 0.08 : 1e-9);
     EXPECT_EQ(taken.story.find("the noise of the autocollimator is not known") != std::string::npos, runs == 1) << taken.story;
   }
@@ -233,16 +219,12 @@ TEST_F(FaceTable, StatesTheNoiseOfItsRepeats) {
 TEST_F(FaceTable, LeavesASingleDisturbedReadingOut) {
   for (const bool is_coarse : {false, true}) {
     Stream noise(3, "autocollimator.noise");
-    std::string text = "position (deg),reading (arcsec),certified (arcsec),direction,run\n";
-    for (int run = 1; run < 3; ++run)
-      for (const int way : {1, -1})
-        for (int k = 0; k < 24; ++k) {
-          const double angle_deg = 15.0 * (way > 0 ? k : 23 - k), disturbed = !is_coarse && run == 2 && way > 0 && k == 18 ? 20.0 : 0.0;
-          const double shown = 30.0 * std::sin(angle_deg * units::deg) + (is_coarse ? 0.3 : 0.05) * noise.Normal() + disturbed;
-          text += fmt::format("{:g},{:.2f},0.00,{},{}\n", angle_deg, is_coarse ? std::round(shown) : shown, way > 0 ? "up" : "down", run);
-        }
-    const Imported taken = Take(text);
-    const auto evaluated = EvaluationOf(ParseScenario("bench = \"" + taken.bench + "\"\n", "faces.csv", "", taken.set), taken.readings, Estimator::kRigorous);
+    const Imported taken = Take(Repeats(2, [&](double angle_deg, int way, int run) {
+      const double disturbed = !is_coarse && run == 2 && way > 0 && angle_deg == 270.0 ? 20.0 : 0.0;
+      const double shown = 30.0 * std::sin(angle_deg * units::deg) + (is_coarse ? 0.3 : 0.05) * noise.Normal() + disturbed;
+      return is_coarse ? std::round(shown) : shown;
+    }));
+    const report::Evaluation evaluated = Evaluated(taken);
     EXPECT_EQ(evaluated.summary.find("reading 66 is left out of the errors") != std::string::npos, !is_coarse) << evaluated.summary;
     const auto& turntable = evaluated.results.at("separation").at("turntable");
     for (std::size_t k = 0; k < 24; ++k) {

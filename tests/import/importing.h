@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "tests/core/input_error.h"
+#include "twin/benches/evaluated.h"
+#include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/core/units.h"
 #include "twin/import/import.h"
 
@@ -35,6 +37,17 @@ class Importing : public ::testing::Test {
  private:
   TemporaryFolder folder_;
 };
+
+/// The scenario that is made for what was imported.
+inline Scenario Made(const Imported& taken) {
+  return ParseScenario("bench = \"" + taken.bench + "\"\n", "raw.csv", "", taken.set);
+}
+inline report::Evaluation Evaluated(const Imported& taken) {
+  return EvaluationOf(Made(taken), taken.readings, Estimator::kRigorous);
+}
+inline diagnose::Diagnosis DiagnosedTurntable(const Imported& taken) {
+  return benches::turntable::Diagnose(taken.readings, Made(taken), {}).diagnosis;
+}
 
 /// The largest measured - reference, whole turns and the mean aside.
 inline double Worst_deg(const std::vector<Reading>& readings) {

@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tests/core/input_error.h"
-#include "twin/benches/evaluated.h"
-#include "twin/import/import.h"
+#include "tests/import/importing.h"
 
 // The shipped samples, to what the programs beside them hid.
 namespace twinbench::imports {
@@ -10,8 +8,7 @@ namespace {
 
 nlohmann::json ErrorsOfSample(const std::string& file) {
   const Imported taken = Import({std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/samples/" + file}, LoadMap(""));
-  const Scenario scenario = ParseScenario("bench = \"" + taken.bench + "\"\n", file, "", taken.set);
-  return EvaluationOf(scenario, taken.readings, Estimator::kRigorous).results.at("errors");
+  return Evaluated(taken).results.at("errors");
 }
 
 /// Within four standard uncertainties, of which the largest is told.

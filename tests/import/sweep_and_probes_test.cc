@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 
 #include "tests/import/importing.h"
-#include "twin/benches/evaluated.h"
-#include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/core/stream.h"
 
 // An autocollimator against a known angle, and displacements and tilts of a spindle: other names, orders, units and separators than the samples'.
@@ -67,8 +65,7 @@ TEST_F(AutocollimatorSweep, IsDiagnosedInTheSenseThatItHas) {
       text += fmt::format("{},{:.4f}\n", angle_arcsec, sense * (angle_arcsec + 0.3 * std::cos(units::turn * angle_arcsec / 40.0) + 0.02 * noise.Normal()));
     }
     const Imported taken = Take(text);
-    const diagnose::Diagnosis found =
-        benches::turntable::Diagnose(taken.readings, ParseScenario("bench = \"" + taken.bench + "\"\n", "sweep.csv", "", taken.set), {}).diagnosis;
+    const diagnose::Diagnosis found = DiagnosedTurntable(taken);
     ASSERT_FALSE(found.causes.empty()) << sense;
     EXPECT_EQ(found.causes[0].effect, "autocollimator_periodic") << sense;
     EXPECT_EQ(std::ranges::count_if(found.notes, [](const std::string& note) { return note.find("counts against") != std::string::npos; }), sense < 0.0 ? 1 : 0);
@@ -86,8 +83,7 @@ TEST_F(AutocollimatorSweep, HasTheLongestOfThePeriodsThatLookAlike) {
         text += fmt::format("{},{:.4f},{:.4f}\n", angle_arcsec, scale * angle_arcsec + 0.3 * std::sin(units::turn * angle_arcsec / period_arcsec) + 0.03 * noise.Normal(), 0.03 * noise.Normal());
       }
     const Imported taken = Take(text);
-    const diagnose::Diagnosis found =
-        benches::turntable::Diagnose(taken.readings, ParseScenario("bench = \"" + taken.bench + "\"\n", "sweep.csv", "", taken.set), {}).diagnosis;
+    const diagnose::Diagnosis found = DiagnosedTurntable(taken);
     SCOPED_TRACE(fmt::format("{} {}", scale, period_arcsec));
     const auto ripple = std::ranges::find(found.causes, "autocollimator_periodic", &diagnose::Cause::effect);
     ASSERT_NE(ripple, found.causes.end());
@@ -108,8 +104,7 @@ TEST_F(AutocollimatorSweep, OfUnevenStepsHasAShortPeriod) {
     text += fmt::format("{:.3f},{:.4f}\n", angle_arcsec, angle_arcsec + 0.3 * std::sin(units::turn * angle_arcsec / 1.71) + 0.03 * noise.Normal());
   }
   const Imported taken = Take(text);
-  const diagnose::Diagnosis found =
-      benches::turntable::Diagnose(taken.readings, ParseScenario("bench = \"" + taken.bench + "\"\n", "sweep.csv", "", taken.set), {}).diagnosis;
+  const diagnose::Diagnosis found = DiagnosedTurntable(taken);
   ASSERT_FALSE(found.causes.empty());
   const auto& period = *std::ranges::find(found.causes[0].parameters, "period", &diagnose::ParameterEstimate::name);
   EXPECT_NEAR(period.value / units::arcsec, 1.71, 0.001);
@@ -126,8 +121,7 @@ TEST_F(AutocollimatorSweep, LeavesASingleRowOut) {
     text += fmt::format("{:.2f},{:.4f}\n", angle_arcsec, 1.004 * angle_arcsec + 0.05 * noise.Normal() + (k == kFarRow ? 4.0 : 0.0));
   }
   const Imported taken = Take(text);
-  const report::Evaluation evaluation =
-      EvaluationOf(ParseScenario("bench = \"" + taken.bench + "\"\n", "sweep.csv", "", taken.set), taken.readings, Estimator::kRigorous);
+  const report::Evaluation evaluation = Evaluated(taken);
   ASSERT_EQ(evaluation.results.at("far").size(), 1U) << evaluation.summary;
   EXPECT_EQ(evaluation.results.at("far").at(0).at("reading"), kFarRow);
   EXPECT_NEAR(evaluation.results.at("far").at(0).at("off_arcsec").get<double>(), 4.0, 0.3);  // five of 0.06

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "tests/import/importing.h"
-#include "twin/benches/evaluated.h"
 #include "twin/core/stream.h"
 #include "twin/import/column_functions.h"
 
@@ -36,6 +35,12 @@ std::string Log(const Train& train, const std::function<std::string(int k, doubl
   return text;
 }
 
+/// @param form  Of 0 the time in s, 1 and 2 both angles in deg.
+std::string Log(const Train& train, const std::string& form, double sense = 1.0) {
+  return Log(train, [&](int k, double in, double out) { return fmt::format(fmt::runtime(form), 0.005 * k, sense * in, out); });
+}
+const std::string kTimed = "{:.4f},{:.7f},{:.7f}\n";
+
 class TwoEncoders : public Importing {
  protected:
   /// The readings are the log's, and their transmission error is the train's.
@@ -56,9 +61,7 @@ class TwoEncoders : public Importing {
 
 TEST_F(TwoEncoders, AreGuessedByTheNamesOfTheirShafts) {
   const Train train;
-  const Imported taken = Take("time_s,input_deg,output_deg\n" + Log(train, [](int k, double in, double out) {
-                                return fmt::format("{:.4f},{:.7f},{:.7f}\n", 0.005 * k, in, out);
-                              }));
+  const Imported taken = Take("time_s,input_deg,output_deg\n" + Log(train, kTimed));
   Expect(taken, train, 396);
   EXPECT_EQ(taken.readings.front().direction, 1);
   EXPECT_THAT(taken.story, HasSubstr("taken as one of 1.9375 turns of the input to one of the output"));
@@ -77,8 +80,7 @@ TEST_F(TwoEncoders, LeaveASingleRowOut) {
     text += fmt::format("{:.7f},{:.7f}\n", 25.0 * output_deg, output_deg + error_arcsec / 3600.0);
   }
   const Imported taken = Take(text);
-  const Scenario scenario = ParseScenario("bench = \"" + taken.bench + "\"\n", "train.csv", "", taken.set);
-  const report::Evaluation evaluation = EvaluationOf(scenario, taken.readings, Estimator::kRigorous);
+  const report::Evaluation evaluation = Evaluated(taken);
   ASSERT_EQ(evaluation.results.at("far").size(), 1U);
   EXPECT_EQ(evaluation.results.at("far").at(0).at("reading"), kFarRow);
   EXPECT_NEAR(evaluation.results.at("far").at(0).at("off_arcsec").get<double>(), 75.0, 1.5);  // five of 0.24 arcsec, and of the wave
@@ -112,26 +114,19 @@ TEST_F(TwoEncoders, MayStartAgainAtATurnInRadWithoutTimes) {
 
 TEST_F(TwoEncoders, MayTurnAgainstEachOther) {
   const Train train{50, 17, 60.0};
-  const Imported taken = Take("t [s]\tpinion [deg]\twheel [deg]\n" + Log(train, [](int k, double in, double out) {
-                                return fmt::format("{:.4f}\t{:.7f}\t{:.7f}\n", 0.005 * k, -in, out);
-                              }));
+  const Imported taken = Take("t [s]\tpinion [deg]\twheel [deg]\n" + Log(train, "{:.4f}\t{:.7f}\t{:.7f}\n", -1.0));
   Expect(taken, train, 396);
   EXPECT_THAT(taken.story, HasSubstr("turn against each other"));
 }
 
 TEST_F(TwoEncoders, HaveTheRatioThatALineStates) {
   const Train train{60, 1, 5.0};
-  const Imported taken = Take("# gear ratio: 60\nmotor_deg,load_deg\n" + Log(train, [](int, double in, double out) {
-                                return fmt::format("{:.7f},{:.7f}\n", in, out);
-                              }));
-  Expect(taken, train, 396);
+  Expect(Take("# gear ratio: 60\nmotor_deg,load_deg\n" + Log(train, "{1:.7f},{2:.7f}\n")), train, 396);
 }
 
 TEST_F(TwoEncoders, OfARatioOfOneAreAComparison) {
   const Train train{1, 1, 60.0};
-  const Imported taken = Take("time_s,input_deg,output_deg\n" + Log(train, [](int k, double in, double out) {
-                                return fmt::format("{:.4f},{:.7f},{:.7f}\n", 0.005 * k, in, out);
-                              }));
+  const Imported taken = Take("time_s,input_deg,output_deg\n" + Log(train, kTimed));
   EXPECT_EQ(taken.bench, "encoder_comparison");
 }
 
