@@ -4,8 +4,6 @@
 namespace twinbench::test {
 namespace {
 
-using testing::HasSubstr, testing::StartsWith;
-
 /// A held bench at no cost, an open buffer, and what an undisturbed block looks like.
 class OnDemand : public testing::Test {
  protected:
@@ -24,7 +22,7 @@ class OnDemand : public testing::Test {
   std::int16_t Of(const Scans& scans, int scan, int channel) const { return scans.raw[scan * kChannels + channel]; }
 
   ServedTwin served{OnFreePorts(kAtOnce)};
-  TcpClient scpi{served.at().scpi_port}, esp{served.at().esp_port};
+  TcpClient scpi{served.at().scpi_port};
   BufferClient adc{served.at().iiod_port, kScans};
   Scans clean;
 };
@@ -101,44 +99,12 @@ TEST_F(OnDemand, AShortBlockIsHalfAndThenNothing) {
   EXPECT_EQ(iiod.Ask("CLOSE psd-adc16"), "0");  // the connection is in step
 }
 
-TEST_F(OnDemand, ADebugAttributeDemandsFaultsOfTheConverter) {
-  TcpClient iiod(served.at().iiod_port);
-  iiod.Send("WRITE psd-adc16 DEBUG fault 7\r\nstuck,3");
-  EXPECT_EQ(iiod.Line(), "7");
-  iiod.Send("WRITE psd-adc16 DEBUG fault 4\r\nmute");
-  EXPECT_EQ(iiod.Line(), "-22");
-  EXPECT_EQ(scpi.Ask("SIM:FAUL?"), "\"adc,stuck,3\"");
-}
-
 TEST_F(OnDemand, ALateAnswerComesAfterThreeSeconds) {
   VirtualBench bench(kAtOnce);
   VirtualScpi late(bench);
   late.Ask("SIM:FAUL controller,late;*OPC?");
   EXPECT_EQ(late.Ask("ROT1:ANGL?"), "0");
   EXPECT_EQ(bench.Wall_s(), 3.0);
-}
-
-TEST_F(OnDemand, ARestartedControllerShowsZeroAndHasNoOriginUntilItIsHomedOrTheBenchStartedAgain) {
-  scpi.Ask("ROT1:ANGL 40;SETT? 60");
-  Demand("target,restart");
-  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "0,0,0,1,0,0,\"\"");
-  EXPECT_EQ(scpi.Ask("ROT1:HOME;SETT? 60;ANGL?"), "1;40");
-  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "40,40,0,1,1,0,\"\"");
-  Demand("controller,restart");
-  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "0,0,0,1,0,0,\"\"");
-  Again();
-  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "0,0,0,1,1,0,\"\"");
-}
-
-TEST_F(OnDemand, ALimitSwitchOnTheWayLetsTheTableOnlyGoBack) {
-  Demand("target,limit");
-  EXPECT_EQ(scpi.Ask("ROT1:ANGL 10;SETT? 30"), "0");
-  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "10,5,0,0,1,1,\"limit switch\"");
-  EXPECT_THAT(scpi.Ask("ROT1:ANGL 6;:SYST:ERR?"), StartsWith("-222,"));
-  EXPECT_EQ(esp.Ask("1MS?"), "5");
-  EXPECT_EQ(esp.Ask("1PA6;TE?"), "104");
-  EXPECT_EQ(scpi.Ask("ROT1:ANGL 4;SETT? 30"), "1");
-  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "4,4,0,1,1,0,\"\"");
 }
 
 }  // namespace

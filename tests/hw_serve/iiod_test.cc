@@ -23,19 +23,6 @@ class Iiod : public testing::Test {
   }
 };
 
-TEST_F(Iiod, WhatItDoesNotKnowIsAnInvalidArgument) {
-  for (const char* text : {"ZPRINT", "BINARY", "NONSENSE", "READBUFF", "TIMEOUT", "TIMEOUT -5", "\x01\x02"})
-    EXPECT_EQ(iiod.Ask(text), "-22") << text;
-  EXPECT_EQ(iiod.Ask("READ nothing serial"), "-19");
-  EXPECT_EQ(iiod.Ask("READ psd-adc16 nothing"), "-2");
-}
-
-TEST_F(Iiod, EmptyLinesAnswerNothingAndBothLineEndsAreTaken) {
-  iiod.Send("\r\n\n\r\n");
-  EXPECT_EQ(iiod.Ask("TIMEOUT 2500\r"), "0");
-  EXPECT_EQ(iiod.Ask("timeout 2500"), "0");
-}
-
 TEST_F(Iiod, TheContextIsValidByItsOwnDtd) {
   if (std::system("xmllint --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "xmllint is not installed";
   const long long length = iiod.AskNumber("PRINT");
@@ -59,16 +46,6 @@ TEST_F(Iiod, NumbersHaveAllTheirBits) {
   EXPECT_EQ(ParseNumber(Value("READ psd-adc16 sampling_frequency")), RotaryOf(scenario).adc.rate_Hz / kChannels);
 }
 
-TEST_F(Iiod, AttributesThatAreFixedTakeOnlyWhatTheyAreAndItIsVersion024WithATagOfSevenCharacters) {
-  EXPECT_EQ(Write("psd-adc16 sampling_frequency", "62500"), 5);
-  EXPECT_EQ(Write("psd-adc16 sampling_frequency", "1e9"), -22);
-  EXPECT_EQ(Write("psd-adc16 serial", "mine"), -13);
-  EXPECT_EQ(Write("psd-adc16 nothing", "mine"), -2);
-  EXPECT_EQ(Write("nothing serial", "mine"), -19);
-  EXPECT_EQ(Write("psd-adc16 INPUT voltage9 scale", "1"), -6);
-  EXPECT_EQ(iiod.Ask("VERSION"), "0.24.v0.24  ");  // the values were taken off the line all the same
-}
-
 TEST_F(Iiod, ATableMovesByItsAttribute) {
   EXPECT_EQ(Write("rotary-target angle_deg", std::string("12.5\0", 5)), 5);
   EXPECT_EQ(Value("READ rotary-target commanded_deg"), "12.5");
@@ -85,28 +62,6 @@ TEST_F(Iiod, AllAttributesOfADeviceComeAsOnePaddedBlob) {
   for (const char value : {'0', '0', '1', '0'})
     expected += std::string("\0\0\0\2", 4) + value + std::string(3, '\0');
   EXPECT_EQ(blob, expected);
-}
-
-TEST_F(Iiod, TheConverterHasTheTriggerOfItsScanClock) {
-  EXPECT_EQ(iiod.Ask("GETTRIG psd-adc16"), "10");
-  EXPECT_EQ(iiod.Line(), "scan-clock");
-  EXPECT_EQ(iiod.Ask("GETTRIG rotary-target"), "-2");
-  EXPECT_EQ(iiod.Ask("SETTRIG psd-adc16 scan-clock"), "0");
-  EXPECT_EQ(iiod.Ask("SETTRIG psd-adc16"), "0");
-  EXPECT_EQ(iiod.Ask("SETTRIG psd-adc16 other"), "-2");
-  EXPECT_EQ(iiod.Ask("SET psd-adc16 BUFFERS_COUNT 4"), "0");
-}
-
-TEST_F(Iiod, ABufferOpensWithAMaskOfItsChannels) {
-  for (const char* mask : {"1f", "00000000", "0000003f", "000000010000001f", "0000001g"})
-    EXPECT_EQ(iiod.Ask(std::string("OPEN psd-adc16 100 ") + mask), "-22") << mask;
-  EXPECT_EQ(iiod.Ask("OPEN rotary-target 100 00000001"), "-22");
-  EXPECT_EQ(iiod.Ask("OPEN psd-adc16 0 0000001f"), "-22");
-  EXPECT_EQ(iiod.Ask("OPEN psd-adc16 2000000000 0000001f"), "-12");
-  EXPECT_EQ(iiod.Ask("READBUF psd-adc16 1600"), "-9");
-  EXPECT_EQ(iiod.Ask("CLOSE psd-adc16"), "-6");
-  EXPECT_EQ(iiod.Ask("OPEN psd-adc16 100 0000001F"), "0");
-  EXPECT_EQ(iiod.Ask("CLOSE psd-adc16"), "0");
 }
 
 TEST_F(Iiod, AScanIsItsChannelsAndTheAlignedTimeStamp) {

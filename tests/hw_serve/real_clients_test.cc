@@ -1,6 +1,6 @@
 #include "tests/core/input_error.h"
 #include "tests/hw_control/fake_controller.h"
-#include "tests/hw_serve/serving.h"
+#include "tests/hw_serve/conversations.h"
 
 /// Programs that nobody here wrote, as they are installed. Those that are not are skipped.
 namespace twinbench::test {
@@ -122,28 +122,18 @@ std::string Answers(TcpClient& client, const std::string& command) {
   return answers;
 }
 
-// Left out: PRINT, to which iiod adds its own address, and a WRITE to a device that is not there, whose value iiod
-// takes for the next command.
+// Not PRINT, to which iiod adds its own address.
 TEST_F(RealClients, TheDistributionsIiodAnswersTheSameToTheSameCommands) {
   SKIP_WITHOUT("iiod");
   const Reserving through(served.at().iiod_port);
   TcpClient own(served.at().iiod_port), other(through.port());
-  const char* commands[] = {
-      "ZPRINT\n", "BINARY\n", "NONSENSE\n", "\r\n", "TIMEOUT 2500\r\n", "timeout 2500\n", "TIMEOUT\n",
-      "READ psd-adc16 serial\r\n", "read psd-adc16 serial\n", "READ psd-adc16 nothing\n", "READ nothing serial\n",
-      "READ psd-adc16 INPUT voltage0 scale\n", "READ psd-adc16 INPUT voltage9 scale\n",
-      "READ psd-adc16 INPUT voltage0 nothing\n", "READ psd-adc16 DEBUG fault\n", "READ psd-adc16 DEBUG nothing\n",
-      "READ psd-adc16 BUFFER nothing\n", "READ rotary-target\n", "READ psd-adc16 INPUT voltage0\n",
-      "WRITE psd-adc16 serial 4\r\nmine", "WRITE psd-adc16 sampling_frequency 5\r\n62500",
-      "WRITE psd-adc16 sampling_frequency 3\r\n1e9", "WRITE psd-adc16 nothing 2\r\nab",
-      "WRITE psd-adc16 DEBUG fault 4\r\nmute", "OPEN psd-adc16 100 1f\n", "OPEN psd-adc16 100 00000000\n",
-      "OPEN psd-adc16 0 0000001f\n", "OPEN rotary-target 100 00000001\n", "OPEN nothing 1 00000001\n",
-      "OPEN psd-adc16 100\n", "READBUF psd-adc16 1600\n", "READBUF psd-adc16\n", "WRITEBUF psd-adc16 1600\n",
-      "CLOSE psd-adc16\n", "CLOSE nothing\n", "SET psd-adc16 BUFFERS_COUNT 4\n", "SET nothing BUFFERS_COUNT 4\n",
-      "SET psd-adc16 BUFFERS_COUNT 0\n", "SET psd-adc16 OTHER 4\n", "GETTRIG psd-adc16\n",
-      "GETTRIG rotary-target\n", "GETTRIG nothing\n", "SETTRIG psd-adc16 scan-clock\n",
-      "SETTRIG psd-adc16 trigger0\n", "SETTRIG psd-adc16 nothing\n", "SETTRIG psd-adc16\n"};
-  for (const char* command : commands) EXPECT_EQ(Answers(own, command), Answers(other, command)) << command;
+  for (const Conversation& conversation : Conversations()) {
+    if (!conversation.name.starts_with("Iiod.")) continue;
+    for (const auto& [port, text, answers] : conversation.turns) {
+      if (port != "iiod" || text == "VERSION") continue;
+      EXPECT_EQ(Answers(own, text + "\n"), Answers(other, text + "\n")) << text;
+    }
+  }
 }
 
 TEST_F(RealClients, IioStresstestFindsNoFault) {
@@ -162,9 +152,15 @@ TEST_F(RealClients, LxiAsksOverARawSocket) {
   EXPECT_EQ(Output(ask + "'ROT1:ANGL 3;SETT? 60;ANGL?'"), "1;3\n");
 }
 
-std::string Python(const std::string& module, const std::string& script) {
-  const TemporaryFolder folder;
-  return Output("/usr/bin/python3 -W ignore " + folder.Write("asks_" + module + ".py", script));
+/// What a script of tests/data/clients prints.
+std::string Python(const std::string& script, const std::string& resource) {
+  return Output("/usr/bin/python3 -W ignore " TWINBENCH_TEST_DATA "/clients/" + script + " " + resource);
+}
+std::string Printed(const std::string& script) {
+  return Contents(TWINBENCH_TEST_DATA "/clients/" + script + ".txt");
+}
+std::string Socket(int port) {
+  return "TCPIP0::127.0.0.1::" + std::to_string(port) + "::SOCKET";
 }
 
 bool HasModule(const std::string& module) {
@@ -173,49 +169,14 @@ bool HasModule(const std::string& module) {
 
 TEST_F(RealClients, PyvisaAsksOverARawSocket) {
   if (!HasModule("pyvisa_py")) GTEST_SKIP() << "pyvisa-py is not installed";
-  const std::string text = Python(
-      "pyvisa",
-      "import pyvisa\nr = pyvisa.ResourceManager('@py').open_resource('TCPIP0::127.0.0.1::" + scpi_port +
-          "::SOCKET', read_termination='\\n', write_termination='\\n')\n"
-          "print(r.query('*IDN?')[:22])\nprint(r.query_ascii_values('ROT1:ANGL 5;SETT? 60;ANGL?', separator=';'))\n"
-          "r.write('ROT1:ANGL 1e9')\nprint(r.query('SYST:ERR?'))\n");
-  EXPECT_EQ(text, "twinbench,rotary-bench\n[1.0, 5.0]\n-222,\"Data out of range;soft limit\"\n");
+  EXPECT_EQ(Python("asks.py", Socket(served.at().scpi_port)), Printed("asks.py"));
 }
-
-/// Drives both axes through PyMeasure's own driver of the ESP300.
-std::string PyMeasure(const std::string& resource) {
-  return Python("pymeasure", "from pymeasure.instruments.newport import ESP300\ne = ESP300('" + resource +
-                                 "', visa_library='@py', read_termination='\\r\\n', write_termination='\\r')\n" +
-                                 R"(
-e.clear_errors()
-e.x.enable(); e.x.units = 'degree'
-print(e.x.enabled, e.x.units)
-e.x.position = 30.123456
-e.x.wait_for_stop()
-print(e.x.position, e.y.position)
-e.x.right_limit = 45
-e.x.position = 46
-print([str(x) for x in e.errors], e.x.right_limit)
-e.x.define_position(0); e.phi.enable()
-print([x.error for x in e.errors])
-e.shutdown()
-print(e.x.enabled, e.id[:6])
-)");
-}
-
-// Of 30.123456 deg that driver sends six digits: what the table has is what the encoder says.
-constexpr const char* kPyMeasure =
-    "True degree\n"
-    "30.1235 0.0\n"
-    "['Newport ESP300 axis 1 reported the error: POSITIVE SOFTWARE LIMIT DETECTED'] 45.0\n"
-    "['27', '9']\n"
-    "False ESP301\n";
 
 TEST_F(RealClients, PyMeasuresDriverMovesTheTablesOverTcpAndOverASerialLine) {
   if (!HasModule("pymeasure")) GTEST_SKIP() << "PyMeasure is not installed";
-  EXPECT_EQ(PyMeasure("TCPIP0::127.0.0.1::" + std::to_string(served.at().esp_port) + "::SOCKET"), kPyMeasure);
+  EXPECT_EQ(Python("moves.py", Socket(served.at().esp_port)), Printed("moves.py"));
   const ServedTwin another{OnFreePorts(kAtOnce)};
-  EXPECT_EQ(PyMeasure("ASRL" + another.at().pty + "::INSTR"), kPyMeasure);
+  EXPECT_EQ(Python("moves.py", "ASRL" + another.at().pty + "::INSTR"), Printed("moves.py"));
 }
 
 }  // namespace

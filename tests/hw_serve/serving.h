@@ -5,6 +5,7 @@
 namespace twinbench::test {
 
 inline constexpr double kAtOnce = std::numeric_limits<double>::infinity();
+inline constexpr const char* kToken = "4f2a9c";  // of guarded servers
 
 /// Scans of a buffer with all channels and the time stamp.
 struct Scans {
