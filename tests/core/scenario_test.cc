@@ -57,18 +57,6 @@ TEST(Scenario, TakesNumbersToSI) {
   for (const auto& [text, value_of, expected] : keys) EXPECT_EQ(value_of(RotaryOf(Parse(text))), expected) << text;
 }
 
-TEST(Scenario, TakesWordsAndLists) {
-  const Scenario s = Parse(
-      "title = \"gain\"\nseed = 7\nlaser.beam = \"gaussian\"\nprocedure.dwell_s = [0.5, 1, 2]\n"
-      "procedure.passes = [1, -1]\nlaser.position_mm = [1, 200.5, -2]\n");
-  EXPECT_EQ(s.title, "gain");
-  EXPECT_EQ(s.seed, 7u);
-  EXPECT_EQ(RotaryOf(s).laser.beam, "gaussian");
-  EXPECT_EQ(RotaryOf(s).laser.position_m, Vector3(1.0 * units::mm, 200.5 * units::mm, -2.0 * units::mm));
-  EXPECT_THAT(RotaryOf(s).procedure.dwell_s, ElementsAre(0.5, 1.0, 2.0));
-  EXPECT_THAT(RotaryOf(s).procedure.passes, ElementsAre(1, -1));
-}
-
 TEST(Scenario, TakesHarmonicsInTheUnitOfTheirComponent) {
   const Scenario s = Parse(R"([target]
 harmonics = [ { component = "ez", order = 1, amplitude_arcsec = 5.0, phase_deg = 30.0 },
@@ -273,6 +261,36 @@ TEST(EffectCatalogue, HasDefaultsWithinBoundsAndPlacesThatExist) {
         for (const std::string& place : parameter.only_at) EXPECT_TRUE(places.contains(place));
       }
     }
+  }
+}
+
+/// One scenario of tests/data/refused_scenarios.txt.
+struct RefusedScenario {
+  std::string checked, place, text;
+};
+
+std::vector<RefusedScenario> RefusedScenarios() {
+  std::vector<RefusedScenario> all;
+  std::ifstream file(TWINBENCH_TEST_DATA "/refused_scenarios.txt");
+  std::string checked;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("## "))
+      checked = line.substr(3);
+    else if (line.starts_with("=>"))
+      all.push_back({checked, "s.toml:" + (line.size() > 3 ? line.substr(3) + ": " : ""), ""});
+    else if (!checked.empty() && !all.empty())
+      all.back().text += line + "\n";
+  }
+  return all;
+}
+
+TEST(RefusedScenario, IsToldByPlaceFaultAndWhatWasExpected) {
+  const std::vector<RefusedScenario> all = RefusedScenarios();
+  EXPECT_GE(all.size(), 114u);
+  for (const RefusedScenario& one : all) {
+    const std::string message = MessageOf([&] { ParseScenario(one.text, "s.toml", "."); });
+    EXPECT_THAT(message, testing::StartsWith(one.place)) << one.checked << "\n" << one.text;
+    EXPECT_KEPT(message) << one.checked << "\n" << one.text;
   }
 }
 

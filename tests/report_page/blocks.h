@@ -4,6 +4,11 @@
 
 namespace twinbench::report::test {
 
+/// A file of tests/data/pages.
+inline nlohmann::json JsonOf(const std::string& name) {
+  return nlohmann::json::parse(std::ifstream(std::string(TWINBENCH_TEST_DATA "/pages/") + name));
+}
+
 /// All blocks of one kind, in their order.
 template <class Block>
 std::vector<Block> BlocksOf(const std::vector<PageSection>& sections) {

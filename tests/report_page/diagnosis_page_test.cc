@@ -9,19 +9,7 @@ namespace {
 
 using nlohmann::json, testing::Contains, testing::ElementsAre;
 
-const json kDiagnosis = json::parse(R"({
-  "verdict": "tie", "alarm_p": 0.0004,
-  "causes": [
-    {"effect": "eccentricity", "where": "", "probability": 0.5, "next_measurement": "turn the device by 90 degrees",
-     "parameters": {"amplitude_arcsec": {"value": 12.345, "u": 0.5, "unit": "arcsec"}},
-     "indistinguishable_from": [{"effect": "tilt", "where": "x", "overlap": 0.99}]},
-    {"effect": "tilt", "where": "x", "probability": 0.45, "parameters": {}, "indistinguishable_from": [], "next_measurement": ""}],
-  "unknown": {"probability": 0.05, "signature": ""},
-  "detectable": [{"effect": "tilt", "where": "x", "parameter": "tilt", "smallest": 0.25, "unit": "mrad"}],
-  "invisible": [{"effect": "grating_form", "where": "sphere", "could_bias": "zero of a mounting up to 0.3 um"}],
-  "plots": {"unit": "um", "against": {"dwell_s": {"a": {"x": [1, 2], "before": [0.1, 0.1], "after": [0, 0], "u": [0.1, 0.1], "n": [5, 5]},
-                                                  "b": {"x": [1, 2], "before": [0.5, -0.5], "after": [0, 0.1], "u": [0.1, 0.1], "n": [5, 5]}}},
-            "maps": {"a": {"position": [0, 1, 2], "setup": [3], "before": [[1, null, 3]], "after": [[0, 0, 0]]}}}})");
+const json kDiagnosis = test::JsonOf("diagnosis.json");
 
 template <class Block>
 Block BlockIn(const std::vector<PageSection>& sections, const std::string& title) {
@@ -93,20 +81,7 @@ TEST(DiagnosisSections, ShowTheLoudestResidualFirstAndAllOthersToo) {
   EXPECT_EQ(choice.figures[0].y.unit, "µm");
 }
 
-const json kPlan = json::parse(R"({
-  "title": "Turntable",
-  "runs": [
-    {"run": "as is", "readings": 100, "minutes": 12, "dof": 80, "not_separable": ["dx: nobody reads it"],
-     "shifts": {"mean_variance_factor": 1.5, "worst_variance_factor": 2.5, "least_possible_mean_factor": 1.25},
-     "results": [{"name": "separation.target.ez_arcsec", "rms_u": 0.05, "worst_u": 0.06, "values": 36}],
-     "harmonics": [{"name": "separation.target.ez_arcsec", "order": [1, 2], "u": [0.01, 0.02]}]},
-    {"run": "other", "readings": 50, "minutes": 6, "dof": 30, "not_separable": [], "shifts": {},
-     "results": [{"name": "separation.target.ez_arcsec", "rms_u": 0.1, "worst_u": 0.2, "values": 36}],
-     "harmonics": [{"name": "separation.target.ez_arcsec", "order": [1, 2], "u": [0.03, 0.04]}]}],
-  "next": "best", "advice": [{"name": "best", "words": "two more mountings", "bit_per_minute": 0.5, "minutes": 30, "readings": 90,
-                              "of_causes_bit": 10, "of_results_bit": 5, "sets": ["procedure.shifts=[0, 5]"]}],
-  "ties": [{"present": {"effect": "a", "where": "x"}, "blamed": {"effect": "b", "where": ""}, "told_from": 0.002, "unit": "um_per_K"}],
-  "never_told_apart": [[{"effect": "c", "where": ""}, {"effect": "d", "where": "y"}]], "detectable": [], "invisible": []})");
+const json kPlan = test::JsonOf("plan.json");
 
 TEST(PlanPage, ComparesTheRunsOrderByOrder) {
   const std::vector<Figure> figures = test::BlocksOf<Figure>(PlanPage({}, kPlan).sections);
@@ -141,13 +116,7 @@ TEST(PlanPage, BeginsWithTheProgrammeAndTheUncertaintyAfterIt) {
 }
 
 TEST(InvestigationPage, ShowsProbabilitiesOverTheRuns) {
-  const json investigation = json::parse(R"({
-    "told": "tied", "ended": "nothing more can be told", "minutes": 52, "goal": {"text": "target.ez 0.1arcsec", "u": 0.05, "met": true},
-    "unlisted": 0.02, "refused": [], "causes": [{"name": "a", "probability": 0.8, "chi2": 100, "effects": [{"effect": "a", "parameters": {"width_deg": 0.004, "u_width_deg": 0.001}}]}, {"name": "b", "probability": 0.18, "chi2": 103}],
-    "steps": [{"number": 1, "run": "first", "words": "own", "reason": "first", "minutes": 30, "expected_bit": 0, "gained_bit": 0, "u_goal": 0.2,
-               "unlisted": 0, "believed": [{"name": "a", "probability": 0.5}, {"name": "b", "probability": 0.5}]},
-              {"number": 2, "run": "slow", "words": "slowly", "reason": "tells most", "minutes": 22, "expected_bit": 1.5, "gained_bit": 1.25, "u_goal": 0.05,
-               "unlisted": 0.02, "believed": [{"name": "a", "probability": 0.8}, {"name": "b", "probability": 0.18}]}]})");
+  const json investigation = test::JsonOf("investigation.json");
   const Page page = InvestigationPage({}, investigation, {"01-first/report.html"});
   EXPECT_EQ(page.verdict, "Not resolvable on this bench: a 80 %, b 18 %");
   const std::vector<Figure> figures = test::BlocksOf<Figure>(page.sections);

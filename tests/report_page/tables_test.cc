@@ -1,3 +1,4 @@
+#include "tests/report_page/blocks.h"
 #include "twin/report/page/named_numbers.h"
 #include "twin/report/page/page_json.h"
 #include "twin/report/page/tables.h"
@@ -7,15 +8,7 @@ namespace {
 
 using nlohmann::json, testing::Contains, testing::ElementsAre;
 
-const json kEvaluated = json::parse(R"({
-  "calibration": {"roll_mrad": {"psd_a": {"value": 0.0612, "u": 0.1892}}},
-  "separation": {"not_separable": [{"what": "target dx", "why": "nobody reads it"}], "ez_arcsec": [1, 2]},
-  "errors": {"machine.scale_x_um_m": {"value": 12.345, "u": 0.5, "unit": "um/m"}},
-  "setups": [{"setup": 0, "offset_x_um": {"value": 4.7720, "u": 0.018}}, {"setup": 1, "offset_x_um": {"value": -3.1, "u": 0.2}}],
-  "uncertainty_budget": [
-    {"name": "calibration.roll_mrad.psd_a", "u": 0.2, "k": 1.972, "U": 0.3944, "values": 1,
-     "sources": [{"source": "noise", "share": 0.75}, {"source": "drift", "share": 0.25}]},
-    {"name": "separation.ez_arcsec", "u": 0.05, "k": 1.96, "U": 0.098, "values": 2, "sources": [{"source": "noise", "share": 1.0}]}]})");
+const json kEvaluated = test::JsonOf("evaluated.json");
 
 TEST(ValueTable, GivesValuesWithUnitAndUncertaintyOfTheBudgetWhereThereIsOne) {
   const PageTable table = ValueTable(kEvaluated, {});
