@@ -77,15 +77,6 @@ TEST(Scanner, GivesTheBayesFactorOfOneColumnInClosedForm) {
   EXPECT_NEAR(evidence.log_bayes(0, 0), std::log(mean), 1e-8);
 }
 
-TEST(Search, PicksTheCauseThatIsThereWithItsSize) {
-  SearchCase c(2);
-  c.run.residual += 3.0 * units::um * Drift(c.run);
-  const SearchResult found = c.Find(3.0);
-  ASSERT_EQ(found.terms.size(), 1U);
-  EXPECT_EQ(c.families[static_cast<std::size_t>(found.terms[0].family)].effect, "drift");
-  EXPECT_NEAR(found.terms[0].amplitudes[0], 3.0 * units::um, 4.0 * std::sqrt(found.terms[0].cov(0, 0)));
-}
-
 TEST(Search, PicksTwoCausesAtOnceUnlessFewerAreAllowed) {
   SearchCase c(3);
   c.run.residual += 4.0 * units::um * Drift(c.run) + 3.0 * units::um * OneChannel(c.run, Drift(c.run), 0);

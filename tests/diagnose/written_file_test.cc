@@ -60,27 +60,23 @@ Diagnosis Judged(DiagnosisRun found, const AgainstScenario& against) {
   return found.diagnosis;
 }
 
-TEST(JudgeByFile, AFileThatShowsAllGainsAll) {
-  const DiagnosisRun found = FoundAsRead();
-  const Diagnosis d = Judged(found, Showing(found, 1.0));
-  EXPECT_NEAR(d.gain.fraction_removed, 1.0, 0.05);
-  EXPECT_THAT(d.notes, IsEmpty());
-}
+using Notes = testing::Matcher<std::vector<std::string>>;
 
-TEST(JudgeByFile, AFileThatShowsHalfGainsThreeQuartersAndSaysSo) {
+TEST(JudgeByFile, AFileThatShowsAllOrHalfGainsAllOrThreeQuartersAndOneThatShowsNothingMakesTheCauseAProposal) {
   const DiagnosisRun found = FoundAsRead();
-  const Diagnosis d = Judged(found, Showing(found, 0.5));
-  EXPECT_NEAR(d.gain.fraction_removed, 0.75, 0.05);
-  EXPECT_THAT(d.notes, Contains(HasSubstr("shows 75 % of what was found")));
-  EXPECT_EQ(d.causes.front().probability, found.diagnosis.causes.front().probability);
-}
-
-TEST(JudgeByFile, AFileThatShowsNothingMakesTheCauseAProposal) {
-  const DiagnosisRun found = FoundAsRead();
-  const Diagnosis d = Judged(found, Showing(found, 0.0));
-  EXPECT_FALSE(d.gain.positive);
-  EXPECT_THAT(d.notes, Contains(kNoGainNote));
-  EXPECT_LE(d.causes.front().probability, 0.6);
+  const double stated = found.diagnosis.causes.front().probability;
+  for (const auto& [share, gain, notes] :
+       {std::tuple(1.0, 1.0, Notes(IsEmpty())),
+        {0.5, 0.75, Notes(Contains(HasSubstr("shows 75 % of what was found")))},
+        {0.0, 0.0, Notes(Contains(kNoGainNote))}}) {
+    SCOPED_TRACE(share);
+    const Diagnosis d = Judged(found, Showing(found, share));
+    EXPECT_NEAR(d.gain.fraction_removed, gain, 0.05);
+    EXPECT_EQ(d.gain.positive, share > 0.0);
+    EXPECT_THAT(d.notes, notes);
+    EXPECT_LE(d.causes.front().probability, share > 0.0 ? stated : 0.6);
+    EXPECT_GE(d.causes.front().probability, share > 0.0 ? stated : 0.0);
+  }
 }
 
 TEST(JudgeByFile, AFileThatTheBenchRefusesIsToldAndTheFitIsJudged) {
