@@ -48,23 +48,6 @@ TEST(Freeform, MovesTheTipByEachErrorAsTheOracleDoes) {
   }
 }
 
-TEST(Freeform, MeetsTheSurfaceAndIsReflectedAsTheOracleIs) {
-  const CsvTable table = ReadCsv(OraclePath("spot.csv"));
-  const std::vector<Reading> readings = OracleRun();
-  const sim::DrawnBench bench = OracleBench();
-  const FreeformSettings settings;
-  ASSERT_EQ(table.rows.size(), 96u);
-  for (const CsvTable::Row& row : table.rows) {
-    const Reading& r = readings[static_cast<std::size_t>(CsvNumber(table, row, 0, 1.0))];
-    const sim::ProbeSpot spot = sim::Look(settings.artefact, CellAt(r), ToolOverArtefact(r, bench, settings));
-    const Vector3 reflected(CsvNumber(table, row, 2, 1.0), CsvNumber(table, row, 3, 1.0), CsvNumber(table, row, 4, 1.0));
-    EXPECT_LT((spot.reflected_T - reflected).norm(), 1e-12);  // the oracle's last digit
-    EXPECT_NEAR(spot.distance_m, CsvNumber(table, row, 5, units::um), kNanometre);
-    EXPECT_NEAR(spot.hit_F.x(), CsvNumber(table, row, 6, units::mm), kNanometre);
-    EXPECT_NEAR(spot.hit_F.y(), CsvNumber(table, row, 7, units::mm), kNanometre);
-  }
-}
-
 // Heights of the artefact that no formula gives.
 
 TEST(FreeformOptics, HeightsComeBackFromTheirFile) {
