@@ -230,20 +230,15 @@ const std::vector<test::Wave> kSmallDevice = {{1, 5.0, 0.4}, {5, 3.0, 1.0}}, kSm
 // Of 35 orders' chi-squared over 60 seeds the mean has a standard deviation of 0.03, one order's (2 parts) 0.13.
 // The uncertainty is from 12 degrees of freedom for order 1 with one mounting: 1 / F has the mean 12 / 10 there.
 
-TEST(SeparateDeviceUncertainty, CoversWhiteNoiseWithOneMounting) {
-  const Coverage c = CoverageOf({.device = kSmallDevice, .noise_arcsec = 7.0});
-  EXPECT_NEAR(c.device, 1.0, 0.15);
-  EXPECT_NEAR(c.first_order, 1.2, 0.35);
+TEST(SeparateDeviceUncertainty, CoversWhiteNoiseWithOneMountingWithThreeAndInASingleTurnByTheResidualsOfItsFit) {
+  const Coverage one = CoverageOf({.device = kSmallDevice, .noise_arcsec = 7.0});
+  const Coverage three = CoverageOf({.device = kSmallDevice, .reference = kSmallReference,
+                                     .mounting_rad = {0.0, 100.0 * deg, 215.0 * deg}, .noise_arcsec = 7.0});
+  const Coverage turn = CoverageOf({.device = kSmallDevice, .passes = {1, -1}, .turns = 1.0, .noise_arcsec = 7.0});
+  for (const double found : {one.device, three.device, three.reference, turn.device}) EXPECT_NEAR(found, 1.0, 0.15);
+  EXPECT_NEAR(one.first_order, 1.2, 0.35);
   // Pooled from two degrees of freedom, but never below the readings' noise.
-  EXPECT_NEAR(c.reversal, 0.8, 0.4);
-}
-
-TEST(SeparateDeviceUncertainty, CoversDeviceAndReferenceWithThreeMountings) {
-  const std::vector<double> mounting_rad = {0.0, 100.0 * deg, 215.0 * deg};
-  const Coverage c = CoverageOf(
-      {.device = kSmallDevice, .reference = kSmallReference, .mounting_rad = mounting_rad, .noise_arcsec = 7.0});
-  EXPECT_NEAR(c.device, 1.0, 0.15);
-  EXPECT_NEAR(c.reference, 1.0, 0.15);
+  EXPECT_NEAR(one.reversal, 0.8, 0.4);
 }
 
 /// Mean over seeds, of rings whose orders fall as 1 / order up to `highest`.
@@ -306,11 +301,6 @@ TEST(SeparateDeviceUncertainty, HoldsThatLinesMayBeTheOrderThatTheyLookLike) {
   EXPECT_LT(MeanChi2(known.curves.device, bench.device), 4.0);
   EXPECT_THAT(known.notes, Contains(HasSubstr("lower ones: 80;")));
   EXPECT_THAT(known.notes, Contains(HasSubstr("no u: 144")));
-}
-
-TEST(SeparateDeviceUncertainty, CoversASingleTurnByTheResidualsOfItsFit) {
-  const Coverage c = CoverageOf({.device = kSmallDevice, .passes = {1, -1}, .turns = 1.0, .noise_arcsec = 7.0});
-  EXPECT_NEAR(c.device, 1.0, 0.15);
 }
 
 TEST(SeparateDeviceUncertainty, CoversAZeroThatWandersFromReadingToReading) {
