@@ -45,8 +45,8 @@ Mended MendedOf(const Scenario& scenario) {
 std::vector<HarmonicSettings> Drawn(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<HarmonicSettings> harmonics;
-  for (const separate::SpectrumLine& line : separate::DrawSpectrum(random, 5))
-    harmonics.push_back({Component::kEz, static_cast<double>(line.order), line.amplitude_rad, line.phase_rad});
+  for (const test::Wave& wave : separate::DrawSpectrum(random, 5))
+    harmonics.push_back({Component::kEz, static_cast<double>(wave.order), wave.amplitude_arcsec * units::arcsec, wave.phase_rad});
   return harmonics;
 }
 

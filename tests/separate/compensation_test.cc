@@ -31,7 +31,7 @@ TEST(LeftByInterpolation, IsThatOfStraightLinesBetweenSamplesOfAWave) {
 }
 
 TEST(Compensate, LeavesNothingOfCertainLinesWithoutNoise) {
-  SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}, {2, 3 * arcsec, 1.0}, {90, 1 * arcsec, 2.0}}, 0.0);
+  SpectrumBench bench = BenchWith({{1, 7, 0.4}, {2, 3, 1.0}, {90, 1, 2.0}}, 0.0);
   const std::vector<ReadingPlan> plan = {EvenPositions(), Between(1)};
   const IndexErrors first = bench.Read(plan);
   const Compensation compensation = Compensate(first);
@@ -43,19 +43,19 @@ TEST(Compensate, LeavesNothingOfCertainLinesWithoutNoise) {
 }
 
 TEST(Compensate, GoesOnFromACompensationThatWasAtWork) {
-  SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}}, 0.05 * arcsec);
+  SpectrumBench bench = BenchWith({{1, 7, 0.4}}, 0.05 * arcsec);
   CompensationTable half;  // of the error
   for (int i = 0; i < 360; ++i) {
     half.position_rad.push_back(i * deg);
-    half.correction_rad.push_back(-0.5 * ErrorOf(bench.lines, i * deg));
+    half.correction_rad.push_back(-0.5 * ValueOf(bench.lines, i * deg));
   }
   bench.commanded = half;
   const Compensation compensation = Compensate(bench.Read({EvenPositions()}));
-  EXPECT_NEAR(compensation.table.At(1.0), -ErrorOf(bench.lines, 1.0), 0.02 * arcsec);
+  EXPECT_NEAR(compensation.table.At(1.0), -ValueOf(bench.lines, 1.0), 0.02 * arcsec);
 }
 
 TEST(Compensate, RefusesWhatATableOfFewEntriesCannotFollow) {
-  const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}, {90, 1 * arcsec, 2.0}}, 0.1 * arcsec);
+  const SpectrumBench bench = BenchWith({{1, 7, 0.4}, {90, 1, 2.0}}, 0.1 * arcsec);
   CompensationOptions options;
   options.points = 200;
   const Compensation compensation = Compensate(bench.Read({EvenPositions(), Between(1)}), options);
@@ -90,7 +90,7 @@ TEST(Compensate, TakesNoOrderThatThePlacesHardlyShow) {
 }
 
 TEST(Compensate, RefusesAnOrderThatIsAnotherOneEveryTurn) {
-  IndexErrors errors = BenchWith({{1, 5 * arcsec, 0.4}, {2, 9 * arcsec, 1.0}}, 0.1 * arcsec).Read({EvenPositions()});
+  IndexErrors errors = BenchWith({{1, 5, 0.4}, {2, 9, 1.0}}, 0.1 * arcsec).Read({EvenPositions()});
   errors.u_order_rad = {3.5 * arcsec, 1.0 * arcsec};
   const Compensation compensation = Compensate(errors);
   EXPECT_THAT(compensation.Orders(LineFate::kChanging), ElementsAre(1));
@@ -99,7 +99,7 @@ TEST(Compensate, RefusesAnOrderThatIsAnotherOneEveryTurn) {
 }
 
 TEST(CompensationText, SaysWhatTheTableLeaves) {
-  IndexErrors errors = BenchWith({{2, 9 * arcsec, 1.0}}, 0.1 * arcsec).Read({EvenPositions()});
+  IndexErrors errors = BenchWith({{2, 9, 1.0}}, 0.1 * arcsec).Read({EvenPositions()});
   errors.reversal_rad = 30.0 * arcsec;
   errors.u_reversal_rad = 0.1 * arcsec;
   errors.u_reading_rad = 5.0 * arcsec;  // repeats of a place that play moved
@@ -109,7 +109,7 @@ TEST(CompensationText, SaysWhatTheTableLeaves) {
 }
 
 TEST(CheckCompensation, RefusesARunWithAnotherTable) {
-  const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}}, 0.1 * arcsec);
+  const SpectrumBench bench = BenchWith({{1, 7, 0.4}}, 0.1 * arcsec);
   const IndexErrors first = bench.Read({EvenPositions()});
   const Compensation compensation = Compensate(first);
   EXPECT_KEPT(MessageOf([&] { CheckCompensation(first, compensation, first); }));
@@ -140,10 +140,10 @@ Outcome Measure(const std::vector<ReadingPlan>& plans, int highest_told) {
     EXPECT_LE(RootMeanSquare(AboutGroups(check_after, check_after.value_rad)),
               RootMeanSquare(AboutGroups(check_before, check_before.value_rad)))
         << seed;
-    const auto is_above = [&](const SpectrumLine& line) { return line.order >= highest_told; };
+    const auto is_above = [&](const Wave& line) { return line.order >= highest_told; };
     EXPECT_TRUE(compensation.IsAliased() || std::ranges::none_of(bench.lines, is_above)) << seed;
     for (const int order : compensation.Orders(LineFate::kCompensated)) {
-      const auto is_it = [order](const SpectrumLine& line) { return line.order == order; };
+      const auto is_it = [order](const Wave& line) { return line.order == order; };
       outcome.mistaken += std::ranges::none_of(bench.lines, is_it);
       ++outcome.compensated;
     }
@@ -169,7 +169,7 @@ TEST(Compensate, PredictsTheUncertaintyOfItsOwnLinesToo) {
   double mean_ratio = 0.0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     SpectrumBench bench = BenchWith({}, 2.0 * arcsec, static_cast<std::uint64_t>(seed));
-    for (int order = 1; order <= kLines; ++order) bench.lines.push_back({order, 100.0 / order * arcsec, 0.7 * order});
+    for (int order = 1; order <= kLines; ++order) bench.lines.push_back({order, 100.0 / order, 0.7 * order});
     const IndexErrors first = bench.Read({EvenPositions()});
     const Compensation compensation = Compensate(first, options);
     EXPECT_EQ(compensation.Orders(LineFate::kCompensated).size(), static_cast<std::size_t>(kLines)) << seed;
@@ -186,13 +186,13 @@ std::vector<int> OrdersOf(const LineFit& fit) {
 }
 
 TEST(FindLines, FindsKnownLinesAndTheirPhasesWithoutNoise) {
-  const std::vector<SpectrumLine> lines = {{1, 7 * arcsec, 0.4}, {18, 1 * arcsec, 2.0}, {90, 0.5 * arcsec, -1.0}};
+  const std::vector<Wave> lines = {{1, 7, 0.4}, {18, 1, 2.0}, {90, 0.5, -1.0}};
   const LineFit fit = FindLines(BenchWith(lines, 0.0).Read({EvenPositions(), Between(1)}));
   ASSERT_EQ(OrdersOf(fit), (std::vector<int>{1, 18, 90}));
   for (std::size_t i = 0; i < 3; ++i) {
     // Second order of the error itself: the table stands where its error has brought it.
-    EXPECT_NEAR(fit.lines[i].cos_rad, lines[i].amplitude_rad * std::cos(lines[i].phase_rad), 1e-4 * arcsec);
-    EXPECT_NEAR(fit.lines[i].sin_rad, -lines[i].amplitude_rad * std::sin(lines[i].phase_rad), 1e-4 * arcsec);
+    EXPECT_NEAR(fit.lines[i].cos_rad, lines[i].amplitude_arcsec * arcsec * std::cos(lines[i].phase_rad), 1e-4 * arcsec);
+    EXPECT_NEAR(fit.lines[i].sin_rad, -lines[i].amplitude_arcsec * arcsec * std::sin(lines[i].phase_rad), 1e-4 * arcsec);
     EXPECT_TRUE(fit.lines[i].is_certain);
   }
 }
@@ -207,7 +207,7 @@ TEST(FindLines, FindsNothingInNoise) {
 }
 
 TEST(FindLines, DoesNotTakeOrder90ForOrder18At72Positions) {
-  const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}, {90, 1 * arcsec, 2.0}}, 0.1 * arcsec, 2);
+  const SpectrumBench bench = BenchWith({{1, 7, 0.4}, {90, 1, 2.0}}, 0.1 * arcsec, 2);
   const LineFit even = FindLines(bench.Read({EvenPositions()}));
   ASSERT_EQ(OrdersOf(even), (std::vector<int>{1, 18}));
   EXPECT_TRUE(even.lines[0].is_certain);
@@ -221,7 +221,7 @@ TEST(FindLines, DoesNotTakeOrder90ForOrder18At72Positions) {
 }
 
 TEST(FindLines, SaysWhichOrdersThePlacesDoNotShow) {
-  const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}}, 0.1 * arcsec, 3);
+  const SpectrumBench bench = BenchWith({{1, 7, 0.4}}, 0.1 * arcsec, 3);
   const LineFit even = FindLines(bench.Read({EvenPositions()}));
   EXPECT_EQ(even.unseen, (std::vector<int>{36, 72, 108, 144, 180}));
   EXPECT_EQ(std::ssize(even.doubled), 198);  // all but 72 and 144, which look like a constant
@@ -232,7 +232,7 @@ TEST(FindLines, SaysWhichOrdersThePlacesDoNotShow) {
 }
 
 TEST(FindLines, IsNotCertainOfALineThatIsHalfSeen) {
-  const SpectrumBench bench = BenchWith({{180, 1 * arcsec, 0.3}}, 0.1 * arcsec, 4);
+  const SpectrumBench bench = BenchWith({{180, 1, 0.3}}, 0.1 * arcsec, 4);
   const LineFit fit = FindLines(bench.Read({EvenPositions(), Between(1)}));
   ASSERT_EQ(OrdersOf(fit), (std::vector<int>{180}));
   EXPECT_TRUE(fit.lines[0].is_half_seen);
@@ -243,7 +243,7 @@ TEST(FindLines, StatesAnUncertaintyThatMatchesItsScatter) {
   constexpr int kRuns = 200;
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
-    const SpectrumBench bench = BenchWith({{2, 3 * arcsec, 0.0}}, 0.3 * arcsec, seed);
+    const SpectrumBench bench = BenchWith({{2, 3, 0.0}}, 0.3 * arcsec, seed);
     const LineFit fit = FindLines(bench.Read({EvenPositions()}));
     ASSERT_FALSE(fit.lines.empty());
     sum += std::pow((fit.lines[0].sin_rad) / fit.lines[0].u_rad, 2);

@@ -3,39 +3,29 @@
 #include <cmath>
 #include <random>
 
-#include "twin/core/units.h"
+#include "tests/separate/waves.h"
 #include "twin/separate/index_errors.h"
 
 /// A table with lines where gears, drives and bearings have them, read against teeth: written down anew here, so
 /// that it shares nothing with the twin.
 namespace twinbench::separate {
 
-struct SpectrumLine {
-  int order;
-  double amplitude_rad, phase_rad;
-};
+using test::ValueOf, test::Wave;
 
 /// Eccentricity and ovality of the rings, and `gears` lines up to order 200.
-inline std::vector<SpectrumLine> DrawSpectrum(std::mt19937_64& random, int gears) {
+inline std::vector<Wave> DrawSpectrum(std::mt19937_64& random, int gears) {
   constexpr int kGearOrders[] = {12, 18, 23, 30, 45, 54, 60, 72, 90, 99, 120, 126, 144, 150, 180, 198, 200};
   std::uniform_real_distribution<double> uniform;
-  std::vector<SpectrumLine> lines;
+  std::vector<Wave> lines;
   const auto add = [&](int order, double least_arcsec, double most_arcsec) {
     const double amplitude_arcsec = least_arcsec + (most_arcsec - least_arcsec) * uniform(random);
-    lines.push_back({order, amplitude_arcsec * units::arcsec, 2.0 * units::kPi * uniform(random)});
+    lines.push_back({order, amplitude_arcsec, 2.0 * units::kPi * uniform(random)});
   };
   add(1, 4.0, 9.0);
   add(2, 1.5, 4.0);
   add(3, 0.5, 2.0);
   for (int k = 0; k < gears; ++k) add(kGearOrders[random() % std::size(kGearOrders)], 0.3, 1.5);
   return lines;
-}
-
-inline double ErrorOf(const std::vector<SpectrumLine>& lines, double angle_rad) {
-  double sum_rad = 0.0;
-  for (const SpectrumLine& line : lines)
-    sum_rad += line.amplitude_rad * std::cos(line.order * angle_rad + line.phase_rad);
-  return sum_rad;
 }
 
 struct ReadingPlan {
@@ -45,7 +35,7 @@ struct ReadingPlan {
 
 /// Every angle of a plan in every pass: the table's error where the controller sends it, the tooth's, and noise.
 struct SpectrumBench {
-  std::vector<SpectrumLine> lines;
+  std::vector<Wave> lines;
   std::vector<double> tooth_rad;            // one a degree
   double noise_rad = 0.39 * units::arcsec;  // 0.3 of the table's repeatability, 0.25 of the autocollimator
   mutable std::mt19937_64 random{1};
@@ -61,7 +51,7 @@ struct SpectrumBench {
           const double sent_rad = CommandedAngle_rad(commanded, angle_rad);
           const double tooth = tooth_rad[static_cast<std::size_t>(std::lround(angle_deg)) % tooth_rad.size()];
           readings.push_back({setup, angle_rad,
-                              sent_rad - angle_rad + ErrorOf(lines, sent_rad) + tooth + setup * 1e-4 +
+                              sent_rad - angle_rad + ValueOf(lines, sent_rad) + tooth + setup * 1e-4 +
                                   noise_rad * normal(random)});
         }
       }
@@ -84,7 +74,7 @@ inline SpectrumBench DrawBench(std::uint64_t seed, int gears) {
 }
 
 /// Without teeth, with just these lines.
-inline SpectrumBench BenchWith(const std::vector<SpectrumLine>& lines, double noise_rad, std::uint64_t seed = 1) {
+inline SpectrumBench BenchWith(const std::vector<Wave>& lines, double noise_rad, std::uint64_t seed = 1) {
   return {lines, std::vector<double>(360, 0.0), noise_rad, std::mt19937_64(seed)};
 }
 
