@@ -27,10 +27,7 @@ std::string WhyNot(const Certified& certified, const std::string& what) {
 }
 
 json OneTable() {
-  return json::parse(R"({"separation": {
-    "target": {"position_deg": [0, 120, 240], "ez_arcsec": [1.5, -0.25, 3.125], "u_ez_arcsec": [0.1, 0.2, 0.3],
-               "dy_um": [0.5, null, 0.75], "u_dy_um": [0.25, null, 0.0]}},
-    "uncertainty_budget": [{"name": "separation.target.ez_arcsec", "k": 2.5}]})");
+  return json::parse(Contents(TWINBENCH_TEST_DATA "/pages/one_table.json"));
 }
 
 TEST(Certified, StatesTheValuesOfTheFileWithTheBudgetsCoverageFactor) {
@@ -72,11 +69,7 @@ TEST(Certified, SaysWhichOrderACurveDoesNotHold) {
 }
 
 json TwoOrders() {
-  return json::parse(R"({"device": {"position_deg": [0, 180], "ez_arcsec": [1, 2], "u_ez_arcsec": [0.1, 0.1]},
-    "harmonics": {"device": [
-      {"order": 1, "amplitude_arcsec": 3.0, "u_amplitude_arcsec": 0.1, "phase_deg": 20.0, "u_phase_deg": 100.0},
-      {"order": 2, "amplitude_arcsec": 4.0, "u_amplitude_arcsec": 0.1, "phase_deg": 30.0, "u_phase_deg": 1.0}]},
-    "not_separable": [{"what": "device and reference, order 2", "why": "all mountings see the sum"}]})");
+  return json::parse(Contents(TWINBENCH_TEST_DATA "/pages/two_orders.json"));
 }
 
 TEST(Certified, LeavesOutTheLineOfASumAndTheCurveThatHoldsIt) {

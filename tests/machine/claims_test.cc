@@ -104,17 +104,7 @@ TEST(Claims, ThereAreNoneWhereNothingIsClaimedAtAStop) {
   EXPECT_TRUE(ClaimsOf(ParseScenario("bench = \"circular_motion\"\n", "circular.toml", "")).empty());
 }
 
-constexpr const char* kTurntableFile = R"([machine]
-kind = "esp"
-address = "serial:/dev/ttyUSB0:19200"
-[axis_turntable]
-lower_deg = -30.0
-[instrument_1]
-kind = "scpi"
-address = "tcp:collimator.lab:5025"
-fields = ["autocollimator_x_arcsec"]
-arm = ""
-)";
+const std::string kTurntableFile = Contents(TWINBENCH_TEST_DATA "/machine/turntable_by_esp.toml");
 
 TEST(InPosition, IsTheClaimUnlessTheFileAsksForLess) {
   const std::vector<MachineAxis> axes = {{"turntable", true}};
@@ -173,26 +163,7 @@ TEST(Schedules, OfCirclesLetHandsWorkAsLongAsTheScenarioSays) {
 
 const std::vector<MachineAxis> kAxes = {{"x", false}, {"a", true}};
 
-constexpr const char* kWhole = R"([machine]
-kind = "esp"
-address = "serial:/dev/ttyUSB0:19200"
-traverse_mm_s = 30.0
-stall_s = 2.0
-[axis_x]
-lower_mm = -150.0
-upper_mm = 200.0
-in_position_um = 5.0
-[axis_a]
-lower_deg = -10.0
-upper_deg = 10.0
-[instrument_1]
-kind = "scpi"
-address = "tcp:bar.lab:5025"
-fields = ["ignored", "bar_um"]
-scale = [1.0, 1000.0]
-read = "MEAS:LENG?"
-arm = ""
-)";
+const std::string kWhole = Contents(TWINBENCH_TEST_DATA "/machine/mill_by_esp.toml");
 
 std::string Refusal(const std::string& text) {
   return MessageOf([&] { hw::ParseMachineFile(text, "bench.toml", kAxes); });

@@ -40,13 +40,6 @@ double SettleTime(const StackParameters& p, Fidelity fidelity, double duration_s
   return settled_s;
 }
 
-TEST(Fidelity, HasThreeNames) {
-  EXPECT_EQ(FidelityFromName("kinematic"), Fidelity::kKinematic);
-  EXPECT_EQ(FidelityFromName("linear"), Fidelity::kLinear);
-  EXPECT_EQ(FidelityFromName("bullet"), Fidelity::kBullet);
-  EXPECT_THROW(FidelityFromName("exact"), std::invalid_argument);
-}
-
 TEST(KinematicPlant, EqualsTheChainOfItsCommandedAngles) {
   const StackParameters p;
   const auto plant = MakePlant(Fidelity::kKinematic, p);

@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "tests/report_page/blocks.h"
 #include "twin/report/page/circles.h"
 #include "twin/report/page/direction_curves.h"
 #include "twin/report/page/harmonics_of.h"
@@ -14,12 +15,7 @@ namespace {
 using nlohmann::json, testing::DoubleNear, testing::ElementsAre;
 using testing::Pointwise;
 
-const json kResults = json::parse(R"({
-  "separation": {"table": {"position_deg": [0, 90, 180], "ez_arcsec": [1.5, null, -2.5], "u_ez_arcsec": [0.1, 0.2, 0.3],
-                           "u_harmonics": {"order": [1, 2], "ez_arcsec": [0.01, 0.02]}}},
-  "model": {"terms": [{"order": 1, "amplitude_arcsec": 6.5, "u_amplitude_arcsec": 0.5, "phase_deg": 10},
-                      {"order": 7, "amplitude_arcsec": 0.25, "u_amplitude_arcsec": 0.125, "phase_deg": 20}]},
-  "uncertainty_budget": [{"name": "separation.table.ez_arcsec", "k": 2.25, "u": 0.2, "U": 0.45, "values": 3}]})");
+const json kResults = test::JsonOf("curves.json");
 
 TEST(CurveFigures, HoldTheNumbersOfResultsWithTheirUncertaintyAndItsCoverage) {
   const std::vector<Figure> figures = CurveFigures(kResults, {});
