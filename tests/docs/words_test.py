@@ -12,62 +12,12 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = sys.argv.pop(1) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else ROOT / "build/tools/twinbench"
 
-# What is not said any more -> what is said instead. Keys, columns, JSON and names of effects are formats and stay: they stand in code, in
-# quotes or with an underscore, and no pattern meets them.
-EVERYWHERE = {
-    r"\bcarr(y|ies) (out a|a|one|the) scenario( out)?\b": "simulate a scenario",
-    r"\b(show|shows|shown) the twin as hardware\b|\btwin shown as\b": "emulate the bench as network instruments",
-    r"\banybody's recording\b": "a recording",
-    r"\bsay how certain\b": "uncertainty budget",
-    r"\bone cause after the other\b": "variance contribution of each source, switched off one at a time",
-    r"\bAgrees: ": "Consistent with the scenario:",
-    r"(?m)^(- )?(Named|Tie|Unknown): ": "Cause identified: / Ambiguous: / Unmodelled effect:",
-    r"\b(structure|something|shapes?|causes?|signals?) (without a|that has no) name\b": "unmodelled effect",
-    r"\bwhat (the|the believed) scenario leaves\b": "residual of",
-    r"\b(look|looks|what looked) the same in this run\b": "indistinguishable in this run (aliased)",
-    r"(?m)^(! )?Gain: ": "Held-out improvement:",
-    r"\b(what )?cannot be separated\b": "not separable",
-    r"\bharmonics? (is |are )?lost\b": "not separable, not observable",
-    r"\bturned about (its nominal order|the beam)\b": "rotated about the diffracted beam",
-    r"\brigorous: ours\b|\bthe rigorous (one|result)\b": "weighted least squares (exact model)",
-    r"\bthe faces have them\b": "not separable from the polygon with these offsets",
-    r"\bvariance, mean\b": "mean variance factor",
-    r"\bno set below\b": "lower bound",
-    r"\bfrom this size on\b|\buntil then it moves\b": "smallest detectable, undetected bias",
-    r"\bbit (a|per) minute\b": "information rate [bit/min]",
-    r"\bbit of (causes|results)\b": "information about causes [bit]",
-    r"(?i)\bcannot be told\b": "not resolvable on this bench",
-    r"\btold apart\b|\btell(s)? apart\b": "separated, distinguished",
-    r"\bcosts an attempt\b": "faults trigger a retry; no reading is lost",
-    r"(?i)\b(beside it )?lies the truth\b": "the true errors are stored alongside",
-    r"\blocked to\b": "synchronous with, function of",
-    r"\bslow wander\b|\brandom wander\b": "slow drift, random walk",
-    r"\btake an effect out of the catalogue\b": "exclude an effect",
-    r"\bwas touched\b|\btouches that\b": "transient",
-    r"\bthis is no seed\b": "invalid seed",
-    r"\bthere is no place for\b": "unexpected argument",
-    r"(?<!-)\b1 (readings|causes|trials|pairs|turns)\b(?! (of|in) \d)": "singular",
-    r"\b(lines|samples|stops|periods|positions|once|twice|times) a turn\b": "per turn",
-    r"(?<![\w+])\+-(?= ?[\d{])": "±",
-    r"\b[Ss]et-ups?\b": "mounting",
-    r"\b(is|are|was|were|(?<!more can )be|been|not) told\b|\b[Tt]old (apart|from|by)\b": "concluded, stated, commanded, separated",
-    r"\bother courses? of\b|\bcourses of (effects|disturbances)\b": "time function, recorded conditions, path",
-    r"\b(at|from|of|off|between|every|each|other|usable|first|same|neighbouring|without) (a |its |the same |measured )?stops?\b(?!\.csv|_)": "measuring position",
-    r"(?<=[\d.] )(um|degC|urad)\b(?! (above|from|rms)\b)": "µm, °C, µrad",
-}
-IN_HELP_AND_OUTPUTS = {
-    r"\bthe twin as\b": "the bench",
-    r"(?<!-)\bfaint\b": "smallest effect to detect",
-    r"\bunlisted [a-z]": "not in the catalogue",
-    r"\brestless": "disturbance",
-    r"\breclamped\b|\breseated\b": "remounted on the rotor, whole table re-mounted",
-}
-IN_DOCUMENTS = {
-    r"(?i)\b(a|the|this|these|every|one) rooms? `": "module",
-    r"(?i)\bmodule's rooms\b|\btwinbench's rooms\b": "modules",
-    r"\bfamil(y|ies) (of a bench|that explain|is a cause)\b": "candidate",
-    r"\bbelieved scenario\b": "scenario",
-}
+def section(name):
+    """{what is not said any more: what is said instead} of tests/data/words.txt."""
+    lines = (ROOT / "tests/data/words.txt").read_text().split(f"## {name}\n")[1].split("\n\n")[0].splitlines()
+    return dict(line.split(" => ") for line in lines)
+
+EVERYWHERE, IN_HELP_AND_OUTPUTS, IN_DOCUMENTS = map(section, ("everywhere", "in help and outputs", "in documents"))
 
 def said(text, words):
     """[(line, what should be said)] of everything in the text that is not said any more."""
