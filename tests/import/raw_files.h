@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <functional>
 
+#include "tests/core/input_error.h"
+#include "tests/support/noise.h"
+
 /// An axis under a reference and a device that errs, made with nothing of the program's: the raw files of these
 /// tests are printed from it.
-#include "tests/support/noise.h"
 namespace twinbench::test {
 
 struct AxisSample {
@@ -64,23 +66,7 @@ inline std::string WithComma(std::string number) {
 
 /// Tabs, decimal commas, a full head, two groups with clocks of their own; the reference starts again at a turn.
 inline std::string ScopeExport(const std::vector<AxisSample>& samples) {
-  std::string text =
-      "Name\tScope Project\r\nFile\tD:\\scope.csv\r\n"
-      "Starttime of export\t132959733843760000\tMontag, 2. Mai 2022\t15:56:24.376\r\n"
-      "Endtime of export\t132959743853750000\tMontag, 2. Mai 2022\t16:13:05.375\r\n\r\n\r\n";
-  const auto row = [&text](const char* key, const char* a, const char* b, const char* c) {
-    text += fmt::format("{0}\t{1}\t{2}\t{0}\t{3}\r\n", key, a, b, c);
-  };
-  row("Name", "Axis 1.SetPos", "Encoder.ActPos", "Cabinet");
-  row("SymbolComment", "", "", "");
-  row("Data-Type", "REAL64", "REAL64", "REAL32");
-  row("SampleTime[ms]", "50", "50", "1000");
-  row("VariableSize", "8", "8", "4");
-  row("SymbolName", "Axes.Axis 1.SetPos", "MAIN.encoder", "MAIN.cabinet");
-  row("Offset", "0", "0", "0");
-  row("ScaleFactor", "1", "1", "1");
-  row("Unit", "° (Angle)", "° (Angle)", "(None)");
-  text += "\r\n";
+  std::string text = Contents(TWINBENCH_TEST_DATA "/heads/scope.txt");
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const AxisSample& s = samples[i];
     text += WithComma(
@@ -122,19 +108,7 @@ inline std::string CamonitorLog(const std::vector<AxisSample>& samples, double b
 inline std::string GuideLog(const std::function<double(double)>& error_arcsec, int frames) {
   constexpr double kScale = 2.0, kRate = 6.5, kDec_deg = 30.0;
   twinbench::test::Noise seeing(0.1, 7);
-  std::string text =
-      "PHD2 version 2.6.11 [Windows], Log version 2.5. Log enabled at 2022-01-15 21:30:00\n\n"
-      "Calibration Begins at 2022-01-15 21:31:00\nPixel scale = 2.00 arc-sec/px, Binning = 1, Focal length = 400 "
-      "mm\n"
-      "Direction,Step,dx,dy,x,y,Dist\nWest,1,0.5,0.0,0.5,0.0,0.5\nCalibration complete, mount = On Camera.\n\n"
-      "Guiding Begins at 2022-01-15 21:35:00\nEquipment Profile = A\n"
-      "Pixel scale = 2.00 arc-sec/px, Binning = 1, Focal length = 400 mm\nExposure = 6000 ms\n"
-      "Mount = On Camera, connected, guiding enabled, xAngle = 87.9, xRate = 6.500, yAngle = -170.3, yRate = "
-      "6.437\n"
-      "RA = 5.50 hr, Dec = 30.0 deg, Hour angle = -1.00 hr, Pier side = East, Rotator pos = N/A\n"
-      "Frame,Time,mount,dx,dy,RARawDistance,DECRawDistance,RAGuideDistance,DECGuideDistance,RADuration,RADirection,"
-      "DECDuration,DECDirection,XStep,YStep,StarMass,SNR,ErrorCode\nINFO: SETTLING STATE CHANGE, Settling "
-      "started\n";
+  std::string text = Contents(TWINBENCH_TEST_DATA "/heads/phd2.txt");
   double taken_out_px = 0.0, held_px = 0.0;
   for (int k = 1; k <= frames; ++k) {
     const double time_s = 6.0 * k, angle_deg = 15.041067 * time_s / 3600.0;
