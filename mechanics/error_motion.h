@@ -63,7 +63,7 @@ class ErrorMotion {
   Vector6 SumLines(double unwrapped_rad) const;
 
   std::vector<Line> lines_;  // by rising order
-  PeriodicSpline<kErrorComponents> spline_;
+  PeriodicSpline spline_;
 };
 
 /// Random smooth errors: orders 1..`orders`, each with a random phase and an amplitude that falls as 1/order,
