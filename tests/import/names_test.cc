@@ -6,6 +6,7 @@
 
 #include "tests/import/importing.h"
 #include "tests/support/kept_text.h"
+#include "twin/import/source.h"
 
 /// What columns are called, and the units they are in.
 namespace twinbench::imports {
@@ -160,6 +161,20 @@ TEST_F(Importing, TakesArraysOfAProgramSideBySide) {
   const Imported taken = Take("#pragma once\n" + reference + "};\n" + device + "};\n");
   EXPECT_THAT(taken.story, HasSubstr("2 arrays in a program text, 72 entries each"));
   EXPECT_NEAR(Worst_deg(taken.readings), 0.5, 0.002);
+}
+
+/// Columns of a table cost what the maps look for in each of them: minutes, of as many as these.
+TEST_F(Importing, ReadsALongLineOfNumbersAsTheListThatItIs) {
+  constexpr int kEntries = 16384;
+  std::string list;
+  for (int i = 0; i < kEntries; ++i)
+    list += fmt::format("{}{}", i > 0 ? ", " : "", (std::lround(36000.0 * i / kEntries + 31.0 * std::sin(units::turn * i / kEntries)) + 7100) % 36000);
+  for (const std::string& text : {"const uint16_t lookup[] = {" + list + "};\n", list + "\n"}) {
+    EXPECT_TRUE(BeginOfTable(File("lookup.cpp", text)).tracks.empty());
+    const Imported taken = Take(text);
+    EXPECT_EQ(taken.readings.size(), 1u * kEntries);
+    EXPECT_NEAR(Worst_deg(taken.readings), 0.31, 0.006) << "half of 1/100 deg";
+  }
 }
 
 TEST_F(Importing, TakesListsOfPythonAndMatlabSideBySide) {

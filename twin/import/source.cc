@@ -120,11 +120,13 @@ Recording BeginOfTable(const std::string& path) {
   std::string text = LoadText(path);
   if (std::vector<std::string> said; IsBarExport(FirstLines(text))) text = TableOfBarExport(text, path, said);
   const std::vector<std::string_view> lines = FirstLines(text);
+  const std::string kind = FindKind(lines, true);
+  if (kind == "array") return recording;  // a line of thousands of numbers is no row of as many columns
   constexpr std::size_t kBegin = 5000;  // lines: an axis may rest for a while before it moves
   std::string begin;
   for (const std::string_view line : FirstLines(text, kBegin)) begin += std::string(line) + "\n";
   try {
-    if (FindKind(lines, false) == "records")
+    if (kind == "records")
       ReadRecords(text, {}, {}, recording);
     else
       ReadTable(begin, {}, {}, recording);

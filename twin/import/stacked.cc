@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
+#include <string>
 #include <string_view>
 
 #include "twin/import/clampings.h"
@@ -94,11 +96,16 @@ std::string NameOfX(const std::string& name) {
   return "";
 }
 
-/// What a second axis of the instrument showed beside it, where the map seeks such; null: nothing.
-const Column* BesideOf(const Map& map, const Track& track, const Column& column) {
+/// What a second axis of the instrument showed beside a column of that name in small letters, where the map seeks such.
+std::map<std::string, const Column*> SecondAxes(const Map& map, const Track& track) {
   const auto is_second = [](const Sought& sought) { return sought.kind == "column" && std::ranges::count(sought.words, "y") > 0; };
-  const auto found = std::ranges::find_if(track.columns, [&column](const Column& c) { return c.IsNumber() && NameOfX(c.name) == SmallLetters(column.name); });
-  return found != track.columns.end() && std::ranges::any_of(map.sought, is_second) ? &*found : nullptr;
+  std::map<std::string, const Column*> by_x;
+  if (std::ranges::none_of(map.sought, is_second)) return by_x;
+  for (const Column& column : track.columns) {
+    const std::string x = column.IsNumber() ? NameOfX(column.name) : "";
+    if (!x.empty()) by_x.emplace(x, &column);
+  }
+  return by_x;
 }
 
 struct Part {
@@ -110,8 +117,12 @@ struct Part {
 
 std::vector<Part> PartsOf(const Map& map, const Track& track) {
   std::vector<Part> parts;
+  const std::map<std::string, const Column*> second_axes = SecondAxes(map, track);
   std::vector<const Column*> beside;
-  for (const Column& column : track.columns) beside.push_back(BesideOf(map, track, column));
+  for (const Column& column : track.columns) {
+    const auto second = second_axes.find(SmallLetters(column.name));
+    beside.push_back(second == second_axes.end() ? nullptr : second->second);
+  }
   for (const Column& column : track.columns) {
     const ColumnSide side = column.IsNumber() ? SideOf(map, column) : ColumnSide{};
     if (!side.IsOne() || SaysWhere(map, column) || std::ranges::count(beside, &column) > 0) continue;
