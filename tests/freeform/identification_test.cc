@@ -151,30 +151,5 @@ TEST(FreeformDiagnosis, SizesGrowthThatLagsBehindTheTemperature) {
   }
 }
 
-std::string CasePath(const std::string& number, const std::string& file) {
-  return TWINBENCH_TEST_DATA "/challenge_freeform/" + number + "/" + file;
-}
-
-/// Runs of an implementation that shares nothing with the twin, each with one hidden effect or none.
-class FreeformChallenge : public testing::TestWithParam<std::string> {};
-
-TEST_P(FreeformChallenge, IsAnsweredRightly) {
-  using enum diagnose::Verdict;
-  const nlohmann::json truth = nlohmann::json::parse(std::ifstream(CasePath(GetParam(), "truth.json")));
-  const std::string effect = truth.at("effect");
-  const diagnose::Diagnosis diagnosis =
-      DiagnosisOf(ReadReadingsCsv(CasePath(GetParam(), "readings.csv"), kFreeformBench), FreeformScenario());
-  if (effect == "none" || effect == "unknown") {
-    EXPECT_EQ(diagnosis.verdict, effect == "none" ? kNone : kUnknown);
-    return;
-  }
-  EXPECT_THAT(NamesOf(diagnosis), testing::Contains(effect));
-  EXPECT_THAT(NamesOf(diagnosis), testing::IsSubsetOf(truth.at("alike").get<std::vector<std::string>>()));
-  EXPECT_THAT(diagnosis.verdict, testing::AnyOf(kNamed, kTie));
-}
-
-INSTANTIATE_TEST_SUITE_P(Freeform, FreeformChallenge, testing::Values("002", "007", "012", "016", "017"),
-                         [](const testing::TestParamInfo<std::string>& test) { return "Case" + test.param; });
-
 }  // namespace
 }  // namespace twinbench::freeform_test

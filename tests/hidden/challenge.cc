@@ -58,7 +58,8 @@ Part PartOf(const json& truth) {
 std::string LockOf(const std::string& signature) {
   const std::vector<std::pair<std::string, std::string>> locks = {
       {"per pass", "pass"},          {"temperature", "temperature"}, {"direction", "direction"}, {"spot", "spot"},
-      {"reference,", "both angles"}, {"per turn", "per turn"},       {"travelled", "angle"}};
+      {"reference,", "both angles"}, {"per turn", "per turn"},       {"travelled", "angle"},
+      {"together", "together"}};
   for (const auto& [theirs, ours] : locks) {
     if (signature.find(theirs) != std::string::npos) return ours;
   }

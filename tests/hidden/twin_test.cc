@@ -113,7 +113,7 @@ TEST(HiddenCases, CoverEveryEffectOfEveryCatalogue) {
 const std::vector<Outcome>& All() {
   static const std::vector<Outcome> outcomes = [] {
     std::vector<Plan> plans;
-    for (const std::string bench : {kRotaryBench, kEncoderBench, kCircularBench}) {
+    for (const std::string bench : {kRotaryBench, kEncoderBench, kCircularBench, kFreeformBench}) {
       std::vector<Plan> more = ChallengePlans(test::DataPath(ChallengeSetOf(bench)), bench);
       if (bench == kRotaryBench) more = Every(2, more);
       if (bench == kRotaryBench && !test::IsNight()) more = Every(2, std::vector<Plan>(more.begin() + 1, more.end()));
