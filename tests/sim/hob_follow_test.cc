@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/angle_benches.h"
-#include "tests/support/listed.h"
 #include "twin/benches/hob_transmission/twin/follow.h"
 #include "twin/benches/hob_transmission/twin/world.h"
 
@@ -83,7 +82,18 @@ TEST(HobFollow, SaysWhatTheRunShowedAndKnowsEveryEffectOfTheCatalogue) {
 }
 
 TEST(HobFollow, KnowsTheKeysOfTheScenario) {
-  for (const auto& keys : test::Listed("followed: hob_transmission")) {
+  const std::vector<std::vector<std::string>> changes = {
+      {"transmission.feed_forward=0.9"}, {"transmission.backlash_arcsec=20"}, {"transmission.friction_Nm=100"},
+      {"hob_procedure.encoder_zero=reference_mark"}, {"interferometer.used=false"},
+      {"interferometer.stops=12", "interferometer.misalignment_mrad=100", "transmission.friction_Nm=100",
+       "transmission.backlash_arcsec=20"},
+      {"table_encoder.tilt_arcsec=200", "table_encoder.head_height_mm=10"}, {"hob_encoder.ellipticity_um=5"},
+      {"hob_encoder.eccentricity_um=20"},
+      {"table_encoder.graduation=[{ order = 6, amplitude_arcsec = 3, phase_deg = 57 }]"},
+      {"transmission.free_orders=2"},
+      {"hob_procedure.hob_speeds_rev_min=[48, 29]", "transmission.feed_forward=0.95",
+       "effect=[{ name = \"hysteresis\", lag_arcsec = 4, settles_over_deg = 5 }]"}};
+  for (const auto& keys : changes) {
     const Scenario s = Altered(WithoutFreeOrders(), keys);
     EXPECT_LT(Off_arcsec(s), s.effects.empty() ? kSame_arcsec : kTurned_arcsec) << keys[0];
   }

@@ -5,7 +5,6 @@
 #include "optics/irradiance.h"
 #include "tests/core/input_error.h"
 #include "tests/support/angle_benches.h"
-#include "tests/support/listed.h"
 #include "tests/support/small_scenario.h"
 #include "twin/benches/encoder_comparison/twin/follow.h"
 #include "twin/benches/rotary_4dof/twin/follow.h"
@@ -57,9 +56,30 @@ double Apart_m(const test::TwinRun& run) {
 
 /// A bench of which nothing is at its ideal value.
 Scenario RichBench() {
-  std::vector<std::string> keys;
-  for (const auto& key : test::Listed("followed, all at once: rotary_4dof")) keys.push_back(key[0]);
-  return Altered(test::SmallNoiseFree(), keys);
+  return Altered(
+      test::SmallNoiseFree(),
+      {"target.harmonics=[{ component = \"ez\", order = 1, amplitude_arcsec = 20, phase_deg = 17 }, "
+       "{ component = \"dy\", order = 2, amplitude_um = 3, phase_deg = 57 }]",
+       "reference.harmonics=[{ component = \"ex\", order = 1, amplitude_arcsec = 10, phase_deg = 6 }, "
+       "{ component = \"dx\", order = 1, amplitude_um = 2 }]",
+       "reference.centring_um=[4, -3]",
+       "reference.mount_tilt_arcsec=[15, -10]",
+       "target.half_frequency_tilt_arcsec=1",
+       "target.backlash_arcsec=2",
+       "laser.position_mm=[0.5, 200, 0]",
+       "laser.yaw_mrad=0.05",
+       "laser.pointing_yaw_per_kelvin_urad=20",
+       "laser.wavelength_per_kelvin_nm=0.1",
+       "psd_a.tilt_u_mrad=20",
+       "psd_b.tilt_v_mrad=30",
+       "amplifier.hum_mV=20",
+       "amplifier.offset_mV=[10, -20, 30, 5]",
+       "autocollimator.gain_error=0.002",
+       "environment.drift_K_h=0.4",
+       "environment.swing_mK=200",
+       "mechanics.payload_mass_kg=5",
+       "mechanics.payload_radius_mm=50",
+       "procedure.dwell_s=[0.5, 1, 4]"});
 }
 
 // What is left is rounding in the chain and Newton's last step at the autocollimator.

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/angle_benches.h"
-#include "tests/support/listed.h"
 #include "twin/benches/turntable_autocollimator/twin/effects/effects.h"
 #include "twin/benches/turntable_autocollimator/twin/follow.h"
 #include "twin/sim/table_motion.h"
@@ -244,7 +243,20 @@ TEST(TurntableFollow, SaysWhatTheRunShowedAndKnowsEveryEffectOfTheCatalogue) {
 }
 
 TEST(TurntableFollow, KnowsTheKeysOfTheScenario) {
-  for (const auto& keys : test::Listed("followed: turntable_autocollimator"))
+  const std::string settling = "effect=[{ name = \"settling\", amplitude_arcsec = 2, time_constant_s = 1 }]";
+  const std::string creep =
+      "effect=[{ name = \"mount_creep\", where = \"x\", amplitude_arcsec = 2, time_constant_s = 60 }]";
+  const std::vector<std::vector<std::string>> changes = {
+      {"turntable.backlash_arcsec=3"}, {"turntable.half_frequency_tilt_arcsec=2"}, {"mirror.flatness_nm=5000"},
+      {"turntable_procedure.eccentricities_um=[1000, 3000]"}, {"mirror.radius_mm=200"},
+      {"autocollimator.aperture_mm=70"}, {"mirror.width_mm=20"}, {"autocollimator.gain_error=0.01"},
+      {"autocollimator.error_at_edge_arcsec=5"}, {"autocollimator.interpolation_error_px=0.1"},
+      {"autocollimator.x_per_kelvin_arcsec=2", "environment.swing_mK=500", "environment.swing_period_s=1000"},
+      {"turntable_procedure.tilts_arcsec=[200, -250]"},
+      {"turntable_procedure.run_up_steps=0", "effect=[{ name = \"backlash\", width_arcsec = 2 }]"},
+      {"turntable.move_time_s=6", settling}, {"mechanics.fidelity=linear"}, {"multitooth.teeth=720"},
+      {"turntable_procedure.phases=[\"verification\", \"full_circle\", \"calibration\"]", creep}};
+  for (const auto& keys : changes)
     EXPECT_LT(TurntableOff_arcsec(Altered(Careful(), keys)), kSameTurntable_arcsec) << keys[0];
 }
 

@@ -1,4 +1,3 @@
-#include "tests/support/listed.h"
 #include "tests/tools/program_here.h"
 
 /// Every command answers to programs: one JSON document on stdout, whether it could do what it was asked or not.
@@ -20,12 +19,32 @@ stops_per_turn = 12
 passes = [1, -1]
 )";
 
-/// The good call of `serve` does not end: AServedBench...
 std::vector<Called> AllCalls() {
-  std::vector<Called> calls;
-  for (const auto& row : Listed("commands that answer in JSON"))
-    calls.push_back({row[0], Split(row[1], " "), Split(row[2], " "), Split(row[3], " ")});
-  return calls;
+  return {
+      {"run", {"s.toml", "-o", "new"}, {"bad.toml", "-o", "other"}, {"run", "bench", "seed", "readings", "separated", "results"}},
+      {"campaign", {"study.toml", "-o", "t.sqlite"}, {"none.toml", "-o", "u.sqlite"}, {"trials", "lost", "results"}},
+      {"measure", {"s.toml", "--bench", "bench.toml", "-o", "measured"}, {"s.toml", "--bench", "none.toml", "-o", "m"}, {"run", "results"}},
+      {"serve", {}, {"bad.toml"}, {}},  // the good one does not end: AServedBench...
+      {"export", {"made"}, {"none"}, {"run", "bench", "readings", "columns"}},
+      {"import", {"readings.csv", "--scenario", "s.toml", "-o", "imported"}, {"bad.csv", "-o", "i"}, {"run", "results", "doubts"}},
+      {"separate", {"made"}, {"bad.csv", "--scenario", "s.toml"}, {"device"}},
+      {"compensate", {"turned"}, {"none"}, {"table"}},
+      {"uncertainty", {"made"}, {"none"}, {"covariance"}},
+      {"budget", {"small.toml", "--of", "separation"}, {"bad.toml"}, {"figures"}},
+      {"plan", {"s.toml"}, {"bad.toml"}, {"advice", "next"}},
+      {"investigate", {"s.toml", "--twin", "s.toml", "--runs", "1", "--faint", "0", "-o", "inquiry"}, {"s.toml", "-o", "inquiry"}, {"steps"}},
+      {"diagnose", {"made"}, {"bad.csv", "--scenario", "s.toml"}, {"verdict", "causes"}},
+      {"report", {"made", "--svg", "pictures"}, {"none"}, {"source", "pictures"}},
+      {"certificate", {"--template", "-o", "lab.toml"}, {"made", "-o", "c.xml"}, {"template"}},
+      {"score", {"made"}, {"imported"}, {"values"}},
+      {"new", {"rotary_4dof"}, {"rotary_4dog"}, {"bench", "scenario_toml"}},
+      {"check", {"s.toml"}, {"bad.toml"}, {"bench", "readings"}},
+      {"list", {}, {"--frob"}, {"benches"}},
+      {"explain", {"eccentricity", "--bench", "encoder_comparison"}, {"eccentricitee"}, {"benches"}},
+      {"help", {"effects"}, {"efects"}, {"topic", "text"}},
+      {"schema", {}, {"--frob"}, {"oneOf"}},
+      {"completion", {}, {"--frob"}, {"shell", "script"}},
+  };
 }
 
 class JsonAnswers : public SmallProgram {
