@@ -178,7 +178,7 @@ TEST(Course, OfACommandThatJumpsIsStopsHoweverFewPlacesItKnows) {
     x.insert(x.end(), 40, to_deg * units::deg);
   const Course course = CourseOf(x, Clocked(x.size()), {}, 0.0);
   ASSERT_TRUE(course.stop_and_go);
-  const Blocks cut = CutIntoBlocks(course, Clocked(x.size()), 5000, RestsOf(course, {}, 0.0));
+  const Blocks cut = CutIntoBlocks(course, Clocked(x.size()), {5000}, RestsOf(course, {}, 0.0));
   EXPECT_EQ(cut.blocks.size(), 24U) << "eight rests of three pieces";
   for (const Block& block : cut.blocks) {
     EXPECT_EQ(x[block.begin], x[block.end - 1]);

@@ -15,9 +15,10 @@ constexpr double kDense_rad = 0.5 * units::deg;
 constexpr std::size_t kBehindReversal = 40;  // short blocks there
 
 /// True if rows i - 1 and i cannot be in one block.
-bool Parts(const Course& course, const std::vector<double>& time_s, double usual_s, std::size_t i) {
+/// @param joins  Ramps with what is between them.
+bool Parts(const Course& course, const std::vector<double>& time_s, double usual_s, std::size_t i, bool joins) {
   return course.pass[i] != course.pass[i - 1] || course.direction[i] != course.direction[i - 1] ||
-         course.motion[i] != course.motion[i - 1] || time_s[i] - time_s[i - 1] > kGapIntervals * usual_s;
+         (!joins && course.motion[i] != course.motion[i - 1]) || time_s[i] - time_s[i - 1] > kGapIntervals * usual_s;
 }
 
 double UsualInterval(const std::vector<double>& time_s) {
@@ -57,7 +58,7 @@ Blocks CutStops(const Course& course, const std::vector<Rest>& rests) {
   return cut;
 }
 
-Blocks CutMotion(const Course& course, const std::vector<double>& time_s, std::size_t rows) {
+Blocks CutMotion(const Course& course, const std::vector<double>& time_s, std::size_t rows, bool joins = false) {
   Blocks cut;
   cut.usual_rows = rows;
   const double usual_s = UsualInterval(time_s);
@@ -69,7 +70,7 @@ Blocks CutMotion(const Course& course, const std::vector<double>& time_s, std::s
     const std::size_t longest = !moves                              ? 8 * rows
                                 : behind_reversal < kBehindReversal ? std::max<std::size_t>(1, rows / 8)
                                                                     : rows;
-    if (i < n && i - begin < longest && !Parts(course, time_s, usual_s, i)) continue;
+    if (i < n && i - begin < longest && !Parts(course, time_s, usual_s, i, joins)) continue;
     cut.blocks.push_back({begin, i, 0});
     if (moves) cut.widest = std::max(cut.widest, std::abs(course.reference[i - 1] - course.reference[begin]));
     if (moves) ++behind_reversal;
@@ -97,10 +98,24 @@ Blocks CutToAbout(const Course& course, const std::vector<double>& time_s, std::
   return cut;
 }
 
+/// As many as were asked for, or where a motion has more pieces than that as few as it has.
+Blocks CutToAtMost(const Course& course, const std::vector<double>& time_s, std::size_t most) {
+  Blocks cut;
+  const std::size_t n = course.reference.size();
+  for (const bool joins : {false, true}) {
+    for (std::size_t rows = (n + most - 1) / most; rows < 2 * n; rows += rows / 4 + 1) {
+      cut = CutMotion(course, time_s, rows, joins);
+      if (cut.blocks.size() <= most) return cut;
+    }
+  }
+  return cut;
+}
+
 }  // namespace
 
-Blocks CutIntoBlocks(const Course& course, const std::vector<double>& time_s, std::size_t most,
+Blocks CutIntoBlocks(const Course& course, const std::vector<double>& time_s, const MostReadings& wanted,
                      const std::vector<Rest>& rests) {
+  const std::size_t most = wanted.count;
   if (!rests.empty()) return CutStops(course, rests);
   const std::size_t n = course.reference.size();
   if (n <= most || (course.stops && !AreDense(course))) {
@@ -108,10 +123,11 @@ Blocks CutIntoBlocks(const Course& course, const std::vector<double>& time_s, st
     for (std::size_t i = 0; i < n; ++i) cut.blocks.push_back({i, i + 1, 0});
     return cut;
   }
+  if (wanted.is_stated) return CutToAtMost(course, time_s, most);
   Blocks cut = CutToAbout(course, time_s, most);
   if (HighestOrderKept(cut.widest) < kOrdersWanted && cut.usual_rows > 1) {
-    const double wanted = static_cast<double>(most) * kOrdersWanted * cut.widest / kOneInAHundred;
-    cut = CutToAbout(course, time_s, std::min(4 * most, static_cast<std::size_t>(wanted) + 1));
+    const double more = static_cast<double>(most) * kOrdersWanted * cut.widest / kOneInAHundred;
+    cut = CutToAbout(course, time_s, std::min(4 * most, static_cast<std::size_t>(more) + 1));
   }
   return cut;
 }

@@ -25,18 +25,24 @@ struct Blocks {
   std::size_t usual_rows = 1;
 };
 
+/// How many readings a recording may have.
+struct MostReadings {
+  std::size_t count = 0;
+  bool is_stated = false;  // by whoever imports it, and kept; else it is about as many
+};
+
 /// A recording of stops in time has one block a rest, of the rows in which the device stands; several where there are less
-/// than a dozen rests. One of motion is cut into at most about `most` blocks that never span
+/// than a dozen rests. One of motion is cut into at most about `most` blocks - if that is stated, into no more - that never span
 /// a reversal, a rest's end, a gap or a ramp's end; behind a reversal, where play is crossed, they are an eighth as
 /// long.
 ///
 /// Stops are kept one by one, unless they are as close as the entries of a firmware's table. Where that would lose
-/// orders below 30, there are up to four times as many.
+/// orders below 30, there are up to four times as many, if nobody stated a number.
 ///
 /// A block of width w lowers a wave of order k by (k w)^2 / 24: one part in a hundred at k = 0.49 / w.
 ///
 /// @param rests  Of a recording of stops; empty: of one in motion, or with a row a stop.
-Blocks CutIntoBlocks(const Course& course, const std::vector<double>& time_s, std::size_t most,
+Blocks CutIntoBlocks(const Course& course, const std::vector<double>& time_s, const MostReadings& most,
                      const std::vector<Rest>& rests);
 
 /// The highest order of which blocks of that width keep 99 %; 0 where nothing is averaged.

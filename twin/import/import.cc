@@ -86,10 +86,13 @@ bool Gives(const Map& map, const std::string& column) {
 }
 
 /// Means in blocks lower a largest value and raise a smallest one, which are results of a circle: who wants them says so.
-std::size_t MostReadings(const BenchFormat& bench, const Map& map) {
+MostReadings MostOf(const BenchFormat& bench, const Map& map, std::size_t sessions) {
   constexpr std::size_t kCompared = 20000;
-  if (map.average.most_readings > 0) return static_cast<std::size_t>(map.average.most_readings);
-  return bench.compared ? kCompared : std::numeric_limits<std::size_t>::max();
+  const bool is_stated = map.average.most_readings > 0;
+  const std::size_t all = is_stated        ? static_cast<std::size_t>(map.average.most_readings)
+                          : bench.compared ? kCompared
+                                           : std::numeric_limits<std::size_t>::max();
+  return {std::max<std::size_t>(all / sessions, kFewest), is_stated};
 }
 
 /// Lengths start again nowhere, unless the map says where.
@@ -109,10 +112,10 @@ Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
   Imported imported;
   imported.bench = bench.name;
   Maker maker(bench, map, joined.linear);
-  const std::size_t most = MostReadings(bench, map) / joined.sessions.size();
+  const MostReadings most = MostOf(bench, map, joined.sessions.size());
   for (const Session& session : joined.sessions) {
     const Session whole = WithoutGaps(WholeRows(session, bench, map, maker.tally.left_out), bench, map, joined, maker.tally.left_out);
-    maker.Take(whole, std::max<std::size_t>(most, kFewest), imported);
+    maker.Take(whole, most, imported);
   }
   const std::size_t fewest = bench.compared ? kFewestCompared : kFewest;
   if (imported.readings.size() < fewest)

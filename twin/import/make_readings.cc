@@ -48,7 +48,7 @@ void NumberApproaches(const std::vector<double>& direction, Course& course) {
 
 }  // namespace
 
-void Maker::Take(const Session& session, std::size_t most, Imported& imported) {
+void Maker::Take(const Session& session, const MostReadings& most, Imported& imported) {
   if (session.Rows() < 2) return;
   const std::string& by = CourseColumn(session);
   const std::vector<double>& reference = session.value.at(by);

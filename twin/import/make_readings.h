@@ -33,7 +33,7 @@ class Maker {
 
   /// @param most  Readings: longer recordings are averaged in blocks.
   /// @throws InputError for a device that does not follow its reference, or that arrives nowhere.
-  void Take(const Session& session, std::size_t most, Imported& imported);
+  void Take(const Session& session, const MostReadings& most, Imported& imported);
 
   Tally tally;
 
