@@ -111,6 +111,16 @@ bool IsCalledError(const std::string& name) {
          IsCalledCorrection(name);
 }
 
+bool IsCalledCommand(const std::string& name) {
+  return HasAny(name, std::array{"target", "commanded", "command", "cmd", "setpoint", "posset", "setpos", "goal", "desired", "des", "demand", "demanded",
+                                 "soll", "sollwert", "sollposition", "sollwinkel", "consigne", "consigna", "poscmd", "comando"});
+}
+
+bool SpeaksOfSide(const std::string& word) {
+  return Clearness(word, Speaks::kReference) > 0 || Clearness(word, Speaks::kDevice) > 0 || IsCalledPlace(word) ||
+         HasAny(word, std::array{"state", "status", "deg", "rad"});
+}
+
 bool IsCalledCorrection(const std::string& name) {
   return HasAny(name, std::array{"correction", "corrections", "corr", "korrektur", "compensation", "kompensation", "corrección"});
 }

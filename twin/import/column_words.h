@@ -17,6 +17,12 @@ std::string BareName(const std::string& name);
 /// not at all.
 int Clearness(const std::string& name, Speaks of);
 
+/// What a controller told an axis, and no other reference.
+bool IsCalledCommand(const std::string& name);
+
+/// One word that says which side of a comparison a column is, or that it is a place, but not of which axis.
+bool SpeaksOfSide(const std::string& word);
+
 /// "error", "deviation", "offset", "Abweichung", "correction": not where the device stands, but by how much it is off.
 bool IsCalledError(const std::string& name);
 

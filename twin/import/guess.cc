@@ -113,13 +113,14 @@ void TakeReferenceByName(const std::vector<Choice>& columns, const std::vector<s
                          std::vector<std::string>& remarks) {
   if (IsGiven(map, compared[0])) return;
   const std::set<std::string> taken = Taken(map);
-  std::vector<Choice> moving;
-  std::ranges::copy_if(columns, std::back_inserter(moving), [&taken](const Choice& c) {
-    return Changes(c) && !taken.contains(c.name) && !IsOtherQuantity(*c.column) && !IsCalledError(c.name);
+  std::vector<Choice> moving, standing;
+  std::ranges::copy_if(columns, std::back_inserter(standing), [](const Choice& c) { return !IsOtherQuantity(*c.column); });
+  std::ranges::copy_if(standing, std::back_inserter(moving), [&taken](const Choice& c) {
+    return Changes(c) && !taken.contains(c.name) && !IsCalledError(c.name);
   });
   const Choice* found = Clearest(moving, Speaks::kReference, taken);
   const bool may_stand = moving.size() < compared.size() || IsGiven(map, "direction");
-  if (!found && may_stand) found = Clearest(columns, Speaks::kReference, taken);
+  if (!found && may_stand) found = Clearest(standing, Speaks::kReference, taken);
   if (found) Put(compared[0], *found, "by its name", map, remarks);
 }
 

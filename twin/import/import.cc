@@ -7,6 +7,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
+#include "twin/import/axes.h"
 #include "twin/import/guess.h"
 #include "twin/import/join.h"
 #include "twin/import/make_readings.h"
@@ -72,6 +73,7 @@ std::vector<Recording> ReadAll(const std::vector<std::string>& files, Map& map) 
     TakeSought(map, recordings.back());
     TakeUnnamedClock(map, recordings.back());
   }
+  TakeAxis(map, recordings);
   return recordings;
 }
 

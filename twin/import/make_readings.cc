@@ -8,6 +8,8 @@
 #include "twin/core/errors.h"
 #include "twin/core/reading_clock.h"
 #include "twin/core/units.h"
+#include "twin/import/column_words.h"
+#include "twin/import/common.h"
 #include "twin/import/held_command.h"
 #include "twin/import/pushed.h"
 #include "twin/import/said.h"
@@ -73,6 +75,11 @@ void Maker::Take(const Session& session, const MostReadings& most, Imported& imp
   const bool may_be_pushed =
       (course.stop_and_go || (one_place && session.has_clock)) && !session.value.contains("direction");
   if (bench_.compared && may_be_pushed && TakePushed(session, course, imported)) return EndSetUp();
+  if (bench_.compared && IsProfile(session, course)) {
+    course.stop_and_go = false;
+    tally.remarks.push_back("the command moves along profiles and the device is read all the way: taken as motion with rests; "
+                            "[course] kind = \"stops\" in a map takes the rests alone");
+  }
   const Blocks cut = CutIntoBlocks(course, session.time_s, most, RestsIn(session, course));
   Count(session, course, cut);
   if (course.stop_and_go) {
@@ -136,6 +143,15 @@ Session Maker::Aligned(Session session, const Alignment& alignment) {
 std::vector<std::size_t> Maker::Fresh(const Session& session, const Course& course) const {
   if (!bench_.compared || !course.stop_and_go || map_.course.kind != "auto") return {};
   return FreshRows(course, session.value.at(bench_.compared->shown), linear_ ? 0.0 : units::turn);
+}
+
+/// A controller's log: the ways of a command, from rest to rest, are read as closely as its rests.
+bool Maker::IsProfile(const Session& session, const Course& course) const {
+  constexpr double kFewestRows = 20.0, kLongest_s = 0.02, kLeastShare = 0.1;  // of a way; between rows; of all rows
+  if (!course.stop_and_go || map_.course.kind != "auto" || !IsCalledCommand(ExpressionOf(map_, bench_.compared->reference))) return false;
+  const double moving = (1.0 - course.rest_share) * static_cast<double>(session.Rows());
+  return MedianOf(StepsOf(session.time_s)) <= kLongest_s && moving > kFewestRows * course.rests &&
+         moving > kLeastShare * static_cast<double>(session.Rows());
 }
 
 /// Of a drive from stop to stop; empty: of another.
