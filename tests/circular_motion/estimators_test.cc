@@ -63,6 +63,21 @@ TEST(RigorousCircle, LeavesNothingOfAnEncoderThatErrsByADegreeOrIsAskew) {
   }
 }
 
+TEST(RigorousCircle, LeavesNothingOfATransducerThatBendsByAThird) {
+  CircleErrors bent;
+  bent.bar_gain = -0.02;
+  bent.bar_cubic_per_m2 = 800.0 / (mm * mm);
+  const CircleMounting mounting{{20.0 * um, -12.0 * um}};
+  for (CirclePoint p : OffCentre({20.0 * um, -12.0 * um})) {
+    p.is_bar = p.has_angle = true;
+    const CircleConstants known{1.0, 1.0, 1.0, 0.0};
+    const Eigen::Vector2d shown_m = Shown_m(p, bent, mounting, known);
+    p.radial_m = shown_m.x();
+    p.tangential_m = shown_m.y();
+    EXPECT_LT(Deviation_m(p, bent, mounting, known).norm(), 1e-12);
+  }
+}
+
 /// The run of an independent implementation and what it was made with.
 struct OracleRun {
   Scenario scenario;

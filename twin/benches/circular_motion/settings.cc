@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "twin/benches/circular_motion/format.h"
@@ -219,7 +220,8 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
 namespace twinbench {
 
 StatedNoise StatedNoiseOf(const CircularSettings& s, bool is_bar, double radius_m) {
-  const auto with_machine = [&](double noise_m) { return std::hypot(noise_m, s.machine.noise_m); };
+  constexpr double kLeast_m = 1.0 * units::nm;  // no circle is known better, whatever noise is left out
+  const auto with_machine = [&](double noise_m) { return std::max(kLeast_m, std::hypot(noise_m, s.machine.noise_m)); };
   if (!is_bar) return {with_machine(s.grid.noise_m), with_machine(s.grid.noise_m)};
   const double quantum = 1.0 / std::sqrt(12.0), step_rad = units::turn / s.encoder.lines / s.encoder.interpolation;
   return {with_machine(std::hypot(s.bar.noise_m, quantum * s.bar.resolution_m)),

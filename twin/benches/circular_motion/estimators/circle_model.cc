@@ -137,8 +137,16 @@ Vector2d GridShown_m(const CirclePoint& p, const CircleErrors& e, const CircleMo
   return Turned(shown_m - p.Commanded_m(), -p.commanded_rad);
 }
 
+/// The transducer bends by how much longer the bar is, not by what it shows.
 double Longer_m(const CirclePoint& p, const CircleErrors& e) {
-  return p.radial_m / (1.0 + e.bar_gain + e.bar_cubic_per_m2 * p.radial_m * p.radial_m);
+  constexpr int kNewtonSteps = 6;
+  const double gain = 1.0 + e.bar_gain, cubic = e.bar_cubic_per_m2;
+  double longer_m = p.radial_m / gain;
+  for (int k = 0; k < kNewtonSteps; ++k) {
+    const double square_m2 = longer_m * longer_m;
+    longer_m -= (longer_m * (gain + cubic * square_m2) - p.radial_m) / (gain + 3.0 * cubic * square_m2);
+  }
+  return longer_m;
 }
 
 /// Along the radius, at the commanded angle: there the bar's length goes by the angle between the radius and itself. The length
