@@ -1,8 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <map>
-#include <sstream>
-
 #include "tests/support/in_parallel.h"
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/separated_table.h"

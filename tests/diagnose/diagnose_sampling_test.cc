@@ -1,7 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <set>
-
 #include "tests/diagnose/encoder_record.h"
 #include "tests/support/night.h"
 #include "twin/diagnose/part_of_readings.h"

@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <cmath>
-
 #include "tests/diagnose/encoder_fit.h"
 #include "tests/diagnose/support/synthetic_run.h"
 #include "tests/support/kept_text.h"

@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <cmath>
-
 #include "tests/core/input_error.h"
 #include "tests/diagnose/encoder_fit.h"
 #include "twin/core/stream.h"

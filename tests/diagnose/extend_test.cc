@@ -1,7 +1,5 @@
 #include "twin/diagnose/extend.h"
 
-#include <gmock/gmock.h>
-
 #include "tests/diagnose/found_causes.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/small_scenario.h"

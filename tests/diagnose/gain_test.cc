@@ -1,11 +1,5 @@
 #include "twin/diagnose/gain.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <nlohmann/json.hpp>
-#include <set>
-
 #include "tests/diagnose/ring_run.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/rotary_4dof/bench.h"

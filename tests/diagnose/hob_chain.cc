@@ -1,9 +1,5 @@
 #include "tests/diagnose/hob_chain.h"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"
 #include "twin/core/stream.h"

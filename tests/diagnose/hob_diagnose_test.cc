@@ -1,9 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
-
 #include "tests/diagnose/found_causes.h"
 #include "tests/diagnose/hob_chain.h"
 #include "tests/support/thresholds.h"

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/support/twin_run.h"
 #include "twin/benches/hob_transmission/orders_of_ring.h"
 #include "twin/benches/hob_transmission/orders_of_tones.h"

@@ -1,7 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/grouping.h"

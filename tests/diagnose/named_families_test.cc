@@ -1,10 +1,3 @@
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <map>
-#include <set>
-
 #include "tests/diagnose/encoder_fit.h"
 #include "twin/diagnose/engine/projector.h"
 

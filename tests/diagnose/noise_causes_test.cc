@@ -1,7 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/diagnose/found_causes.h"
 #include "tests/diagnose/ring_run.h"
 #include "twin/diagnose/at_jumps.h"

@@ -1,7 +1,4 @@
-#include <gtest/gtest.h>
-
 #include <Eigen/QR>
-#include <cmath>
 #include <complex>
 
 #include "tests/diagnose/support/synthetic_run.h"

@@ -1,9 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"

@@ -1,7 +1,4 @@
-#include <gtest/gtest.h>
-
 #include <Eigen/LU>
-#include <cmath>
 
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/distributions.h"

@@ -1,8 +1,5 @@
 #include "twin/diagnose/engine/search.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <limits>
 
 #include "tests/diagnose/ring_run.h"

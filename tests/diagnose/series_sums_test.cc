@@ -1,9 +1,5 @@
 #include "twin/diagnose/engine/series_sums.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
-
 #include "tests/diagnose/support/synthetic_run.h"
 #include "tests/diagnose/encoder_fit.h"
 

@@ -1,8 +1,4 @@
-#include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gmock/gmock.h>
-
-#include <cmath>
 
 #include "tests/core/input_error.h"
 #include "tests/diagnose/ring_run.h"

@@ -1,8 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <array>
-#include <set>
 #include <utility>
 
 #include "tests/diagnose/found_causes.h"

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/core/input_error.h"
 #include "tests/diagnose/support/synthetic_run.h"
 #include "tests/diagnose/turntable_bench.h"

@@ -1,7 +1,5 @@
 #include "twin/diagnose/watch.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/diagnose/ring_run.h"
 #include "twin/diagnose/sequential_fit.h"
 

@@ -1,7 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "tests/diagnose/found_causes.h"

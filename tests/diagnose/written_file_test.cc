@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <cmath>
-
 #include "tests/diagnose/found_causes.h"
 #include "tests/diagnose/ring_run.h"
 #include "tests/support/angle_benches.h"

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "tests/foreign/angle_fault.h"
 
 // Causes that the catalogue has, each written down anew.

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "tests/foreign/plans.h"
 #include "tests/support/twin_run.h"
 

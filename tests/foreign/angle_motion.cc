@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "tests/foreign/angle_fault.h"
 
 // Faults of angle devices that are locked to motion - speed, travel, reversals - or random themselves.

@@ -1,8 +1,5 @@
 #include "tests/foreign/answer.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "tests/hidden/written_file.h"
 #include "tests/support/thresholds.h"
 #include "tests/support/twin_run.h"

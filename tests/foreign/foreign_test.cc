@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/foreign/answer.h"
 #include "tests/foreign/plans.h"
 #include "tests/hidden/known_wrong.h"

@@ -1,9 +1,5 @@
 #include "tests/foreign/plans.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "tests/hidden/placements.h"
 #include "tests/hidden/twin_cases.h"
 #include "tests/hidden/written_file.h"

@@ -1,7 +1,4 @@
-#include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <map>
 
 #include "tests/foreign/plans.h"
 #include "tests/support/twin_run.h"

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "tests/foreign/stand_fault.h"
 
 namespace twinbench::foreign {

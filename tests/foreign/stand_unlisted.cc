@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "tests/foreign/stand_fault.h"
 
 // Causes of the rotary bench that the catalogue lacks, or that are known to be taken for one that it has; and causes that

@@ -1,7 +1,5 @@
 #include "tests/hidden/bench_runs.h"
 
-#include <cmath>
-
 #include "tests/support/angle_benches.h"
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/freeform_five_axis/columns.h"

@@ -1,7 +1,5 @@
 #include "tests/hidden/twin_cases.h"
 
-#include <algorithm>
-#include <filesystem>
 #include <utility>
 
 #include "tests/hidden/judge.h"

@@ -1,6 +1,5 @@
 #include "tests/hidden/twin_cases.h"
 
-#include <cmath>
 #include <utility>
 
 #include "tests/hidden/placements.h"

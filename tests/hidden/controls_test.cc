@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <algorithm>
-
 #include "tests/hidden/known_wrong.h"
 #include "tests/hidden/placements.h"
 #include "tests/hidden/twin_cases.h"

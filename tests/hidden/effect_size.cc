@@ -1,9 +1,6 @@
 #include "tests/hidden/placements.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <set>
 
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/hob_transmission/settings.h"

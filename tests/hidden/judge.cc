@@ -1,11 +1,5 @@
 #include "tests/hidden/judge.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
-
 namespace twinbench::hidden {
 namespace {
 

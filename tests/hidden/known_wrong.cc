@@ -1,11 +1,6 @@
 #include "tests/hidden/known_wrong.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <regex>
-#include <set>
-#include <sstream>
 
 #include "tests/support/in_parallel.h"
 #include "tests/support/thresholds.h"

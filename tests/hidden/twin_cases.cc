@@ -1,10 +1,5 @@
 #include "tests/hidden/twin_cases.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "tests/hidden/placements.h"
 #include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"

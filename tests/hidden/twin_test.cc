@@ -1,9 +1,3 @@
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "tests/hidden/known_wrong.h"
 #include "tests/hidden/unlisted_cause.h"
 #include "tests/support/night.h"

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "tests/hidden/unlisted_cause.h"
 #include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/names.h"

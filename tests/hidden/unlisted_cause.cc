@@ -1,8 +1,6 @@
 #include "tests/hidden/unlisted_cause.h"
 #include "tests/hidden/unlisted_cause.h"
 
-#include <cmath>
-
 #include "tests/hidden/placements.h"
 
 namespace twinbench::hidden {

@@ -1,6 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <numbers>
 
 #include "tests/investigate/hidden_investigation.h"

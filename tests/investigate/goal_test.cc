@@ -1,8 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "tests/investigate/hidden_investigation.h"
 #include "twin/benches/names.h"
 #include "twin/investigate/goal.h"

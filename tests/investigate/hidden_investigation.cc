@@ -1,10 +1,6 @@
 #include "tests/investigate/hidden_investigation.h"
 
-#include <fmt/format.h>
-
-#include <array>
 #include <chrono>
-#include <cmath>
 
 #include "hw_bridge/program/program_run.h"
 #include "hw_bridge/program/stops.h"

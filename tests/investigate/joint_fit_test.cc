@@ -1,10 +1,5 @@
 #include "twin/investigate/joint_fit.h"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/investigate/hidden_investigation.h"
 #include "tools/twinbench/passing_run.h"
 #include "twin/investigate/evidence.h"

@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <algorithm>
-
 #include "tests/core/input_error.h"
 #include "tests/investigate/hidden_investigation.h"
 #include "tests/support/twin_run.h"

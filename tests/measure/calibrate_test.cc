@@ -1,7 +1,5 @@
 #include "twin/benches/rotary_4dof/estimators/calibrate.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/measure/bench.h"
 
 namespace twinbench::measure {

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/support/kept_text.h"
 #include "twin/benches/encoder_comparison/estimators/vdi3441.h"
 #include "twin/core/csv.h"

@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/measure/bench.h"
 #include "twin/benches/rotary_4dof/estimators/published_motion.h"
 

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "twin/plan/mended.h"
 
 namespace twinbench::plan {

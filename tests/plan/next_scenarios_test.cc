@@ -1,9 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <map>
-#include <nlohmann/json.hpp>
-
 #include "tools/twinbench/next_scenarios.h"
 #include "tools/twinbench/passing_run.h"
 #include "twin/benches/registry.h"

@@ -1,9 +1,5 @@
 #include "tests/scores/row.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "tests/hidden/judge.h"
 
 namespace twinbench::scores {

@@ -1,11 +1,6 @@
 #include "tests/scores/row.h"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <algorithm>
-#include <set>
-#include <sstream>
 
 #include "twin/core/csv.h"
 #include "twin/core/errors.h"

@@ -1,5 +1,3 @@
-#include <filesystem>
-
 #include "tests/hidden/judge.h"
 #include "tests/hidden/unlisted_cause.h"
 #include "tests/hidden/written_file.h"

@@ -1,7 +1,3 @@
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "tests/foreign/answer.h"
 #include "tests/foreign/plans.h"
 #include "tests/investigate/hidden_investigation.h"

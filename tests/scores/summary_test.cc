@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <algorithm>
-
 #include "tests/core/input_error.h"
 #include "tests/scores/row.h"
 #include "tests/support/kept_text.h"

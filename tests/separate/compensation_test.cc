@@ -1,7 +1,5 @@
 #include "twin/separate/compensation.h"
 
-#include <gmock/gmock.h>
-
 #include "tests/core/input_error.h"
 #include "tests/separate/index_spectrum.h"
 #include "tests/support/kept_text.h"

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/separate/encoder_readings.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/night.h"

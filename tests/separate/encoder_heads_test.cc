@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/separate/encoder_readings.h"
 #include "tests/separate/shift_formulas.h"
 #include "tests/support/kept_text.h"

@@ -1,9 +1,5 @@
 #include "twin/benches/rotary_4dof/error_motion_results.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "tests/separate/bench.h"
 
 /// ISO 230-7 of both tables, from motions made by the exact chain.

@@ -1,9 +1,5 @@
 #include "twin/separate/error_motion.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "twin/core/stream.h"

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/separate/hob_bench.h"
 #include "twin/benches/hob_transmission/estimators/comparison.h"
 #include "twin/benches/hob_transmission/estimators/two_positions.h"

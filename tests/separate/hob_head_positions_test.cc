@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/separate/hob_bench.h"
 #include "twin/benches/hob_transmission/estimators/head_positions.h"
 #include "twin/core/distributions.h"

@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/separate/hob_bench.h"
 
 namespace twinbench::separate::hob {

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/core/input_error.h"
 #include "tests/separate/hob_bench.h"
 #include "tests/support/kept_text.h"

@@ -1,10 +1,5 @@
 #include "twin/benches/turntable_autocollimator/estimators/polygon_closure.h"
 
-#include <gmock/gmock.h>
-
-#include <Eigen/Geometry>
-#include <cmath>
-
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/turntable_autocollimator/estimators/polygon_means.h"

@@ -1,8 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
 #include "tests/support/noise.h"
 #include "twin/benches/rotary_4dof/columns.h"
 #include "twin/benches/rotary_4dof/estimators/far_readings.h"

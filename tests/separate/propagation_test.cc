@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/separate/bench.h"
 #include "tests/separate/shift_formulas.h"
 #include "tests/support/night.h"

@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include <Eigen/LU>
 #include <numeric>
 

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/separate/bench.h"
 #include "twin/benches/rotary_4dof/estimators/order_inverse.h"
 #include "twin/benches/rotary_4dof/estimators/separability.h"

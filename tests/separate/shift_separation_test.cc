@@ -1,6 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <complex>
 
 #include "twin/core/stream.h"

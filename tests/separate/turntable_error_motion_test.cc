@@ -1,9 +1,5 @@
 #include "twin/benches/turntable_autocollimator/error_motion_results.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "twin/core/units.h"
 
 /// ISO 230-7 of a turntable's tilt, from stops whose y is written down.

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include <utility>
 
 #include "tests/separate/shift_formulas.h"

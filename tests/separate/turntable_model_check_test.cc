@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/separate/turntable_run.h"
 #include "tests/support/angle_benches.h"
 #include "twin/benches/turntable_autocollimator/estimators/harmonic_model.h"

@@ -1,7 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "tests/separate/turntable_run.h"
 #include "twin/benches/turntable_autocollimator/estimators/equation_5.h"
 #include "twin/benches/turntable_autocollimator/estimators/roll.h"

@@ -1,11 +1,7 @@
 #include "twin/benches/turntable_autocollimator/estimators/shift_fit.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <algorithm>
 #include <numeric>
-#include <set>
 
 #include "twin/core/stream.h"
 

@@ -1,8 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
 #include "tests/support/noise.h"
 #include "twin/benches/turntable_autocollimator/estimators/collimator_sweep.h"
 #include "twin/core/units.h"

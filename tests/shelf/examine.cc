@@ -1,8 +1,5 @@
 #include "tests/shelf/examine.h"
 
-#include <algorithm>
-#include <filesystem>
-
 #include "tests/hidden/judge.h"
 #include "tests/hidden/written_file.h"
 #include "tests/perf/timing.h"

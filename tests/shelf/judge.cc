@@ -1,11 +1,5 @@
 #include "tests/shelf/judge.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-
 #include "tests/hidden/judge.h"
 #include "tests/shelf/size.h"
 #include "twin/core/units.h"

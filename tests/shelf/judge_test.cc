@@ -1,7 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/shelf/examine.h"
 #include "tests/shelf/size.h"
 #include "twin/core/units.h"

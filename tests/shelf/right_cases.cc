@@ -1,9 +1,5 @@
 #include "tests/shelf/right_cases.h"
 
-#include <fmt/format.h>
-
-#include <sstream>
-
 #include "twin/core/errors.h"
 #include "twin/core/whole_file.h"
 

@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/core/input_error.h"
 #include "tests/shelf/examine.h"
 #include "tests/shelf/right_cases.h"

@@ -1,9 +1,6 @@
 #include "tests/shelf/size.h"
 
-#include <algorithm>
-#include <cmath>
 #include <complex>
-#include <map>
 
 #include "twin/core/errors.h"
 #include "twin/core/units.h"

@@ -1,8 +1,6 @@
 #include "tests/shelf/truth.h"
 
-#include <algorithm>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "twin/core/errors.h"
 

@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <map>
 #include <numeric>
 
 #include "tests/uncertainty/bench_budget.h"

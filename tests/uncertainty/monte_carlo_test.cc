@@ -1,7 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "tests/uncertainty/bench_budget.h"
 #include "twin/uncertainty/agreement.h"
 #include "twin/uncertainty/one_at_a_time.h"

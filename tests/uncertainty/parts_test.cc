@@ -1,8 +1,4 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <numeric>
-#include <set>
 
 #include "tests/uncertainty/bench_budget.h"
 

@@ -1,6 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <map>
 #include <random>
 
 #include "tests/uncertainty/bench_budget.h"

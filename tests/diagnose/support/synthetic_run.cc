@@ -1,7 +1,5 @@
 #include "tests/diagnose/support/synthetic_run.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "twin/benches/names.h"
