@@ -76,6 +76,75 @@ Rows ServoRows() {
 }
 INSTANTIATE_TEST_SUITE_P(Servo, EncoderAnswer, testing::ValuesIn(ServoRows()), NameOfRow);
 
+/// What a controller told an axis: ways of trapezoids to and fro, with rests between them.
+struct Trapezoids {
+  double speed_deg_s = 70.0, ramp_s = 0.15, steady_s = 0.35, rest_s = 0.3;
+
+  double Way_s() const { return 2.0 * ramp_s + steady_s; }
+  /// From the beginning of a way, upward.
+  double Along_deg(double t_s) const {
+    const double t = std::clamp(t_s, 0.0, Way_s()), from_end_s = Way_s() - t, half = 0.5 * speed_deg_s / ramp_s;
+    const double way_deg = speed_deg_s * (ramp_s + steady_s);
+    if (t < ramp_s) return half * t * t;
+    return from_end_s < ramp_s ? way_deg - half * from_end_s * from_end_s : speed_deg_s * (t - 0.5 * ramp_s);
+  }
+  double At(double t_s) const {
+    const double period_s = Way_s() + rest_s;
+    const int way = static_cast<int>(std::floor(t_s / period_s));
+    const double along_deg = Along_deg(t_s - way * period_s - rest_s);
+    return way % 2 == 0 ? along_deg : Along_deg(Way_s()) - along_deg;
+  }
+  double Speed_deg_s(double t_s) const { return (At(t_s + 1e-4) - At(t_s - 1e-4)) / 2e-4; }
+  double Acceleration_deg_s2(double t_s) const { return (Speed_deg_s(t_s + 1e-3) - Speed_deg_s(t_s - 1e-3)) / 2e-3; }
+};
+
+/// Read every 4 ms, as a controller writes it.
+template <class Shows>
+Record Driven(const Trapezoids& path, double end_s, double noise_deg, unsigned seed, Shows shows_deg) {
+  Noise noise(noise_deg, seed);
+  Record record;
+  int last = 1, pass = 0;
+  for (double t_s = 0.002; t_s < end_s; t_s += 0.004) {
+    const double speed_deg_s = path.Speed_deg_s(t_s);
+    const int goes = std::abs(speed_deg_s) < 0.3 ? 0 : speed_deg_s > 0.0 ? 1 : -1;
+    pass += goes * last < 0 ? 1 : 0;
+    last = goes == 0 ? last : goes;
+    record.Add(t_s, path.At(t_s), shows_deg(t_s, goes) + noise(), goes, pass);
+  }
+  return record;
+}
+
+/// How late it is in all, by a delay and a lag.
+double Late_s(const Answer& answer) {
+  double late_s = 0.0;
+  for (const char* part : {"delay", "time_constant"}) late_s += answer.Find("latency", part) ? answer.Value("latency", part) : 0.0;
+  return late_s;
+}
+
+TEST(EncoderServo, IsBehindInProportionToSpeedAndAccelerationAndByFriction) {
+  constexpr double kLate_s = 0.0024, kInert_s2 = 3.1e-4, kFriction_deg = 0.05;
+  const Trapezoids path;
+  const Answer answer = Ask(Driven(path, 7.0, 0.002, 95, [&](double t_s, int goes) {
+    return path.At(t_s - kLate_s) - kInert_s2 * path.Acceleration_deg_s2(t_s) - kFriction_deg * goes;
+  }));
+  SCOPED_TRACE(answer.Words());
+  // Speeds and accelerations are those of readings 4 ms apart: a few readings of each ramp see its ends.
+  EXPECT_TRUE(answer.Names("latency") && answer.Names("acceleration_error") && answer.Names("friction"));
+  EXPECT_NEAR(Late_s(answer), kLate_s, 0.08 * kLate_s);
+  EXPECT_NEAR(answer.Value("acceleration_error", "coefficient"), kInert_s2, 0.08 * kInert_s2);
+  EXPECT_NEAR(answer.Value("friction", "lag"), kFriction_deg, 0.08 * kFriction_deg);
+  EXPECT_NE(answer.run.diagnosis.verdict, Verdict::kUnknown);
+}
+
+TEST(EncoderServo, ThatIsLateAloneHasNoOtherFollowingError) {
+  const Trapezoids path{.speed_deg_s = 45.0, .ramp_s = 0.2, .steady_s = 0.2, .rest_s = 0.25};
+  const Answer answer = Ask(Driven(path, 6.0, 0.004, 96, [&](double t_s, int) { return path.At(t_s - 0.0061); }));
+  SCOPED_TRACE(answer.Words());
+  EXPECT_TRUE(answer.Names("latency"));
+  EXPECT_NEAR(Late_s(answer), 0.0061, 0.0001);
+  EXPECT_FALSE(answer.Names("friction", 0.5) || answer.Names("acceleration_error", 0.5) || answer.Names("backlash", 0.5));
+}
+
 LargeCause Latency(double delay_s, double lag_s) {
   LargeCause latency;
   latency.effect.name = "latency";

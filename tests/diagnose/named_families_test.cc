@@ -22,9 +22,9 @@ const std::vector<Design>& Designs() {
                                 "device.signal_periods=3", "device.signal_zero_deg=17",
                                 "device.signal_zero_known=true"};
   static const std::set<std::string> not_at_stops = {"outliers", "interpolation", "gear_mesh", "reference_fault",
-                                                     "latency",  "clock_rate",    "settling"};
+                                                     "latency",  "clock_rate",    "settling", "acceleration_error", "friction"};
   static const std::vector<Design> designs = {{"stops", {}, not_at_stops},
-                                              {"sweep", sweep, {"outliers", "settling"}}};
+                                              {"sweep", sweep, {"outliers", "settling", "friction"}}};
   return designs;
 }
 

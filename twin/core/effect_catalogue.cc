@@ -33,6 +33,7 @@ double FactorOf(const std::string& unit) {
                                                  {"mV", mV},
                                                  {"V", 1.0},
                                                  {"s", 1.0},
+                                                 {"s2", 1.0},
                                                  {"Hz", 1.0},
                                                  {"per_m2", 1.0},
                                                  {"nm_per_K", nm},

@@ -59,7 +59,7 @@ void LargeSearch::TakeLag() {
   const EncoderRun& encoder = large_.first->encoder;
   const auto is_excluded = [this](const char* name) { return std::ranges::count(options_.excluded, name) > 0; };
   if (power_ < kLarge * kLarge || !large_.causes.empty() || is_excluded("latency") || is_excluded("scale")) return;
-  if (const std::optional<LagGuess> guess = GuessLag(encoder)) TakeBlock(LagBlock(*guess, encoder));
+  if (const std::optional<LagGuess> guess = GuessLag(encoder, large_.first->families)) TakeBlock(LagBlock(*guess, encoder));
 }
 
 /// What is late by a delay may be late by a lag as well, where the acceleration shows which.

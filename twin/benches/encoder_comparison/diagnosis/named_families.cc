@@ -3,6 +3,7 @@
 
 #include "twin/benches/encoder_comparison/diagnosis/family_parts.h"
 #include "twin/benches/encoder_comparison/format.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/candidates.h"
 #include "twin/diagnose/engine/wave_series.h"
@@ -237,12 +238,28 @@ void AddSettling(const Context& context, Candidates& named) {
   family.parameters = AsInCatalogue(named.catalogue(), "settling", "amplitude", {"time_constant"});
 }
 
+/// What a servo is behind by. Where a motion is a sine its acceleration is its place, which is a scale; where it does not rest
+/// between its ways, what friction does is what play does.
+void AddFollowingErrors(const SignalContext& c, Candidates& named) {
+  constexpr double kOwn = 0.3, kShare = 0.02;  // of its size beside place and speed; of the readings
+  Eigen::MatrixXd others(c.Readings(), 3);
+  others << Eigen::VectorXd::Ones(c.Readings()), c.reference_rad, c.velocity_rad_s;
+  const Eigen::VectorXd& a = c.acceleration_rad_s2;
+  const Eigen::VectorXd own = a - others * SolveShortest(others, a);
+  if (c.has_clock && own.norm() > kOwn * a.norm()) named.Add(Shown("acceleration_error", -1.0), {"coefficient"}, a);
+  const Eigen::VectorXd goes = Goes(c);
+  const auto fewest = static_cast<Eigen::Index>(kShare * static_cast<double>(c.Readings()));
+  const auto is_often = [&](double sense) { return (goes.array() == sense).count() > fewest; };
+  if (is_often(-1.0) && is_often(0.0) && is_often(1.0)) named.Add(Shown("friction", -1.0), {"lag"}, goes);
+}
+
 void AddMotion(const Context& context, Candidates& named) {
   const SignalContext& c = *context;
   const Eigen::VectorXd sense = Senses(c).front();
   if (c.Moves()) {
     named.Add(Shown("latency", -1.0), {"delay"}, c.velocity_rad_s);
     named.Add(Shown("clock_rate", -1.0), {"ratio"}, c.velocity_rad_s.cwiseProduct(c.since_start_s));
+    AddFollowingErrors(c, named);
   }
   if (sense.size() > 0 && sense.maxCoeff() > sense.minCoeff()) {
     AddBacklash(context, named);

@@ -1,6 +1,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "twin/benches/encoder_comparison/format.h"
 #include "twin/diagnose/engine/candidates.h"
@@ -77,8 +78,15 @@ std::vector<ParameterEstimate> LagNumbers(const LagGuess& guess) {
 std::vector<LargeCause> LagBlock(const LagGuess& guess, const EncoderRun& encoder) {
   constexpr double kFine = 0.02;  // of the gain
   const Catalogue words(benches::encoder::Format().effects);
-  return {Guessed("latency", LagNumbers(guess), {}, encoder.run.bench),
-          Guessed("scale", {words.Estimate("scale", "ratio", guess.gain - 1.0, kFine)}, {}, encoder.run.bench)};
+  const std::string& bench = encoder.run.bench;
+  std::vector<LargeCause> block = {Guessed("latency", LagNumbers(guess), {}, bench),
+                                   Guessed("scale", {words.Estimate("scale", "ratio", guess.gain - 1.0, kFine)}, {}, bench)};
+  const auto add = [&](const char* effect, const char* parameter, double size) {
+    if (size != 0.0) block.push_back(Guessed(effect, {words.Estimate(effect, parameter, size, kFine * std::abs(size))}, {}, bench));
+  };
+  add("acceleration_error", "coefficient", guess.per_acceleration_s2);
+  add("friction", "lag", guess.friction_rad);
+  return block;
 }
 
 }  // namespace twinbench::diagnose::encoder

@@ -14,6 +14,23 @@ double Sign(double value) {
   return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0;
 }
 
+/// Behind readings that were left out, on the way to the next one.
+Eigen::VectorXd AccelerationOf(const SignalContext& c) {
+  constexpr double kLeftOut = 3.5;  // steps
+  Eigen::VectorXd acceleration_rad_s2 = Eigen::VectorXd::Zero(c.Readings());
+  for (Eigen::Index i = 1; i < c.Readings(); ++i) {
+    const double step_s = c.time_s[i] - c.time_s[i - 1];
+    const double next_s = i + 1 < c.Readings() ? c.time_s[i + 1] - c.time_s[i] : 0.0;
+    const bool is_behind_gap = next_s > 0.0 && step_s > kLeftOut * next_s && c.setup[static_cast<std::size_t>(i)] == c.setup[static_cast<std::size_t>(i + 1)];
+    if (is_behind_gap) {
+      acceleration_rad_s2[i] = (c.velocity_rad_s[i + 1] - c.velocity_rad_s[i]) / next_s;
+      continue;
+    }
+    if (step_s > 0.0) acceleration_rad_s2[i] = (c.velocity_rad_s[i] - c.velocity_rad_s[i - 1]) / step_s;
+  }
+  return acceleration_rad_s2;
+}
+
 /// Of a pair of signals from that of amplitude 1 at the phase of this sine and cosine.
 double PhaseError_rad(double y, double x, double sine, double cosine) {
   return std::atan2(y * cosine - x * sine, x * cosine + y * sine);
@@ -32,8 +49,14 @@ SignalContext ContextOf(const Schedule& s, const Eigen::VectorXd& device_rad, co
   context.reference_rad = s.reference_rad;
   context.device_rad = device_rad;
   context.velocity_rad_s = s.velocity_rad_s.array().isFinite().select(s.velocity_rad_s, 0.0);
+  context.acceleration_rad_s2 = AccelerationOf(context);
   context.device = device;
   return context;
+}
+
+Eigen::VectorXd Goes(const SignalContext& context) {
+  const Eigen::Map<const Eigen::VectorXi> sense(context.direction.data(), context.Readings());
+  return (context.velocity_rad_s.array() != 0.0).select(sense.cast<double>(), 0.0);
 }
 
 Eigen::VectorXd SignalPhase_rad(const SignalContext& context) {

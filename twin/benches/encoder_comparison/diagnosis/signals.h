@@ -20,6 +20,7 @@ struct SignalContext {
   Eigen::VectorXd reference_rad;
   Eigen::VectorXd device_rad;      // angle of the device's scale, without its errors
   Eigen::VectorXd velocity_rad_s;  // zero where it was not recorded
+  Eigen::VectorXd acceleration_rad_s2;  // on the way from the reading before
   Eigen::VectorXd above_K;         // temperature above the reference; empty if none was logged
   DeviceSettings device;
   bool has_clock = true;  // false: times count the rows
@@ -31,6 +32,9 @@ struct SignalContext {
 
 /// @param device_rad  One a reading of the schedule.
 SignalContext ContextOf(const Schedule& schedule, const Eigen::VectorXd& device_rad, const DeviceSettings& device);
+
+/// Sense of the motion as recorded, 0 at rest.
+Eigen::VectorXd Goes(const SignalContext& context);
 
 /// Phase of the device's sine and cosine, in rad of their period.
 Eigen::VectorXd SignalPhase_rad(const SignalContext& context);

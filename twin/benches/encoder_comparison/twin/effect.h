@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "mechanics/encoder_signal.h"
+#include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 #include "twin/core/time.h"
 
@@ -17,7 +18,10 @@ struct AngleMoment {
   double velocity_rad_s = 0.0;  // of the shaft
   double approach_rad = 0.0;    // last leg of the usual way to a stop, signed; 0 in motion
   double above_K = 0.0;         // of the room, above that of the reference, as far as it is known
-  double read_rad = 0.0;        // where it was that is read: earlier if the reading is late; told to ShaftError_rad alone
+  int goes = 0;                 // sense of the motion, 0 at rest
+  double gains_rad_s2 = kNaN;   // acceleration, where the reading before does not tell it; NaN: it does
+  // Where it was that is read, and how it moved there: earlier if the reading is late; told to ShaftError_rad alone.
+  double read_rad = 0.0, acceleration_rad_s2 = 0.0;
 };
 
 using mechanics::SignalState;

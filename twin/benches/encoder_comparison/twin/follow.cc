@@ -43,6 +43,16 @@ double RunUp_rad(const std::vector<Reading>& record, const Scenario& scenario) {
   return 0.5 * (is_one_place ? units::turn : step_rad);
 }
 
+/// Of a reading behind others that were left out the next one tells how the shaft gains speed.
+double BehindGap_rad_s2(const std::vector<Reading>& record, std::size_t i) {
+  constexpr double kLeftOut = 3.5;  // steps
+  if (i == 0 || i + 1 >= record.size()) return kNaN;
+  const Reading &before = record[i - 1], &at = record[i], &next = record[i + 1];
+  const double step_s = ToSeconds(next.time - at.time);
+  const bool is_behind_gap = next.setup == at.setup && step_s > 0.0 && ToSeconds(at.time - before.time) > kLeftOut * step_s;
+  return is_behind_gap ? (next.velocity_rad_s - at.velocity_rad_s) / step_s : kNaN;
+}
+
 class EncoderFollow : public PointwiseFollow<AngleExtra> {
  public:
   EncoderFollow(const Scenario& stated, const std::vector<Reading>& record)
@@ -58,7 +68,7 @@ class EncoderFollow : public PointwiseFollow<AngleExtra> {
     Eigen::VectorXd shown_rad(std::ssize(extra));
     for (std::size_t i = 0; i < extra.size(); ++i)
       shown_rad[static_cast<Eigen::Index>(i)] =
-          twin.DeviceAt_rad(record()[i], extra[i].shaft_rad) + extra[i].device_rad;
+          twin.DeviceAt_rad(record()[i], extra[i].shaft_rad, BehindGap_rad_s2(record(), i)) + extra[i].device_rad;
     return shown_rad;
   }
 

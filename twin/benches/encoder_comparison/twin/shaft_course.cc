@@ -6,7 +6,7 @@
 namespace twinbench::sim {
 
 void ShaftCourse::Add(const AngleMoment& moment) {
-  points_.push_back({ToSeconds(moment.now), moment.shaft_rad, moment.velocity_rad_s});
+  points_.push_back({ToSeconds(moment.now), moment.shaft_rad, moment.velocity_rad_s, moment.goes, moment.gains_rad_s2});
 }
 
 double ShaftCourse::Between_rad(const Point& a, const Point& b, double time_s) {
@@ -28,6 +28,26 @@ double ShaftCourse::Speed_rad_s(double time_s) const {
   const Point& before = *std::prev(after);
   return std::lerp(before.velocity_rad_s, after->velocity_rad_s,
                    (time_s - before.time_s) / (after->time_s - before.time_s));
+}
+
+/// On the way from reading k - 1 to k.
+double ShaftCourse::Acceleration_rad_s2(std::size_t k) const {
+  const Point &a = points_[k - 1], &b = points_[k];
+  if (std::isfinite(b.gains_rad_s2)) return b.gains_rad_s2;
+  return b.time_s > a.time_s ? (b.velocity_rad_s - a.velocity_rad_s) / (b.time_s - a.time_s) : 0.0;
+}
+
+void ShaftCourse::ReadEarlier(double age_s, AngleMoment& read) const {
+  if (points_.size() < 2) return;
+  const auto middle_s = [this](std::size_t k) { return 0.5 * (points_[k - 1].time_s + points_[k].time_s); };
+  const double time_s = points_.back().time_s - std::max(0.0, age_s);
+  std::size_t k = points_.size() - 1;
+  while (k > 1 && middle_s(k) > time_s) --k;
+  read.acceleration_rad_s2 = Acceleration_rad_s2(k);
+  if (k + 1 < points_.size() && middle_s(k) <= time_s)
+    read.acceleration_rad_s2 = std::lerp(read.acceleration_rad_s2, Acceleration_rad_s2(k + 1),
+                                         (time_s - middle_s(k)) / (middle_s(k + 1) - middle_s(k)));
+  read.goes = points_[points_[k].time_s <= time_s ? k : k - 1].goes;
 }
 
 double ShaftCourse::Beside_rad(const AngleMoment& moment, double age_s) const {

@@ -23,7 +23,7 @@ AngleMoment MomentOf(const Reading& reading, double run_up_rad, double above_K) 
   return {reading.time,          reading.setup,
           reading.reading,       reading.reference_rad,
           known(reading.velocity_rad_s), reading.direction * run_up_rad,
-          known(above_K)};
+          known(above_K),        known(reading.velocity_rad_s) != 0.0 ? reading.direction : 0};
 }
 
 bool Changes(const EnvironmentSettings& room) {
@@ -115,6 +115,7 @@ double EncoderTwin::ShaftAngle_rad(const AngleMoment& moment) const {
   AngleMoment read = moment;
   read.read_rad = moment.shaft_rad + behind_rad + (age_s != 0.0 ? course_.Beside_rad(moment, age_s) : 0.0);
   double device_rad = read.read_rad + MountingOf_rad(moment.setup);
+  course_.ReadEarlier(age_s, read);
   for (const auto& effect : effects_) device_rad += effect->ShaftError_rad(read);
   return device_rad;
 }
@@ -138,7 +139,7 @@ double EncoderTwin::Shown_rad(const AngleMoment& moment) const {
   return device_rad + DeviceError_rad(moment, device_rad) + empirical_.At(moment.reading, ToSeconds(moment.now));
 }
 
-double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad) {
+double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad, double gains_rad_s2) {
   AngleMoment moment =
       MomentOf(reading, run_up_rad_, reading.temperature_degC - scenario_.environment.reference_degC);
   // A reference that errs by arcseconds an arcminute: each step leaves a hundredth of what is wrong, or less.
@@ -149,6 +150,7 @@ double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad) {
     moment.shaft_rad = stands_rad;
   }
   moment.shaft_rad += shaft_rad;
+  moment.gains_rad_s2 = gains_rad_s2;
   Advance(moment);
   return Shown_rad(moment);
 }

@@ -30,8 +30,9 @@ class EncoderTwin : public AngleComparator {
 
   /// What the device would show, noise apart, at the instant when the reference showed `reading.reference_rad`.
   /// Readings are asked for in their order.
-  /// @param shaft_rad  By how much the shaft stands beside where the reference says.
-  double DeviceAt_rad(const Reading& reading, double shaft_rad = 0.0);
+  /// @param shaft_rad     By how much the shaft stands beside where the reference says.
+  /// @param gains_rad_s2  Its acceleration, where the reading before does not tell it.
+  double DeviceAt_rad(const Reading& reading, double shaft_rad = 0.0, double gains_rad_s2 = kNaN);
 
   /// {"device": {"position_deg", "ez_arcsec"}, "reference": same, "effects": [...], "seed": n}: opened only by
   /// tests and scores. Both curves show too much where positive, each by its own angle at every degree, without

@@ -15,6 +15,8 @@ AngleEffectPointer MakeHarmonic(const EffectSettings&, double order);  // locked
 AngleEffectPointer MakeSignalFault(const EffectSettings&);
 AngleEffectPointer MakeLatency(const EffectSettings&);
 AngleEffectPointer MakeClockRate(const EffectSettings&);  // a latency that grows
+AngleEffectPointer MakeAccelerationError(const EffectSettings&);
+AngleEffectPointer MakeFriction(const EffectSettings&);
 AngleEffectPointer MakeGap(const EffectSettings&);        // backlash of the device's shaft
 AngleEffectPointer MakeHysteresis(const EffectSettings&);
 AngleEffectPointer MakeSettling(const EffectSettings&);

@@ -32,6 +32,8 @@ AngleEffectPointer MakeAngleEffect(const EffectSettings& effect, const Scenario&
       {"signal_clipping", [&] { return MakeSignalFault(effect); }},
       {"latency", [&] { return MakeLatency(effect); }},
       {"clock_rate", [&] { return MakeClockRate(effect); }},
+      {"acceleration_error", [&] { return MakeAccelerationError(effect); }},
+      {"friction", [&] { return MakeFriction(effect); }},
       {"backlash", [&] { return MakeGap(effect); }},
       {"hysteresis", [&] { return MakeHysteresis(effect); }},
       {"signal", [&] { return MakeAngleSignal(effect, scenario); }},
