@@ -105,6 +105,15 @@ TEST(ShownBy, LeavesTheShareOfWhatWasNotAccepted) {
   EXPECT_NEAR(shown.share_unnamed, 0.2, 0.05);
 }
 
+TEST(ShownBy, GivesNoCauseMoreThanThereIs) {
+  TwoWaves waves;
+  const Eigen::VectorXd all = waves.large + waves.small;
+  waves.found.accepted = {TermOf("large", 1.3 * all), TermOf("small", -0.3 * all)};  // one takes back what the other has too much
+  const Shown shown = ShownBy(waves.found);
+  EXPECT_LE(shown.share[0], 1.0);
+  EXPECT_LT(shown.share[1], 0.0);
+}
+
 /// A device that reads `half` more going forward and as much less going backward, at four stops of two turns.
 DiagnosisRun StopsWithPlay(double half_deg) {
   DiagnosisRun found;

@@ -27,13 +27,14 @@ Powers PowersOf(const DiagnosisRun& found, const NoiseModel& noise, const Projec
                 const Eigen::MatrixXd& y, const Eigen::VectorXd& before) {
   const Eigen::MatrixXd left = noise.Whiten(found.run, Eigen::MatrixXd(before));
   Powers powers;
-  double sum = 0.0;
+  double sum = 0.0, most = 0.0;
   for (const Accepted& term : found.accepted) {
     const Eigen::MatrixXd signature = term.columns * term.amplitudes;
     powers.explained.push_back(noise.Whiten(found.run, signature).col(0).dot(left.col(0)));
     sum += powers.explained.back();
+    most = std::max(most, powers.explained.back());  // where another takes some of it back
   }
-  powers.removable = std::max(y.col(0).dot(left.col(0)) - projector.DegreesOfFreedom(), sum);
+  powers.removable = std::max({y.col(0).dot(left.col(0)) - projector.DegreesOfFreedom(), sum, most});
   return powers;
 }
 
