@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include <fstream>
 
 #include "twin/core/linear_algebra.h"

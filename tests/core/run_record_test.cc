@@ -1,7 +1,5 @@
 #include "twin/core/run_record.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
 #include <sqlite3.h>
 
 #include "tests/core/any_reading.h"

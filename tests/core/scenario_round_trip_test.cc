@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include <random>
 
 #include "tests/core/input_error.h"

@@ -1,7 +1,6 @@
 #include "twin/core/stream.h"
 
 #include <Random123/philox.h>
-#include <gtest/gtest.h>
 
 #include <cstring>
 

@@ -1,4 +1,3 @@
-
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
 #include "tests/support/noise.h"

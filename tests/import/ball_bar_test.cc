@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
 #include "tests/import/importing.h"
 
 // Recordings of ball bars as people have them: other names, units, marks and orders of the same circle.

@@ -1,10 +1,5 @@
 #include "twin/import/clampings.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <array>
-
 #include "tests/import/importing.h"
 #include "twin/core/stream.h"
 

@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
 #include "tests/import/importing.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/turntable_autocollimator/settings.h"

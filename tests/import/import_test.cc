@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/import/importing.h"
 #include "tests/import/raw_files.h"
 #include "tests/support/kept_text.h"

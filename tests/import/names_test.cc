@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <fmt/format.h>
-
 #include <random>
 
 #include "tests/import/importing.h"

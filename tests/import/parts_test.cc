@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"
 #include "twin/core/units.h"

@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
 #include "tests/import/importing.h"
 
 // Tables of poses as R-tests and probes write them: other names, units and orders of the same readings.

@@ -1,7 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-
 #include "tests/import/importing.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/noise.h"

@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
-#include "tests/import/importing.h"
+#include "tests/core/input_error.h"
+#include "twin/benches/evaluated.h"
+#include "twin/import/import.h"
 
 // The shipped samples, to what the programs beside them hid.
 namespace twinbench::imports {

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include "tests/import/raw_files.h"
 #include "tests/tools/program.h"
 

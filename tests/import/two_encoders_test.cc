@@ -1,7 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "tests/import/importing.h"

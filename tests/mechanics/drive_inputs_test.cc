@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "mechanics/base_response.h"
 #include "mechanics/drive_loads.h"
 #include "mechanics/servo.h"

@@ -1,7 +1,5 @@
 #include "mechanics/feed_drive.h"
 
-#include <gtest/gtest.h>
-
 #include "mechanics/feed_course.h"
 #include "tests/mechanics/plant_runs.h"
 

@@ -1,7 +1,5 @@
 #include "mechanics/gear_train.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/mechanics/plant_runs.h"
 
 namespace twinbench::mechanics {

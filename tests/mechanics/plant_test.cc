@@ -1,7 +1,5 @@
 #include "mechanics/plant.h"
 
-#include <gtest/gtest.h>
-
 #include "mechanics/sag.h"
 #include "tests/mechanics/plant_runs.h"
 

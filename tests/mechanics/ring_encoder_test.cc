@@ -1,7 +1,5 @@
 #include "mechanics/ring_encoder.h"
 
-#include <gtest/gtest.h>
-
 #include "mechanics/encoder_signal.h"
 #include "tests/mechanics/plant_runs.h"
 

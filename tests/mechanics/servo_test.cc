@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "mechanics/adaptive_stack.h"
 #include "tests/mechanics/plant_runs.h"
 

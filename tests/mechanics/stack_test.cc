@@ -1,7 +1,5 @@
 #include "mechanics/stack.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
 
 #include "mechanics/sag.h"

@@ -1,7 +1,5 @@
 #include "twin/sim/ad_sampler.h"
 
-#include <gtest/gtest.h>
-
 #include "twin/sim/ad_sampler_direct.h"
 
 namespace twinbench::sim {

@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/rotary_4dof/twin/effect.h"

@@ -1,5 +1,3 @@
-#include <nlohmann/json.hpp>
-
 #include "tests/core/input_error.h"
 #include "tests/sim/encoder_run.h"
 #include "tests/support/kept_text.h"

@@ -1,7 +1,5 @@
 #include "twin/sim/event_queue.h"
 
-#include <gtest/gtest.h>
-
 #include "twin/core/stream.h"
 #include "twin/sim/schedule.h"
 

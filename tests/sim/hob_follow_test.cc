@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/support/angle_benches.h"
 #include "twin/benches/hob_transmission/twin/follow.h"
 #include "twin/benches/hob_transmission/twin/world.h"

@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/support/night.h"
 #include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/twin/psd_noise.h"

@@ -1,7 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <fmt/format.h>
-
 #include "optics/irradiance.h"
 #include "tests/core/input_error.h"
 #include "tests/support/angle_benches.h"

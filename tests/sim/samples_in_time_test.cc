@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/core/input_error.h"
 #include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"

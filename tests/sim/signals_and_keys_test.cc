@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/support/angle_benches.h"
 #include "tests/support/small_scenario.h"
 #include "twin/sim/changed_keys.h"

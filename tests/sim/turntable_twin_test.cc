@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "tests/support/angle_benches.h"
 #include "twin/benches/turntable_autocollimator/twin/effects/effects.h"
 #include "twin/benches/turntable_autocollimator/twin/follow.h"
