@@ -1,6 +1,7 @@
 #include "tests/support/twin_run.h"
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
+#include "twin/diagnose/diagnose.h"
 
 // The answer that scenarios/encoder_mountings.toml promises, and the same device in continuous motion.
 namespace twinbench {
@@ -226,6 +227,17 @@ TEST(EncoderCoast, IsLessCertainByThePublishedEquations) {
 TEST(EncoderCoast, RefusesASpindleThatWouldStandStill) {
   EXPECT_THROW(Coasted({"spindle.viscous_per_s=0.5"}), InputError);
   EXPECT_THROW(Coasted({"encoder_procedure.heads_deg=[0, 90]"}), InputError);
+}
+
+/// Readings in a row are of another head each.
+TEST(EncoderHeads, AreDiagnosedWhereAllOfThemStayBehindOnReversal) {
+  const Scenario made = LoadScenario(test::ScenarioPath("encoder_heads.toml"),
+                                     {"encoder_procedure.heads_deg=[0, 72, 144, 216, 288]", "encoder_procedure.stops_per_turn=72",
+                                      "effect=[{name=\"backlash\", width_deg=0.003}]"});
+  Scenario believed = made;
+  believed.effects.clear();
+  const diagnose::DiagnosisRun found = diagnose::Diagnose(test::RunEncoderTwin(made).readings, believed, {});
+  EXPECT_NE(found.diagnosis.verdict, diagnose::Verdict::kNone);
 }
 
 }  // namespace

@@ -343,6 +343,7 @@ bool IsNothingButWalk(const LinearRun& run) {
     return false;
   const std::vector<double> steps = MeansOf(walk, kTogether).Steps();
   const Eigen::Index count = std::ssize(steps);
+  if (count < kFewestMeans / 2) return false;  // of several heads no readings in a row are of one
   const Eigen::ArrayXd phase_rad = units::turn / static_cast<double>(count) *
                                    Eigen::ArrayXd::LinSpaced(count, 0.0, static_cast<double>(count - 1));
   return !HaveStepOrDrift(steps) && !HasLine(steps, phase_rad, count / 2) && !HasLine(run);
