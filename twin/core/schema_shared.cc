@@ -4,20 +4,21 @@
 namespace twinbench::schema {
 namespace {
 
-/// Lengths up to those of a table: beyond them it is a wheel.
+/// Lengths up to those of a table: beyond them it is a wheel; tilts up to those that the benches' instruments can read.
 void AddComponents(Keys& keys, const std::string& table, std::array<double, kComponents>& values,
-                   const std::string& meaning, double most_arcsec = 3600.0) {
+                   const std::string& meaning, double most_arcsec, double most_tilt_arcsec) {
   Table t(keys, table);
   for (std::size_t i = 0; i < kComponents; ++i) {
-    const bool angle = IsAngle(static_cast<Component>(i));
-    t.Add(kComponentNames[i], angle ? kArcsec : kUm, UpTo(angle ? most_arcsec : 500.0), &values[i], meaning);
+    const auto component = static_cast<Component>(i);
+    const double most = component == Component::kEz ? most_arcsec : most_tilt_arcsec;
+    t.Add(kComponentNames[i], IsAngle(component) ? kArcsec : kUm, UpTo(IsAngle(component) ? most : 500.0), &values[i], meaning);
   }
 }
 
 void AddMotion(Table& t, TableSettings& s) {
   t.Add("half_frequency_order", kPure, {0.3, 0.7}, &s.half_frequency_order, "of the bearing, periods per turn");
-  t.Add("half_frequency_tilt", kArcsec, UpTo(3600), &s.half_frequency_tilt_rad, "amplitude");
-  t.Add("half_frequency_radial", kUm, UpTo(1000), &s.half_frequency_radial_m, "amplitude");
+  t.Add("half_frequency_tilt", kArcsec, UpTo(300), &s.half_frequency_tilt_rad, "amplitude");
+  t.Add("half_frequency_radial", kUm, UpTo(100), &s.half_frequency_radial_m, "amplitude");
   t.Add("backlash", kArcsec, UpTo(36000), &s.backlash_rad, "full width, of the servo's encoder against the rotor");
   t.Add("speed", {"deg_s", units::deg}, Between(1e-4, 3600), &s.speed_rad_s, "of long moves");
   t.Add("move_time", kSecond, Positive(3600), &s.move_time_s, "of one step");
@@ -35,12 +36,12 @@ void AddTable(Keys& keys, const std::string& table, const std::string& frame, Ta
   if (is_driven)
     t.Text("compensation_file", &s.compensation_file, {},
            "CSV of position_deg, correction_arcsec: added to the angles that the table is commanded to");
-  AddComponents(keys, table + ".random", s.random_rms, "rms of random smooth errors");
+  AddComponents(keys, table + ".random", s.random_rms, "rms of random smooth errors", 3600.0, 300.0);
   Table random(keys, table + ".random");
   random.Add("orders", kPure, {1, 1000}, &s.random_orders, "they have harmonics 1..orders, falling as 1/order");
-  AddComponents(keys, table + ".seating", s.seating_sd, "scatter of the pose at every mounting");
+  AddComponents(keys, table + ".seating", s.seating_sd, "scatter of the pose at every mounting", 300.0, 300.0);
   AddComponents(keys, table + ".repeatability", s.repeatability_sd,
-                "scatter of the pose at every measuring position", 600.0);
+                "scatter of the pose at every measuring position", 600.0, 600.0);
   Table(keys, table)
       .Add("errors", kPure, {}, &s.errors, "the content of errors_file: position_deg, ex_arcsec, ...");
   if (is_driven)

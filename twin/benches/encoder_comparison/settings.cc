@@ -100,14 +100,16 @@ void CheckCoast(const ScenarioText& text, const EncoderSettings& own) {
 
 /// @throws InputError if so slow a sweep would have more readings than fit into memory.
 void CheckSweep(const ScenarioText& text, const EncoderProcedureSettings& p) {
-  constexpr double kMostReadings = 1e7;
+  constexpr double kMostReadings = 2e6;  // of some kilobytes each
   if (p.kind != "sweep") return;
   double readings = 0.0;
-  for (const double speed_rad_s : p.speeds_rad_s) readings += p.turns * units::turn / speed_rad_s / p.interval_s;
+  for (const double speed_rad_s : p.speeds_rad_s)
+    readings += (p.turns * units::turn / speed_rad_s + 2.0 * p.ramp_s + p.rest_s) / p.interval_s;
   readings *= static_cast<double>(p.passes.size() * p.mounting_rad.size());
   if (readings <= kMostReadings) return;
   throw InputError(text.Where("encoder_procedure.speeds_deg_s", text.name() + ":1"),
-                   fmt::format("sweeps of {:.4g} turns at these speeds, read every {:.4g} s, are {:.3g} readings", p.turns, p.interval_s, readings),
+                   fmt::format("sweeps of {:.4g} turns at these speeds and rests of {:.4g} s, read every {:.4g} s, are {:.3g} readings", p.turns,
+                               p.rest_s, p.interval_s, readings),
                    fmt::format("at most {:.0f}", kMostReadings));
 }
 

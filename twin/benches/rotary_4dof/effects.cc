@@ -43,7 +43,7 @@ std::vector<EffectEntry> DetectorEffects() {
       {"background",
        "ambient light on a PSD that counts as signal and pulls the spot to the centre",
        psds,
-       {Parameter("current", "nA", 5000.0, 0.0, 1e6, "that it makes").Adds("@.background_nA")}},
+       {Parameter("current", "nA", 5000.0, 0.0, 1e5, "that it makes").Adds("@.background_nA")}},
       // 0.1-1 %; 1 mm of 120 mm is 0.8 %.
       {"psd_distance",
        "distance from the grating to one PSD, or to both",
@@ -141,7 +141,7 @@ std::vector<EffectEntry> BodyEffects() {
        "bearing motion once in about two turns",
        {},
        {Parameter("order", "1", 0.498, 0.3, 0.7, "periods per turn of the unwrapped angle"),
-        Signed("tilt", "arcsec", 1.5, 1000.0, "amplitude")}},
+        Signed("tilt", "arcsec", 1.5, 300.0, "amplitude")}},
   };
 }
 

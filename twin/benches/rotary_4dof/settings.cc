@@ -42,9 +42,9 @@ void AddRuling(Table& t, GratingSettings& s) {
   constexpr double kMostSag_nm = 1e4;  // thirty fringes: a bent plate, no grating
   t.Add("sphere", kNm, Within(kMostSag_nm), &s.sphere_m, "its front at half its width above its middle");
   t.Add("astigmatism", kNm, Within(kMostSag_nm), &s.astigmatism_m, "the same along x, as much lower along z");
-  t.Add("ruling_chirp", {"ppm_mm", 1e-6 / units::mm}, Within(1e3), &s.ruling_chirp_per_m,
+  t.Add("ruling_chirp", {"ppm_mm", 1e-6 / units::mm}, Within(100), &s.ruling_chirp_per_m,
         "growth of the grooves' distance");
-  t.Add("ruling_fan", {"urad_mm", units::urad / units::mm}, Within(1e3), &s.ruling_fan_rad_m,
+  t.Add("ruling_fan", {"urad_mm", units::urad / units::mm}, Within(100), &s.ruling_fan_rad_m,
         "turn of the grooves along x");
   t.File("flatness_file", s.flatness_file, "OpenEXR of the front's height [um]");
   t.File("ruling_file", s.ruling_file, "OpenEXR of how far the grooves lie towards +x [um]");
@@ -63,7 +63,7 @@ void AddGrating(Keys& keys, GratingSettings& s) {
   t.Add("speckle_correlation", kArcsec, Positive(36000), &s.speckle_correlation_rad,
         "turn of the grating after which 1/e of it is the same");
   AddRuling(t, s);
-  t.Add("point", kMm, Within(5000), List(s.point_m), "the spot, from the reference table's origin: x, y, z");
+  t.Add("point", kMm, Within(300), List(s.point_m), "the spot, from the reference table's origin: x, y, z");
 }
 
 void AddOptics(Keys& keys, LightSettings& s) {
@@ -94,14 +94,14 @@ void AddPsd(Keys& keys, const std::string& table, PsdSettings& s) {
   t.Add("window_reflectance", kPure, UpTo(0.99), &s.window_reflectance, "of one surface");
   t.Add("window_wedge", kMrad, Within(99), &s.window_wedge_rad, "between the faces");
   t.Flag("window_coherent", s.window_coherent, "interference between the window's faces");
-  t.Add("silicon_reflectance", kPure, UpTo(0.99), &s.silicon_reflectance, "above 0: ghosts by way of the grating");
+  t.Add("silicon_reflectance", kPure, UpTo(0.5), &s.silicon_reflectance, "above 0: ghosts by way of the grating");
   t.Add("distance_expansion", {"ppm_K", 1e-6}, Within(1000), &s.distance_expansion_per_K,
         "of what holds it at its distance");
   t.Add("post_growth", {"um_K", units::um}, Within(1000), &s.post_growth_m_K,
         "of its height, against environment.reference_degC");
   t.Add("responsivity", {"A_W"}, Positive(2), &s.responsivity_A_W, "photocurrent over light [A/W]");
   t.Add("dark_current", {"nA", 1e-9}, UpTo(1e6), &s.dark_current_A, "of the detector");
-  t.Add("background", {"nA", 1e-9}, UpTo(1e6), &s.background_A, "that counts as signal: ambient light");
+  t.Add("background", {"nA", 1e-9}, UpTo(1e5), &s.background_A, "that counts as signal: ambient light");
   t.Add("electrode_resistance", {"kohm", 1e3}, Positive(1e6), &s.electrode_resistance_ohm,
         "between the electrodes of an axis");
   t.Add("bandwidth", kKilohertz, Positive(1e6), &s.bandwidth_Hz, "of the read-out, for the light's own noise");

@@ -193,6 +193,19 @@ Calibration Summary(const Sweep& sweep, const SweepFit& fit) {
   return c;
 }
 
+/// Ghosts move by several times as much as the spot, and by other motions otherwise than by those of the sweeps, along y.
+void AddGhosts(const std::array<double, 2>& light, Calibration& c) {
+  constexpr double kTimesAsFar = 3.0;
+  for (int psd = 0; psd < 2; ++psd) {
+    const int y = 2 * psd + 1;
+    const double before = c.cov(y, y);
+    c.cov(y, y) += std::pow(kTimesAsFar * light[static_cast<std::size_t>(psd)], 2);
+    const double left = before / c.cov(y, y);
+    c.of_prior[y] = 1.0 - left * (1.0 - c.of_prior[y]);
+    c.of_autocollimator[y] *= left;
+  }
+}
+
 }  // namespace
 
 Matrix6 Calibration::PriorCovariance() {
@@ -211,6 +224,7 @@ Calibration Calibrate(const std::vector<Reading>& readings, const BenchGeometry&
         "no calibration readings: gains are 1 ± 2 %, rolls 0 ± 20 mrad; both y channels reversed would fit as "
         "well, and ex, ey and dy hold as the wires do");
   }
+  AddGhosts(geometry.ghost_light, calibration);
   calibration.published_l1_m = PublishedDistance(readings, geometry);
   return calibration;
 }

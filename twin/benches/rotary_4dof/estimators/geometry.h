@@ -22,6 +22,7 @@ struct BenchGeometry {
   double scan_s = 0.0;                // from sample to sample of a channel
   double autocollimator_noise_rad = 0.0;
   double autocollimator_gain = 1.0;  // shown over true, both axes, as its certificate says
+  std::array<double, 2> ghost_light = {0.0, 0.0};  // on PSD A and B by way of the grating, as a share of its own
 
   /// sin(theta) of the two nominal orders, at normal incidence.
   double SinTheta() const { return wavelength_m * lines_per_m; }

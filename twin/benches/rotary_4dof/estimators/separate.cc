@@ -101,12 +101,11 @@ void AddAsynchronous(const std::array<double, kComponents>& rms, TableEstimate& 
   }
 }
 
+/// What repeats in about two turns looks like an error of either table at the positions of a few mountings.
 std::array<double, kComponents> AsynchronousOf(const RotarySettings& bench, std::size_t table) {
-  const TableSettings& half = table == 0 ? bench.target : bench.reference;
-  const double tilt_rad =
-      std::hypot(bench.mechanics.asynchronous_tilt_rad[table], half.half_frequency_tilt_rad / std::sqrt(2.0));
-  const double radial_m =
-      std::hypot(bench.mechanics.asynchronous_radial_m[table], half.half_frequency_radial_m / std::sqrt(2.0));
+  const auto of_both = [&](double TableSettings::*half) { return std::hypot(bench.target.*half, bench.reference.*half) / std::sqrt(2.0); };
+  const double tilt_rad = std::hypot(bench.mechanics.asynchronous_tilt_rad[table], of_both(&TableSettings::half_frequency_tilt_rad));
+  const double radial_m = std::hypot(bench.mechanics.asynchronous_radial_m[table], of_both(&TableSettings::half_frequency_radial_m));
   return {tilt_rad, tilt_rad, 0.0, radial_m, radial_m, 0.0};  // in the order of Component
 }
 

@@ -1,0 +1,85 @@
+#include <map>
+#include <numeric>
+
+#include "tests/support/angle_benches.h"
+
+// What a scenario may say at all: where its keys are at their bounds, results hold their uncertainties; beyond, it is refused.
+namespace twinbench {
+namespace {
+
+using Overrides = std::vector<std::string>;
+
+struct AtBounds {
+  std::string file;
+  Overrides small;                // runs of some seconds
+  std::vector<Overrides> bounds;  // one after the other
+};
+
+std::string FirstWord(const std::string& name) {
+  return name.substr(0, name.find_first_of(".["));
+}
+
+/// The largest mean (error/u)^2 of all quantities; those of few values count together under the first word of their names.
+double LargestChi2(const Scenario& scenario) {
+  constexpr std::size_t kFew = 8;
+  const test::BenchRun run = test::RunBench(scenario);
+  std::map<std::string, std::vector<double>> of_name, of_group;
+  for (const report::ScoredValue& v : BenchOf(scenario).score(scenario, run.readings, run.truth, Estimator::kRigorous).values) {
+    if (std::isfinite(v.value) && std::isfinite(v.truth) && v.u > 0.0)
+      of_name[v.name.substr(0, v.name.rfind('['))].push_back(std::pow((v.value - v.truth) / v.u, 2));
+  }
+  for (const auto& [name, squares] : of_name) {
+    std::vector<double>& group = of_group[squares.size() < kFew ? FirstWord(name) : name];
+    group.insert(group.end(), squares.begin(), squares.end());
+  }
+  double largest = 0.0;
+  for (const auto& [group, squares] : of_group)
+    largest = std::max(largest, std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(squares.size()));
+  return largest;
+}
+
+const std::vector<AtBounds>& AllAtBounds() {
+  static const std::vector<AtBounds> all = {
+      {"rotary_4dof.toml",
+       {"procedure.positions=12", "procedure.shifts=[0, 1, 5]", "procedure.passes=[1, -1]"},
+       {{"psd_a.silicon_reflectance=0.3"}, {"psd_a.silicon_reflectance=0.1", "psd_b.silicon_reflectance=0.1"},
+        {"grating.point_mm=[-300.0, -300.0, -300.0]"}, {"psd_b.background_nA=1e5"},
+        {"reference.half_frequency_radial_um=100", "reference.half_frequency_tilt_arcsec=30"}}},
+      {"turntable_autocollimator.toml",
+       {"turntable_procedure.positions=36", "turntable_procedure.verification_positions=36"},
+       {{"multitooth.seating.ex_arcsec=300", "multitooth.seating.ez_arcsec=300"}, {"turntable.random.ey_arcsec=300"}}},
+      {"circular_motion.toml",
+       {"circular_procedure.points=36", "circular_procedure.stops=6", "circular_procedure.feeds_mm_min=[1000]"},
+       {{"encoder.ellipticity_arcsec=-3600"}, {"encoder.eccentricity_arcsec=3600"}, {"encoder.tilt_y_mrad=100"}, {"bar.cubic_per_mm2=1000"}}},
+  };
+  return all;
+}
+
+TEST(Keys, LeaveResultsWithinTheirUncertaintiesAtTheirBounds) {
+  for (const AtBounds& bench : AllAtBounds()) {
+    for (const Overrides& bounds : bench.bounds) {
+      Overrides overrides = bench.small;
+      overrides.insert(overrides.end(), bounds.begin(), bounds.end());
+      EXPECT_LT(LargestChi2(LoadScenario(test::ScenarioPath(bench.file), overrides)), 4.0) << bench.file << ": " << bounds.front();
+    }
+  }
+}
+
+TEST(Keys, RefuseWhatNoBenchCanBe) {
+  const std::vector<std::pair<std::string, std::string>> refused = {
+      {"rotary_4dof.toml", "grating.point_mm=[0.0, 5000.0, 0.0]"},
+      {"rotary_4dof.toml", "reference.half_frequency_radial_um=1000"},
+      {"turntable_autocollimator.toml", "multitooth.seating.ex_arcsec=3600"},
+      {"turntable_autocollimator.toml", "turntable.random.ey_arcsec=3600"},
+      {"circular_motion.toml", "machine.span_mm=1e-8"},
+      {"hob_transmission.toml", "transmission.stiffness_Nm_mrad=0.1"},
+  };
+  for (const auto& [file, override_text] : refused)
+    EXPECT_THROW(LoadScenario(test::ScenarioPath(file), {override_text}), InputError) << override_text;
+  EXPECT_THROW(LoadScenario(test::ScenarioPath("encoder_comparison.toml"), {"encoder_procedure.kind=sweep", "encoder_procedure.rest_s=86400"}),
+               InputError)
+      << "readings that no memory holds";
+}
+
+}  // namespace
+}  // namespace twinbench
