@@ -51,6 +51,9 @@ const std::vector<AtBounds>& AllAtBounds() {
       {"circular_motion.toml",
        {"circular_procedure.points=36", "circular_procedure.stops=6", "circular_procedure.feeds_mm_min=[1000]"},
        {{"encoder.ellipticity_arcsec=-3600"}, {"encoder.eccentricity_arcsec=3600"}, {"encoder.tilt_y_mrad=100"}, {"bar.cubic_per_mm2=1000"}}},
+      {"freeform_five_axis.toml",
+       {"freeform_procedure.poses=25"},
+       {{"qpd.noise_mV=1e-3", "ccd.noise_px=5e-6"}, {"qpd.noise_mV=1e-8", "ccd.noise_px=1e-10"}}},
   };
   return all;
 }

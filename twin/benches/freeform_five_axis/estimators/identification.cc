@@ -11,9 +11,10 @@ namespace {
 
 constexpr double kSingular = 3e-4, kNoColumn = 1e-6;
 
-/// One per row: 1 / noise. Noise that is stated as none counts as a tenth of a percent of the usual.
+/// One per row: 1 / noise. Two thousandths of the usual noise are the least: nearer the model of the probe is not to the light.
 Eigen::VectorXd WeightsOf(const FreeformSettings& bench, std::size_t poses) {
-  const auto weight = [](double noise, double usual) { return 1.0 / (noise > 0.0 ? noise : 1e-3 * usual); };
+  constexpr double kLeast = 2e-3;
+  const auto weight = [](double noise, double usual) { return 1.0 / std::max(noise, kLeast * usual); };
   const Eigen::Vector3d one(weight(bench.qpd.noise_V, QuadrantSettings{}.noise_V),
                             weight(bench.qpd.noise_V, QuadrantSettings{}.noise_V),
                             weight(bench.ccd.noise_px, CameraSettings{}.noise_px));
