@@ -177,19 +177,26 @@ bool IsCalledTemperature(const std::string& name) {
 }
 
 bool IsOtherQuantity(const Column& column) {
-  for (const std::string_view end : {"_A", "_mA", "_V", "_mV", "_W", "_Nm", "_N", "_Hz", "_rpm", "_pct", "_hPa", "_K"}) {
+  for (const std::string_view end : {"_A", "_mA", "_V", "_mV", "_W", "_Nm", "_N", "_Hz", "_pct", "_hPa", "_K"}) {
     if (column.name.ends_with(end)) return true;
   }
   const auto unit = UnitNamed(column.unit);
   if (unit) return unit->dimension != Dimension::kAngle && unit->dimension != Dimension::kLength;
   if (column.unit.find("/s") != std::string::npos || column.unit.find("/min") != std::string::npos) return true;
-  for (const std::string_view other : {"rpm", "A", "mA", "Hz", "Nm", "%", "N", "W"}) {
+  for (const std::string_view other : {"A", "mA", "Hz", "Nm", "%", "N", "W"}) {
     if (column.unit == other) return true;
   }
-  if (IsCalledTemperature(column.name)) return true;
-  return HasAny(column.name, std::array{"velocity", "vel", "speed", "torque", "tor", "trq", "tau", "voltage", "current", "kp", "ki", "kd",
-                                        "geschwindigkeit", "acceleration", "acc", "pwm", "humidity", "pressure", "dq", "qd"}) &&
+  if (IsCalledTemperature(column.name) || IsRate(column)) return true;
+  return HasAny(column.name, std::array{"torque", "tor", "trq", "tau", "voltage", "volt", "volts", "current", "amp", "amps", "kp", "ki", "kd",
+                                        "acceleration", "acc", "pwm", "humidity", "pressure"}) &&
          !IsCalledPlace(column.name);
+}
+
+bool IsRate(const Column& column) {
+  if (const auto unit = UnitNamed(column.unit)) return unit->dimension == Dimension::kSpeed || unit->dimension == Dimension::kTurning;
+  const bool is_of_shaft = HasAny(column.name, std::array{"high", "low"});  // "high speed" is the fast one of a gear
+  return !is_of_shaft && !IsCalledPlace(column.name) &&
+         HasAny(column.name, std::array{"velocity", "vel", "speed", "rate", "rates", "gyro", "omega", "rpm", "dq", "qd", "geschwindigkeit", "drehzahl"});
 }
 
 bool IsCalledJoint(const std::string& name) {

@@ -51,6 +51,9 @@ bool IsCalledTemperature(const std::string& name);
 /// A speed, a current, a temperature by its name or unit: neither where the axis should stand nor where it does.
 bool IsOtherQuantity(const Column& column);
 
+/// A speed, by its unit or where it has none by its name: nothing that it is read beside is an angle of.
+bool IsRate(const Column& column);
+
 /// "q", "actual_q_2": a joint's coordinate, which robots count in rad.
 bool IsCalledJoint(const std::string& name);
 

@@ -14,6 +14,7 @@
 #include "twin/import/counts.h"
 #include "twin/import/join.h"
 #include "twin/import/sought.h"
+#include "twin/import/unit_names.h"
 
 namespace twinbench::imports {
 namespace {
@@ -162,6 +163,33 @@ void TakeByName(const std::vector<Choice>& columns, const std::vector<std::strin
   }
 }
 
+/// "--column 'reference_rad=[Input Rate] * 0.10472'": a rate in the unit that its angle would have, a second long.
+std::string AsFormula(const std::string& target, const Choice& rate) {
+  const auto unit = UnitNamed(rate.column->unit);
+  const char* key = unit && unit->dimension == Dimension::kSpeed ? "m" : "rad";
+  return fmt::format(" --column '{}_{}=[{}]{}'", BaseOf(target), key, rate.name, unit ? fmt::format(" * {:.6g}", unit->to_SI) : " * FACTOR");
+}
+
+/// Where hardly anything but rates is there: they are no angles, and no train turns by them.
+void RequireMoreThanRates(const std::vector<Choice>& columns, const std::vector<Recording>& recordings, const std::vector<std::string>& compared, const Map& map) {
+  const auto missing = std::ranges::count_if(compared, [&map](const auto& c) { return !IsGiven(map, c); });
+  std::vector<const Choice*> rates;
+  std::ptrdiff_t places = 0;
+  for (const Choice& c : columns) {
+    if (IsRate(*c.column)) rates.push_back(&c);
+    places += !IsOtherQuantity(*c.column) && !Taken(map).contains(c.name) ? 1 : 0;
+  }
+  if (rates.empty() || places >= missing) return;
+  std::string names, formulas;
+  for (const Choice* rate : rates) {
+    const std::string& unit = rate->column->unit;
+    names += fmt::format("{}\"{}\"{}", names.empty() ? "" : ", ", rate->name, unit.empty() ? "" : " [" + unit + "]");
+  }
+  for (std::size_t k = 0; k < std::min(rates.size(), compared.size()); ++k) formulas += AsFormula(compared[k], *rates[k]);
+  throw InputError(recordings[0].file, fmt::format("{} {}: what is compared are angles or positions", names, rates.size() > 1 ? "are rates" : "is a rate"),
+                   fmt::format("columns of angles, such as what a rate adds up to; or, to compare rates, a formula to one unit for each:{}", formulas));
+}
+
 void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Recording>& recordings,
                     const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks) {
   for (std::size_t k = 0; k < compared.size(); ++k) {
@@ -194,6 +222,7 @@ void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
   TakeTemperature(columns, bench, map, remarks);
   if (compared.empty()) return;
   TakeDirection(columns, map, remarks);
+  RequireMoreThanRates(columns, recordings, compared, map);
   TakeReferenceByName(columns, compared, map, remarks);
   std::erase_if(columns, [](const Choice& choice) { return !Changes(choice) || IsOtherQuantity(*choice.column); });
   if (TakeAngleAndError(columns, compared, map, remarks)) return;

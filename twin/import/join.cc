@@ -289,8 +289,10 @@ class Evaluation {
       joined_.linear = true;
       return given->to_SI * units::turn / joined_.turn_m;
     }
-    throw InputError(column.where, fmt::format("{} is in {}", column.expression, given->name),
-                     fmt::format("a unit that can be {}", wanted->name));
+    const bool is_rate = given->dimension == Dimension::kTurning || given->dimension == Dimension::kSpeed;
+    throw InputError(column.where, fmt::format("{} is in {}{}", column.expression, unit_of_file.empty() ? column.unit : unit_of_file, is_rate ? ", a rate" : ""),
+                     is_rate ? "a column of the angle that the rate adds up to; or rates on both sides, each as a formula to one unit, as in --column 'reference_rad=[Rate] * 0.1047'"
+                             : fmt::format("a unit that can be {}", wanted->name));
   }
 
   std::vector<double> Evaluate(const MappedColumn& column) {

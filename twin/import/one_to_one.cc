@@ -58,10 +58,17 @@ std::string GainText(double gain) {
   return std::abs(gain - 1.0) <= kLikeOne ? "" : fmt::format("; it goes {:.3g} times as far, on no line: play, stiction or a speed that it does not reach", gain);
 }
 
+/// A clock of whole seconds that is seconds late counts perhaps milliseconds, whatever its name says.
+std::string LaterText(double step_s, double later_s) {
+  constexpr double kLong_s = 10.0;
+  if (step_s == 1.0 && later_s >= kLong_s) return fmt::format(" ({:.3g} s; {:.3g} s if the clock counts ms: --column 'time_ms=its column')", later_s, 1e-3 * later_s);
+  return fmt::format(" ({:.3g} s)", later_s);
+}
+
 std::string LagText(const std::string& name, const std::string& reference, const Session& session, const Following& later) {
-  const double later_s = static_cast<double>(later.rows_later) * MedianOf(StepsOf(session.time_s));
+  const double step_s = MedianOf(StepsOf(session.time_s)), later_s = static_cast<double>(later.rows_later) * step_s;
   return fmt::format("{} follows {} about {} rows{} later{}", name, reference, later.rows_later,
-                     session.has_clock ? fmt::format(" ({:.3g} s)", later_s) : "", GainText(later.gain));
+                     session.has_clock ? LaterText(step_s, later_s) : "", GainText(later.gain));
 }
 
 [[noreturn]] void RefuseGain(const std::string& name, const std::string& reference, double gain, const Map& map) {

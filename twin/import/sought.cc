@@ -33,6 +33,7 @@ bool UnitFits(const Column& column, const Sought& sought, const Track& track) {
   const auto has = UnitNamed(column.unit);
   const auto wanted = UnitOf(sought).dimension;
   if (has) return has->dimension == wanted;
+  if (wanted == Dimension::kAngle && IsRate(column)) return false;
   if (wanted == Dimension::kAngle && IsCalledCounts(column)) return CountsPerTurnOf(column, track, sought.words).has_value();
   return IsNoUnit(column.unit);
 }

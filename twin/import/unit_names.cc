@@ -74,6 +74,13 @@ constexpr std::array kSpellings = std::to_array<Spelling>({
     {"mikrometer", "um"},   {"millisekunden", "ms"}, {"sekunden", "s"},  {"сек", "s"},
     {"thou", "mil"},        {"mils", "mil"},     {"uin", "uinch"},       {"µin", "uinch"},
     {"μin", "uinch"},       {"microinch", "uinch"}, {"microinches", "uinch"}, {"minute", "min"},
+    {"rads", "rad"},        {"degs", "deg"},
+});
+
+/// Of rates that are not written as one unit over another.
+constexpr std::array kRateSpellings = std::to_array<Spelling>({
+    {"rpm", "turn_min"}, {"r/min", "turn_min"}, {"1/min", "turn_min"}, {"min-1", "turn_min"}, {"min^-1", "turn_min"},
+    {"rps", "turn_s"},   {"r/s", "turn_s"},     {"dps", "deg_s"},      {"ipm", "inch_min"},
 });
 
 std::optional<NamedUnit> PlainUnit(std::string_view name) {
@@ -105,10 +112,11 @@ std::optional<NamedUnit> RateNamed(std::string_view name) {
   return found == Rates().end() ? std::nullopt : std::optional(found->second);
 }
 
-/// "mm/min", "°/s".
+/// "mm/min", "°/s", "RPM".
 std::optional<NamedUnit> OverATime(std::string_view text) {
   const std::size_t slash = text.rfind('/');
-  if (SmallLetters(text) == "ipm") return RateNamed("inch_min");
+  const auto spelling = std::ranges::find(kRateSpellings, SmallLetters(text), &Spelling::spelling);
+  if (spelling != kRateSpellings.end()) return RateNamed(spelling->name);
   if (slash == std::string_view::npos) return RateNamed(text);
   const auto unit = UnitNamed(text.substr(0, slash)), over = UnitNamed(text.substr(slash + 1));
   return unit && over ? RateNamed(std::string(unit->name) + "_" + std::string(over->name)) : std::nullopt;
@@ -121,6 +129,24 @@ std::optional<NameAndUnit> InBrackets(std::string_view field, char open, char cl
   if (at == std::string_view::npos) return std::nullopt;
   return NameAndUnit{std::string(Trimmed(field.substr(0, at))),
                      std::string(Trimmed(field.substr(at + 1, field.size() - at - 2)))};
+}
+
+/// What stands in parentheses may be anything but a unit, "pos (2)": it is one that is not known only if it is something over a
+/// time, or a usual unit of something else.
+bool IsOtherUnit(std::string_view text) {
+  constexpr std::array kOthers = std::to_array<std::string_view>({"mA", "Hz", "kHz", "Nm", "mNm", "kW", "Pa", "bar", "kg", "%"});
+  const std::size_t slash = text.rfind('/');
+  if (slash == std::string_view::npos) return std::ranges::find(kOthers, text) != kOthers.end();
+  const auto over = UnitNamed(text.substr(slash + 1));
+  return slash > 0 && over && over->dimension == Dimension::kTime;
+}
+
+/// "rad" of "Theta in rad"; else as it is.
+std::string_view BehindIn(std::string_view text) {
+  constexpr std::string_view kIn = " in ";
+  const std::size_t in = text.rfind(kIn);
+  const std::string_view behind = in == std::string_view::npos ? text : text.substr(in + kIn.size());
+  return UnitNamed(behind) ? behind : text;
 }
 
 /// Words that are units in brackets only: "x min" is a smallest value, "measured as" no arc second.
@@ -211,8 +237,10 @@ std::string NearestUnit(std::string_view misspelt, const std::vector<Dimension>&
 NameAndUnit SplitHeader(std::string_view field) {
   field = Trimmed(field);
   for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}, std::pair{'{', '}'}, std::pair{'<', '>'}}) {
-    const auto split = InBrackets(field, open, close);
-    if (split && !split->name.empty() && (open == '[' || UnitNamed(split->unit))) return *split;
+    auto split = InBrackets(field, open, close);
+    if (!split || split->name.empty()) continue;
+    split->unit = BehindIn(split->unit);
+    if (open == '[' || UnitNamed(split->unit) || IsOtherUnit(split->unit)) return *split;
   }
   const std::size_t slash = field.rfind('/');
   if (slash != std::string_view::npos && slash > 0 && UnitNamed(field.substr(slash + 1)))
@@ -231,7 +259,7 @@ std::optional<std::string> BareUnit(std::string_view field) {
   if (field.empty() || field == "-" || field == "1") return std::string(field);
   if (UnitNamed(field)) return std::string(field);
   for (const std::string_view other :
-       {"counts", "count", "steps", "step", "px", "rpm", "deg/s", "mm/s", "A", "Hz", "Nm", "%"}) {
+       {"counts", "count", "steps", "step", "px", "A", "Hz", "Nm", "%"}) {
     if (field == other) return std::string(field);
   }
   return std::nullopt;
