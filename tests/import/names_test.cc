@@ -255,6 +255,21 @@ TEST_F(Importing, TakesWholeNumbersOfAServoForCountsAndSaysIt) {
   EXPECT_THAT(imported.story, Not(HasSubstr("taken as deg")));
 }
 
+/// A date behind the last name, and a tab at the end of each row.
+TEST_F(Importing, AsksNothingForColumnsThatHaveNoName) {
+  std::string text = "%Time (s)\tHubangle(Theta in rad)\tTip Deflection (m)\tPosition Reference (rad)\t%4/12/201711:23 AM\n";
+  for (int i = 0; i < 72; ++i) text += fmt::format("{:.2f}\t{:.3f}\t{:.4f}\t{:.3f}\t{}\t{}\n", 0.01 * i, 0.05 * i + 0.001, 0.001 * (i % 7), 0.05 * i, i % 2, i % 3);
+  EXPECT_THAT(Take(text).story, HasSubstr("measured <- Hubangle [rad]"));
+}
+
+/// Without its first line a guide log is of no kind that is known; its columns are.
+TEST_F(Importing, NamesTheReadyMapWhoseColumnsAreAllThere) {
+  std::string text = "Guiding Begins at 2024-05-06 20:22:52\nPixel scale = 2.1 arc-sec/px, Binning = 1\nMount = Sim,  connected, xRate = 5.2, yRate = 5.1\nDec = 10.5 deg, Hour angle = 1.2 hr\n"
+                     "Frame,Time,mount,dx,dy,RARawDistance,DECRawDistance,RADuration,RADirection,SNR\n";
+  for (int i = 1; i < 60; ++i) text += fmt::format("{},{:.2f},\"Mount\",{:.2f},{:.2f},{:.2f},{:.2f},{},{},{}\n", i, 2.0 * i, 0.1 * (i % 5), 0.1 * (i % 3), 0.2 * (i % 7), 0.1 * (i % 4), 10 * (i % 4), i % 2 ? "W" : "E", 20 + i % 6);
+  EXPECT_THAT(MessageOf([&] { Take(text); }), HasSubstr("; of a PHD2 guide log: tracking of the right ascension axis: --map phd2"));
+}
+
 TEST_F(Importing, TakesTheDeviceOfTheAxisThatTheReferenceIsOf) {
   std::string text = "time [s],pos (1) [deg],target pos (2) [deg],pos (2) [deg],load (2)\n";
   for (int i = 0; i < 72; ++i) text += fmt::format("{},7,{},{},{}\n", i, 5 * i, 5 * i + 0.01 * (i % 3), i % 5);

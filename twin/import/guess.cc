@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <functional>
 #include <set>
+#include <string_view>
 
 #include "twin/core/errors.h"
 #include "twin/import/angle_and_error.h"
@@ -190,6 +193,27 @@ void RequireMoreThanRates(const std::vector<Choice>& columns, const std::vector<
                    fmt::format("columns of angles, such as what a rate adds up to; or, to compare rates, a formula to one unit for each:{}", formulas));
 }
 
+/// "column 13" behind columns that have names, or the date of the recording in the line of the names.
+bool IsNameless(const Choice& choice) {
+  const std::size_t digit = choice.name.find_first_of("0123456789");
+  if (digit == std::string::npos) return false;
+  if (choice.name.substr(0, digit) == "column ") return true;
+  int first = 0, second = 0, third = 0;
+  char mark = '\0', again = '\0';
+  const int read = std::sscanf(choice.name.c_str() + digit, "%4d%c%2d%c%4d", &first, &mark, &second, &again, &third);
+  constexpr int kLastDay = 31;
+  return read == 5 && mark == again && std::string_view("-/.").find(mark) != std::string_view::npos && std::max(first, third) > kLastDay;
+}
+
+/// A length beside an angle, where an angle is there.
+bool IsOfAnotherDimension(const Choice& choice, const Map& map) {
+  const auto own = UnitNamed(choice.column->unit);
+  return own && std::ranges::any_of(map.columns, [&own](const MappedColumn& c) {
+           const auto unit = UnitNamed(c.unit), of_bench = UnitAtEnd(c.column);
+           return unit && of_bench && of_bench->dimension == Dimension::kAngle && unit->dimension != own->dimension;
+         });
+}
+
 void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Recording>& recordings,
                     const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks) {
   for (std::size_t k = 0; k < compared.size(); ++k) {
@@ -201,6 +225,11 @@ void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Record
     const std::size_t missing = static_cast<std::size_t>(
         std::ranges::count_if(compared, [&map](const auto& c) { return !IsGiven(map, c); }));
     if (left.size() > missing) std::erase_if(left, [](const Choice& c) { return IsCounter(*c.column); });
+    const auto drop_while_others_fit = [&](auto&& is_none) {
+      if (static_cast<std::size_t>(std::ranges::count_if(left, std::not_fn(is_none))) >= missing) std::erase_if(left, is_none);
+    };
+    drop_while_others_fit(IsNameless);
+    drop_while_others_fit([&map](const Choice& c) { return IsOfAnotherDimension(c, map); });
     if (left.size() == missing) {
       Put(compared[k], left[0], "the first column that is left", map, remarks);
       continue;

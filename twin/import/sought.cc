@@ -299,6 +299,26 @@ std::size_t ColumnsOfKind(const Recording& recording, const Map& map, bool by_na
   return fewest;
 }
 
+/// Of a map that seeks nothing: every name in its formulas is one of a column or of a number that the file states, columns most.
+bool HasAllNamesOf(const Map& map, const Recording& recording) {
+  constexpr std::size_t kFewestColumns = 3;  // two have names that anybody gives
+  std::set<std::string> columns, numbers;
+  for (const Track& track : recording.tracks) {
+    for (const Column& column : track.columns) columns.insert(column.name);
+    for (const auto& [name, number] : track.numbers) numbers.insert(name);
+  }
+  std::set<std::string> found;
+  for (const MappedColumn& column : map.columns) {
+    const Expression formula(column.expression, column.where);
+    for (const std::string& name : formula.Names()) {
+      if (columns.contains(name)) found.insert(name);
+      const bool is_made = name == "time_s" || (name == "moved" && !map.file.moved_by.empty());
+      if (!columns.contains(name) && !numbers.contains(name) && !is_made) return false;
+    }
+  }
+  return found.size() >= kFewestColumns;
+}
+
 /// "{radius_mm}" is its first value, "{radius_mm...}" all there are.
 void FillInKey(const Seeker& seeker, const Sought& sought, std::string& key) {
   const auto replace = [&key](const std::string& what, const std::string& by) {
@@ -375,6 +395,7 @@ std::optional<Map> ReadyMapOf(const Recording& recording) {
 std::string ReadyMapsByNames(const Recording& recording) {
   std::string maps;
   for (const Map& map : ReadyMaps()) {
+    if (map.sought.empty() && HasAllNamesOf(map, recording)) maps += fmt::format("; of a {}: --map {}", map.title, map.name);
     if (!map.guess_by.empty() && ColumnsOfKind(recording, map, true) > 2)
       maps += fmt::format("; of a {}: --map {}, with units in the names if they are not those of the map", map.title, map.name);
   }
