@@ -22,7 +22,7 @@ const std::vector<std::string>& WordsFor(Speaks of) {
       "sollwinkel", "referenz", "consigne", "consigna", "cible",          "référence",    "referencia", "riferimento",
       "comando",   "zadana",   "эталон",   "задание",  "目标",           "指令",         "参考",       "motor",
       "poscmd",    "referência", "desejado", "alvo",    "gewenst",        "doel",         "börvärde",  "hedef",
-      "zadaný",    "目標"};
+      "zadaný",    "目標",     "rsol",     "aspos",    "ordered",      "order"};
   static const std::vector<std::string> device = {
       "measured", "meas",     "device",   "dut",      "encoder",     "sensor",    "actual",    "actpos",  "posact",
       "present",  "resolver", "feedback", "fb",       "fbk",         "act",       "dial",      "gauge",   "indicator",
@@ -30,7 +30,7 @@ const std::vector<std::string>& WordsFor(Speaks of) {
       "mesuré",   "medido",   "medida",   "misurato", "misura",      "zmierzona", "измерено",  "实际",    "测量",
       "反馈",     "编码器",   "reading",  "angle",    "enc",         "probe",     "pos",       "load",
       "saída",     "saida",    "gemeten",  "ärvärde",     "uppmätt",     "ölçülen",   "zmierzone", "měřeno",    "測定",
-      "output"};
+      "output",    "rist",     "aipos",    "real"};
   return of == Speaks::kReference ? reference : device;
 }
 

@@ -90,11 +90,16 @@ void TakeTemperature(const std::vector<Choice>& columns, const BenchFormat& benc
   Put(target->name, *found.front(), found.size() > 1 ? fmt::format("the first of {} such", found.size()) : "as a temperature", map, remarks);
 }
 
+/// The "order" in which readings were taken orders nothing.
+bool IsOrderOfRows(const Choice& choice) {
+  return BareName(choice.name) == "order" && IsCounter(*choice.column);
+}
+
 const Choice* Clearest(const std::vector<Choice>& columns, Speaks of, const std::set<std::string>& taken) {
   const Choice* best = nullptr;
   int clearness = 0;
   for (const Choice& column : columns) {
-    const int clear = taken.contains(column.name) ? 0 : Clearness(column.name, of);
+    const int clear = taken.contains(column.name) || IsOrderOfRows(column) ? 0 : Clearness(column.name, of);
     const int own = clear > 0 ? 2 * clear + (IsCalledPlace(column.name) ? 1 : 0) : 0;
     if (own > clearness) {
       clearness = own;
@@ -112,7 +117,31 @@ void TakeDirection(const std::vector<Choice>& columns, Map& map, std::vector<std
   if (found != columns.end()) Put("direction", *found, "by its name", map, remarks);
 }
 
-/// A reference may stand still where one place is approached from both sides: then its name has to say what it is.
+/// How many letters two names begin and end alike: "target pos (3)" and "pos (3)" are of one axis, "X_RSol" and "X_RIst" too.
+std::ptrdiff_t Alike(const std::string& a, const std::string& b) {
+  const auto begin = std::ranges::mismatch(a, b).in1 - a.begin();
+  const auto [end, other] = std::mismatch(a.rbegin(), a.rend(), b.rbegin(), b.rend());
+  return begin + (end - a.rbegin());
+}
+
+/// Of several axes that are sent to one place each, a device for each, the first whose device moves at all; null: of no such.
+const Choice* FirstOfStanding(const std::vector<Choice>& columns, const std::vector<Choice>& moving, const std::set<std::string>& taken) {
+  std::vector<const Choice*> sent;
+  for (const Choice& c : columns) {
+    if (!taken.contains(c.name) && Clearness(c.name, Speaks::kReference) > 0) sent.push_back(&c);
+  }
+  const auto is_device = [](const Choice& c) { return Clearness(c.name, Speaks::kDevice) > 0; };
+  if (sent.size() < moving.size() || !std::ranges::all_of(moving, is_device)) return nullptr;
+  const auto alike_most = [&moving](const Choice* c) {
+    std::ptrdiff_t most = 0;
+    for (const Choice& device : moving) most = std::max(most, Alike(c->name, device.name));
+    return most;
+  };
+  return *std::ranges::max_element(sent, {}, alike_most);
+}
+
+/// A reference may stand still where one place is approached from both sides, or where each of several axes is sent to one: then its
+/// name has to say what it is.
 void TakeReferenceByName(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
                          std::vector<std::string>& remarks) {
   if (IsGiven(map, compared[0])) return;
@@ -125,13 +154,8 @@ void TakeReferenceByName(const std::vector<Choice>& columns, const std::vector<s
   const Choice* found = Clearest(moving, Speaks::kReference, taken);
   const bool may_stand = moving.size() < compared.size() || IsGiven(map, "direction");
   if (!found && may_stand) found = Clearest(standing, Speaks::kReference, taken);
+  if (!found && !moving.empty()) found = FirstOfStanding(standing, moving, taken);
   if (found) Put(compared[0], *found, "by its name", map, remarks);
-}
-
-/// How many letters two names end alike: "target pos (3)" and "pos (3)" are of one axis.
-std::size_t EndsAlike(const std::string& a, const std::string& b) {
-  const auto [end, other] = std::mismatch(a.rbegin(), a.rend(), b.rbegin(), b.rend());
-  return static_cast<std::size_t>(end - a.rbegin());
 }
 
 /// All whose names speak of the device as clearly as `best` does.
@@ -147,7 +171,7 @@ std::vector<const Choice*> AsClear(const std::vector<Choice>& columns, const Cho
 void PutDevice(const std::string& target, const std::vector<const Choice*>& tied, const std::string& reference, Map& map,
                std::vector<std::string>& remarks) {
   if (tied.size() > 1 && reference.empty()) return;
-  const auto best = std::ranges::max_element(tied, {}, [&reference](const Choice* c) { return EndsAlike(c->name, reference); });
+  const auto best = std::ranges::max_element(tied, {}, [&reference](const Choice* c) { return Alike(c->name, reference); });
   Put(target, **best, tied.size() > 1 ? fmt::format("by its name, one of {} such", tied.size()) : "by its name", map, remarks);
 }
 

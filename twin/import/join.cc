@@ -81,18 +81,24 @@ std::optional<std::size_t> FileIn(std::string& name) {
   return file;
 }
 
+bool IsOfFormulas(const std::string& name) {
+  return name == "time_s" || name == "count" || name == "index";
+}
+
 std::vector<Source> Candidates(const Together& together, std::string name) {
   const auto file = FileIn(name);
   const NameAndUnit split = SplitHeader(name);
-  std::vector<Source> found, with_unit;
+  std::vector<Source> found, with_unit, without_unit;
   for (const Side& side : together) {
     if (file && side.file != *file) continue;
     for (const Column& column : side.track->columns) {
       if (column.name == name) found.push_back({side.track, &column, 0.0});
       if (column.name == split.name && column.unit == split.unit) with_unit.push_back({side.track, &column, 0.0});
+      if (!IsOfFormulas(name) && UnitAtEnd(column.name) && BaseOf(column.name) == name) without_unit.push_back({side.track, &column, 0.0});
     }
   }
-  return found.empty() ? with_unit : found;  // "angle [deg]", as the head of the file has it
+  if (!found.empty()) return found;
+  return with_unit.empty() ? without_unit : with_unit;  // "angle [deg]", as the head of the file has it; "angle" of "angle_deg"
 }
 
 /// The period at which a column starts again, in whatever unit it is; 0: it does not.

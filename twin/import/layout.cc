@@ -64,6 +64,12 @@ double Score(const std::vector<std::string_view>& lines, const Fields& how) {
 
 }  // namespace
 
+Layout WithTabs(Layout layout) {
+  layout.separator = "tab";
+  layout.decimal = "point";
+  return layout;
+}
+
 std::vector<std::string_view> FirstLines(std::string_view text, std::size_t most) {
   std::vector<std::string_view> first;
   Lines lines(text);

@@ -21,6 +21,9 @@ struct Layout {
   bool columns_are_open = true;    // no map names columns: numbers alone may be a list, runs up and down a positioning test
 };
 
+/// Of a text that was written anew with tabs between its fields.
+Layout WithTabs(Layout layout);
+
 /// Lines from the beginning, enough to judge by.
 std::vector<std::string_view> FirstLines(std::string_view text, std::size_t most = 600);
 

@@ -253,10 +253,7 @@ void ReadRecords(std::string_view text, const Layout& layout, const ClockSetting
   search.In(json);
   const std::string table = search.Found().Text();
   const std::string layout_in_words = recording.layout;
-  Layout as_written = layout;
-  as_written.separator = "tab";
-  as_written.decimal = "point";
-  ReadTable(table, as_written, clock, recording);
+  ReadTable(table, WithTabs(layout), clock, recording);
   recording.layout = layout_in_words;
   recording.usual_angle = "rad";  // what programs count in
   for (Track& track : recording.tracks) {

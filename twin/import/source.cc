@@ -13,6 +13,7 @@
 #include "twin/import/common.h"
 #include "twin/import/cycles.h"
 #include "twin/import/indexed.h"
+#include "twin/import/named_lists.h"
 #include "twin/import/pairs.h"
 #include "twin/import/records.h"
 #include "twin/import/scope.h"
@@ -91,8 +92,13 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
       return recording;
     }
   }
+  const bool are_lists = layout.kind == "auto" && AreNamedLists(FirstLines(text));
   const std::string kind = layout.kind == "auto" ? FindKind(FirstLines(text), layout.columns_are_open) : layout.kind;
-  if (kind == "changes") {
+  if (are_lists) {
+    ReadTable(TableOfNamedLists(text), WithTabs(layout), clock, recording);
+    recording.layout = "records of lists under names";
+    recording.usual_angle = "rad";  // what programs count in
+  } else if (kind == "changes") {
     ReadChanges(text, recording);
   } else if (kind == "scope") {
     ReadScope(text, recording);
@@ -121,6 +127,7 @@ Recording BeginOfTable(const std::string& path) {
   if (std::vector<std::string> said; IsBarExport(FirstLines(text))) text = TableOfBarExport(text, path, said);
   const std::vector<std::string_view> lines = FirstLines(text);
   const std::string kind = FindKind(lines, true);
+  if (AreNamedLists(lines)) return recording;
   if (kind == "array") return recording;  // a line of thousands of numbers is no row of as many columns
   constexpr std::size_t kBegin = 5000;  // lines: an axis may rest for a while before it moves
   std::string begin;
