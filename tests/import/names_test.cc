@@ -270,6 +270,16 @@ TEST_F(Importing, NamesTheReadyMapWhoseColumnsAreAllThere) {
   EXPECT_THAT(MessageOf([&] { Take(text); }), HasSubstr("; of a PHD2 guide log: tracking of the right ascension axis: --map phd2"));
 }
 
+TEST_F(Importing, SaysThatReadingsAreTooFewToNameACause) {
+  const auto readings = [](int rows) {
+    std::string text = "reference [deg],measured [deg]\n";
+    for (int i = 0; i < rows; ++i) text += fmt::format("{},{}\n", 30 * i, 30 * i + i % 2);
+    return text;
+  };
+  EXPECT_THAT(Take(readings(7)).story, HasSubstr("note: 7 readings are too few to name a cause: diagnose takes 8 at least"));
+  EXPECT_THAT(Take(readings(8)).story, Not(HasSubstr("too few")));
+}
+
 TEST_F(Importing, TakesTheDeviceOfTheAxisThatTheReferenceIsOf) {
   std::string text = "time [s],pos (1) [deg],target pos (2) [deg],pos (2) [deg],load (2)\n";
   for (int i = 0; i < 72; ++i) text += fmt::format("{},7,{},{},{}\n", i, 5 * i, 5 * i + 0.01 * (i % 3), i % 5);

@@ -1,4 +1,5 @@
 #include "tests/core/input_error.h"
+#include "tests/import/importing.h"
 #include "twin/benches/evaluated.h"
 #include "twin/import/import.h"
 
@@ -33,6 +34,20 @@ TEST(Samples, OfABarsExportHaveItsErrors) {
   ExpectHidden(errors, "machine.scale_mismatch_um_m", 30.0, 0.5);
   ExpectHidden(errors, "machine.backlash_y_um", 5.0, 0.1);
   ExpectHidden(errors, "machine.backlash_x_um", 0.0, 0.1);
+}
+
+/// What the orders leave of a table that goes round once may be more orders as well as noise.
+TEST_F(Importing, SaysNothingRepeatsWhereNoPlaceWasReadTwice) {
+  const auto summary = [this](bool back) {
+    std::string text = "reference [deg],measured [deg]\n";
+    const auto add = [&text](int i) { text += fmt::format("{},{:.4f}\n", 2 * i, 2 * i + 0.1 * std::sin(2.0 * i * units::deg) + 0.01 * std::cos(160.0 * i * units::deg)); };
+    for (int i = 0; i <= 180; ++i) add(i);
+    for (int i = 180; back && i >= 0; --i) add(i);
+    const Imported taken = Take(text);
+    return EvaluationOf(ParseScenario("bench = \"" + taken.bench + "\"\n", "table", "", taken.set), taken.readings, Estimator::kRigorous).summary;
+  };
+  EXPECT_THAT(summary(false), testing::AllOf(testing::HasSubstr("left about the orders"), testing::HasSubstr("for no place was read twice"), testing::Not(testing::HasSubstr("repeats to"))));
+  EXPECT_THAT(summary(true), testing::HasSubstr("a reading repeats to"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
+#include "twin/core/fewest_readings.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -21,10 +22,9 @@ std::string Count(int count, const char* one, const char* many) {
 }  // namespace
 
 void RefuseTooFew(std::size_t used, std::size_t all) {
-  constexpr std::size_t kFewest = 8;
-  if (used < kFewest)
+  if (used < kFewestToDiagnose)
     throw InputError("readings", fmt::format("{} of {} have a value", used, all),
-                     fmt::format("at least {}", kFewest));
+                     fmt::format("at least {}", kFewestToDiagnose));
 }
 
 DesignCount CountDesign(const LinearRun& run, const Eigen::VectorXd& redundancy) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "twin/core/errors.h"
+#include "twin/core/fewest_readings.h"
 #include "twin/core/units.h"
 #include "twin/import/axes.h"
 #include "twin/import/guess.h"
@@ -123,6 +124,8 @@ Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
   if (imported.readings.size() < fewest)
     throw InputError(recordings[0].file, fmt::format("{} readings are left{}", imported.readings.size(), CostOf(maker.tally.left_out)),
                      fmt::format("{} at least", fewest));
+  if (bench.compared && imported.readings.size() < kFewestToDiagnose)
+    maker.tally.remarks.push_back(fmt::format("{} readings are too few to name a cause: diagnose takes {} at least", imported.readings.size(), kFewestToDiagnose));
   if (bench.compared && maker.tally.stops && !Gives(map, "position"))
     NumberPositions(imported.readings, *ColumnOf(bench, bench.compared->reference));
   if (bench.compared)

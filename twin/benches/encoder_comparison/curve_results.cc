@@ -35,7 +35,7 @@ nlohmann::json CurveJson(const HarmonicSeries& series, const std::string& name) 
 std::string UnresolvedText(const HarmonicSeries& series, const AxisUnit& unit) {
   if (!(series.unresolved_rad2 > 0.0)) return "";
   return fmt::format(
-      "orders above {}: {:.4g} {} (rms) between the measuring positions, if they fall as 1 / order; counted in u\n",
+      "orders above {}: {:.4g} {} (rms), as far as the readings show them or as they fall by 1 / order; in no curve, counted in u\n",
       series.Highest(), std::sqrt(series.unresolved_rad2) / unit.to_SI, unit.name);
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -148,7 +149,16 @@ std::string LostText(const DeviceError& e) {
   return orders.empty() ? "" : fmt::format("not separable from the reference, orders{}: {}\n", orders, kSeenAlike);
 }
 
-std::string SummaryOf(const DeviceError& e, const AxisUnit& unit) {
+/// Whether any place was read twice: in another pass or mounting, or behind a turn.
+bool AreRepeated(const std::vector<Reading>& readings) {
+  constexpr double kBeyondATurn = 1.02;
+  const auto is_of_one_pass = [&first = readings.front()](const Reading& r) { return r.setup == first.setup && r.pass == first.pass; };
+  const auto [low, high] = std::ranges::minmax(readings, {}, &Reading::reference_rad);
+  return !std::ranges::all_of(readings, is_of_one_pass) || high.reference_rad - low.reference_rad > kBeyondATurn * units::turn;
+}
+
+/// @param repeated  Whether any place was read twice: else what is left is of higher orders as well as of noise.
+std::string SummaryOf(const DeviceError& e, bool repeated, const AxisUnit& unit) {
   if (e.highest_order == 0) return fmt::format("no curve: {}\n", e.not_separated);
   std::string text = LinesText("device", e.curves.device, unit) + LinesText("reference", e.curves.reference, unit) +
                      LinesText("reversal", e.curves.reversal, unit);
@@ -159,8 +169,8 @@ std::string SummaryOf(const DeviceError& e, const AxisUnit& unit) {
   if (std::abs(e.lag_s) > 3.0 * e.u_lag_s)
     text +=
         fmt::format("device behind by       {:10.4f} ± {:.4f} ms\n", e.lag_s / units::ms, e.u_lag_s / units::ms);
-  text += fmt::format("a reading repeats to   {:10.3f} {} (standard deviation)\n", e.residual_rms_rad / unit.to_SI,
-                      unit.name);
+  text += fmt::format("{} {:10.3f} {} (standard deviation){}\n", repeated ? "a reading repeats to  " : "left about the orders ", e.residual_rms_rad / unit.to_SI,
+                      unit.name, repeated ? "" : fmt::format(": noise and orders above {}, for no place was read twice", e.highest_order));
   text += UnresolvedText(e.curves.device, unit) + LostText(e);
   for (const std::string& note : e.notes) text += "note: " + note + "\n";
   return text;
@@ -190,7 +200,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   const DeviceSettings device_settings = DeviceOfMeans(EncoderOf(scenario));
   report::Evaluation evaluation{
       ToJson(comparison), {}, device.not_separated, Summary(comparison, CoarseUnit(device_settings))};
-  evaluation.summary += SummaryOf(device, FineUnit(device_settings));
+  evaluation.summary += SummaryOf(device, AreRepeated(readings), FineUnit(device_settings));
   AddDevice(device, device_settings, evaluation.results);
   if (device.highest_order > 0) {
     evaluation.separation = SeparationJson(device, device_settings);
