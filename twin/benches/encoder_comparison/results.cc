@@ -152,6 +152,7 @@ std::string LostText(const DeviceError& e) {
 /// Whether any place was read twice: in another pass or mounting, or behind a turn.
 bool AreRepeated(const std::vector<Reading>& readings) {
   constexpr double kBeyondATurn = 1.02;
+  if (readings.empty()) return false;
   const auto is_of_one_pass = [&first = readings.front()](const Reading& r) { return r.setup == first.setup && r.pass == first.pass; };
   const auto [low, high] = std::ranges::minmax(readings, {}, &Reading::reference_rad);
   return !std::ranges::all_of(readings, is_of_one_pass) || high.reference_rad - low.reference_rad > kBeyondATurn * units::turn;
