@@ -30,6 +30,8 @@
 namespace twinbench::benches::encoder {
 namespace {
 
+constexpr std::size_t kEnough = 2500;  // readings: what has many causes takes ten seconds
+
 /// Sizes of a linear axis are told as lengths; what a cause's wave or way is called stays.
 void TellLengths(const AxisUnit& unit, diagnose::Diagnosis& diagnosis) {
   const auto tell = [&unit](diagnose::ParameterEstimate& p) {
@@ -125,12 +127,12 @@ diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
   const std::vector<Reading> all = AnglesOf(recorded, scenario);
-  std::vector<Reading> looked_at = diagnose::PartOf(all);
+  std::vector<Reading> looked_at = diagnose::PartOf(all, {.enough = kEnough});
   diagnose::DiagnosisRun result = DiagnoseAll(looked_at, scenario, options);
   if (looked_at.size() == all.size()) return result;
   const std::vector<double> events = EventsOf(result.diagnosis);
   if (!events.empty()) {
-    looked_at = diagnose::PartOf(all, {events});
+    looked_at = diagnose::PartOf(all, {.events = events, .enough = kEnough});
     result = DiagnoseAll(looked_at, scenario, options);
   }
   result.diagnosis.notes.push_back(fmt::format("{} of {} readings were looked at, in groups of neighbours{}",
@@ -141,7 +143,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
-  return diagnose::encoder::BuildRun(diagnose::PartOf(AnglesOf(readings, scenario)), scenario, FollowRecord).run;
+  return diagnose::encoder::BuildRun(diagnose::PartOf(AnglesOf(readings, scenario), {.enough = kEnough}), scenario, FollowRecord).run;
 }
 
 }  // namespace twinbench::benches::encoder

@@ -14,6 +14,17 @@ struct AsCost {
   }
 };
 
+/// For a problem, which takes ownership.
+template <ceres::NumericDiffMethodType method>
+ceres::CostFunction* Differenced(const AsCost& cost, const FitSteps& steps) {
+  ceres::NumericDiffOptions differences;
+  differences.relative_step_size = steps.relative_size;
+  auto* differenced = new ceres::DynamicNumericDiffCostFunction<AsCost, method>(new AsCost(cost), ceres::TAKE_OWNERSHIP, differences);
+  differenced->AddParameterBlock(static_cast<int>(cost.parameters));
+  differenced->SetNumResiduals(static_cast<int>(cost.rows));
+  return differenced;
+}
+
 ceres::Solver::Options SolverOptions(int most) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
@@ -28,15 +39,11 @@ ceres::Solver::Options SolverOptions(int most) {
 
 Eigen::VectorXd FitWithin(const Residuals& residuals, Eigen::Index rows, const Eigen::VectorXd& start, const Bounds& bounds,
                           const FitSteps& steps) {
-  using Cost = ceres::DynamicNumericDiffCostFunction<AsCost, ceres::CENTRAL>;
-  ceres::NumericDiffOptions differences;
-  differences.relative_step_size = steps.relative_size;
-  auto* cost = new Cost(new AsCost{residuals, rows, start.size()}, ceres::TAKE_OWNERSHIP, differences);  // Ceres takes ownership
-  cost->AddParameterBlock(static_cast<int>(start.size()));
-  cost->SetNumResiduals(static_cast<int>(rows));
+  const AsCost cost{residuals, rows, start.size()};
   Eigen::VectorXd x = start;
   ceres::Problem problem;
-  problem.AddResidualBlock(cost, nullptr, x.data());
+  problem.AddResidualBlock(steps.is_central ? Differenced<ceres::CENTRAL>(cost, steps) : Differenced<ceres::FORWARD>(cost, steps), nullptr,
+                           x.data());
   for (int k = 0; k < static_cast<int>(start.size()); ++k) {
     problem.SetParameterLowerBound(x.data(), k, bounds.lower[k]);
     problem.SetParameterUpperBound(x.data(), k, bounds.upper[k]);

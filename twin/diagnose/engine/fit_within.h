@@ -15,6 +15,7 @@ struct Bounds {
 struct FitSteps {
   int most = 12;                // iterations
   double relative_size = 1e-6;  // of central differences
+  bool is_central = true;  // differences, as exact as sizes that are stated ask for; else one residual a parameter
 };
 
 /// Where the sum of squares is least within the bounds (Levenberg-Marquardt by Ceres, slopes by central differences); the start

@@ -41,7 +41,7 @@ Refined RefineShape(const Family& family, int grid_point, const LinearRun& run, 
     left = rows - e.projected * e.amplitudes;
     return e.projected.allFinite();
   };
-  const Eigen::VectorXd shape = FitWithin(left_by, rows.size(), start, bounds);
+  const Eigen::VectorXd shape = FitWithin(left_by, rows.size(), start, bounds, {.is_central = false});
   return {shape, Explain(noise.Whiten(run, family.at(shape)), projector, others, rows).power};
 }
 

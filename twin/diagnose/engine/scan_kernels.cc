@@ -29,6 +29,19 @@ constexpr Eigen::Index kRowsAtOnce = 8;  // so many rows of B stay in the first-
   }
 }
 
+/// Product of one column of A with each of B's, eight sums side by side.
+[[gnu::target_clones("avx512f", "avx2", "default")]] void DotEach(const double* __restrict a, const double* __restrict B, Eigen::Index rows,
+                                                                  Eigen::Index columns, double* __restrict product) {
+  for (Eigen::Index c = 0; c < columns; ++c) {
+    const double* const b = B + c * rows;
+    double sums[kRowsAtOnce] = {};
+    for (Eigen::Index row = 0; row < rows; row += kRowsAtOnce) {
+      for (Eigen::Index r = 0; r < kRowsAtOnce; ++r) sums[r] += a[row + r] * b[row + r];
+    }
+    for (const double sum : sums) product[c] += sum;
+  }
+}
+
 /// From what is explained of each run to its log Bayes factor, in place.
 [[gnu::target_clones("avx512f", "avx2", "default")]] void LogOfShareLeft(const double* __restrict power, double occam,
                                                                          double half, Eigen::Index runs,
@@ -61,12 +74,16 @@ constexpr Eigen::Index kRowsAtOnce = 8;  // so many rows of B stay in the first-
 }  // namespace
 
 RunsByRow TransposedProduct(const Eigen::Ref<const Eigen::MatrixXd>& A, const RunsByRow& B) {
-  constexpr Eigen::Index kFew = 16;  // so many columns of B stay in the cache whole, and A is read as it lies
+  constexpr Eigen::Index kFew = 16;  // so many columns of B stay in the cache whole, and a column of A beside them
   RunsByRow product = RunsByRow::Zero(A.cols(), B.cols());
   const Eigen::Index whole = A.rows() / kRowsAtOnce * kRowsAtOnce, rest = A.rows() - whole;
-  const Eigen::Index step = B.cols() <= kFew ? std::max(whole, kRowsAtOnce) : kRowsAtOnce;
-  for (Eigen::Index row = 0; row < whole; row += step)
-    AddRows(A.data() + row, A.outerStride(), A.cols(), B.row(row).data(), step, B.cols(), product.data());
+  if (B.cols() <= kFew) {
+    const Eigen::MatrixXd by_column = B.topRows(whole);
+    for (Eigen::Index j = 0; j < A.cols(); ++j) DotEach(A.col(j).data(), by_column.data(), whole, B.cols(), product.row(j).data());
+  } else {
+    for (Eigen::Index row = 0; row < whole; row += kRowsAtOnce)
+      AddRows(A.data() + row, A.outerStride(), A.cols(), B.row(row).data(), kRowsAtOnce, B.cols(), product.data());
+  }
   if (rest == 0) return product;
   Eigen::MatrixXd last_A = Eigen::MatrixXd::Zero(kRowsAtOnce, A.cols());
   RunsByRow last_B = RunsByRow::Zero(kRowsAtOnce, B.cols());

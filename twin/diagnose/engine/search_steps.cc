@@ -43,11 +43,19 @@ bool HasRoom(const SearchProblem& problem, const std::vector<Term>& terms, const
          (count < problem.extent.most_orders && is_order(more) && std::ranges::all_of(terms, is_order));
 }
 
-/// Swaps until every term is the best in its place, at most twice round.
+/// Swaps until every term is the best in its place, at most twice round. Beside others that are the same as when it was last
+/// selected a term is the same again.
 void Swap(const SearchProblem& problem, std::vector<Term>& terms) {
+  std::vector<Eigen::MatrixXd> beside(terms.size());
   for (int round = 0; round < 2; ++round) {
     bool changed = false;
-    for (int k = 0; k < std::ssize(terms); ++k) changed = SelectAgain(problem, terms, k) || changed;
+    for (int k = 0; k < std::ssize(terms); ++k) {
+      Eigen::MatrixXd others = ColumnsWithout(problem, terms, k);
+      Eigen::MatrixXd& last = beside[static_cast<std::size_t>(k)];
+      if (round > 0 && others.cols() == last.cols() && others == last) continue;
+      changed = SelectAgain(problem, terms, k) || changed;
+      last = std::move(others);
+    }
     if (!changed) break;
   }
 }
