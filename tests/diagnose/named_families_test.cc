@@ -84,14 +84,12 @@ void PrintTo(const Slope& slope, std::ostream* out) {
   *out << slope.design->name << " " << slope.effect.name << " " << slope.effect.where;
 }
 
-/// Every effect at every place, but for what a servo is behind by: behind a pause a record has the next reading to tell how the shaft
-/// moves, the bench has not. encoder_servo_test.cc has them by closed form.
+/// Every effect at every place.
 std::vector<Slope> Slopes() {
-  static const std::set<std::string> servos = {"acceleration_error", "friction"};
   std::vector<Slope> slopes;
   for (const Design& design : Designs()) {
     for (const EffectEntry& entry : EffectCatalogue(kEncoderBench)) {
-      if (design.without.contains(entry.name) || servos.contains(entry.name)) continue;
+      if (design.without.contains(entry.name)) continue;
       for (const std::string& where : entry.places.empty() ? Strings{""} : entry.places)
         slopes.push_back({&design, EffectAt(entry, where)});
     }

@@ -23,7 +23,7 @@ Eigen::VectorXd AccelerationOf(const SignalContext& c) {
     const double next_s = i + 1 < c.Readings() ? c.time_s[i + 1] - c.time_s[i] : 0.0;
     const bool is_behind_gap = next_s > 0.0 && step_s > kLeftOut * next_s && c.setup[static_cast<std::size_t>(i)] == c.setup[static_cast<std::size_t>(i + 1)];
     if (is_behind_gap) {
-      acceleration_rad_s2[i] = (c.velocity_rad_s[i + 1] - c.velocity_rad_s[i]) / next_s;
+      acceleration_rad_s2[i] = c.velocity_rad_s[i] != 0.0 ? (c.velocity_rad_s[i + 1] - c.velocity_rad_s[i]) / next_s : 0.0;
       continue;
     }
     if (step_s > 0.0) acceleration_rad_s2[i] = (c.velocity_rad_s[i] - c.velocity_rad_s[i - 1]) / step_s;
