@@ -1,6 +1,7 @@
 #include "twin/diagnose/engine/fit_within.h"
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
 namespace twinbench::diagnose {
 namespace {
@@ -35,6 +36,11 @@ ceres::Solver::Options SolverOptions(int most) {
   return options;
 }
 
+/// What goes wrong within the solver is told by its summary; its log is nobody's business but its makers'.
+void SilenceSolver() {
+  FLAGS_minloglevel = google::GLOG_FATAL;
+}
+
 }  // namespace
 
 Eigen::VectorXd FitWithin(const Residuals& residuals, Eigen::Index rows, const Eigen::VectorXd& start, const Bounds& bounds,
@@ -48,6 +54,7 @@ Eigen::VectorXd FitWithin(const Residuals& residuals, Eigen::Index rows, const E
     problem.SetParameterLowerBound(x.data(), k, bounds.lower[k]);
     problem.SetParameterUpperBound(x.data(), k, bounds.upper[k]);
   }
+  [[maybe_unused]] static const bool is_silent = (SilenceSolver(), true);
   ceres::Solver::Summary summary;
   ceres::Solve(SolverOptions(steps.most), &problem, &summary);
   return summary.IsSolutionUsable() ? x : start;
