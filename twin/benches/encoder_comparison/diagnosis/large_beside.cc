@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
+#include "twin/benches/encoder_comparison/diagnosis/loop_in_walk.h"
+#include "twin/benches/encoder_comparison/diagnosis/memory.h"
 #include "twin/core/linear_algebra.h"
 #include "twin/diagnose/engine/answer.h"
 
@@ -38,6 +40,16 @@ LargeSearch::Beside LargeSearch::AskBeside(const std::vector<LargeCause>& causes
   return beside;
 }
 
+/// How many readings say as much as one of the k-th cause. A loop whose steps are seen in a walk is known by them: it has no more
+/// of the memory than what goes to and fro as it does.
+double LargeSearch::MemoryBeside(std::size_t k, const Beside& beside, double memory) const {
+  const std::vector<EffectSettings>& effects = beside.asked.effects;
+  if (!IsLoop(effects[k].name)) return memory;
+  const Eigen::VectorXd shown = fit_->Shown(effects) - fit_->Shown(EffectsWithout(k, effects));
+  if (!shown.allFinite() || !IsSeenInWalk(beside.left, shown, fit_->Run().run.schedule.setup)) return memory;
+  return std::clamp(MemoryAlong(fit_->WhiteOf(shown), fit_->WhiteOf(beside.left)), 1.0, memory);
+}
+
 /// What is small was found with the parameters of the large causes free: these go to where they are best beside
 /// it, and it goes with them.
 void LargeSearch::MoveBesideTheRest() {
@@ -46,9 +58,10 @@ void LargeSearch::MoveBesideTheRest() {
   // Against a shape that takes it back a cause may have any size: it leaves no more than there is without it.
   const Eigen::VectorXd& all = fit_->Run().run.residual;
   if (fit_->PowerOf(all - fit_->Shown(beside.asked.effects)) > fit_->PowerOf(all)) return;
-  const double more = std::sqrt(fit_->Memory(beside.left));
-  for (EffectSettings& effect : beside.asked.effects) {
-    for (auto& [parameter, u] : effect.finding.u) u *= more;
+  const double memory = fit_->Memory(beside.left);
+  for (std::size_t k = 0; k < beside.asked.effects.size(); ++k) {
+    const double more = std::sqrt(MemoryBeside(k, beside, memory));
+    for (auto& [parameter, u] : beside.asked.effects[k].finding.u) u *= more;
   }
   TakeOver(beside.asked, large_.causes);
   if (beside.columns.cols() == 0) return;

@@ -79,7 +79,7 @@ LargeSearch::LargeSearch(const std::vector<Reading>& readings, const Scenario& s
 std::optional<LargeCauses> LargeSearch::Go(double most_left) {
   Begin();
   if (IsNothingButWalk(large_.first->encoder.run))
-    large_.first->analysis.found.terms.clear();
+    TakeLoopInWalk();
   else
     TakeSignals();
   TakeLag();

@@ -34,6 +34,7 @@ class LargeSearch {
 
   AnalysisOptions For(int most_causes) const;
   void Begin();
+  void TakeLoopInWalk();
   void TakeSignals();
   void TakeLag();
   void TakeOtherLag();
@@ -67,6 +68,7 @@ class LargeSearch {
   std::vector<Cause> InPlaceOf(std::size_t k) const;
   std::vector<Term*> NamedTerms();
   Beside AskBeside(const std::vector<LargeCause>& causes);
+  double MemoryBeside(std::size_t k, const Beside& beside, double memory) const;
   void MoveBesideTheRest();
   std::vector<EffectSettings> OthersLike(const EffectSettings& effect) const;
   bool TakeOther();

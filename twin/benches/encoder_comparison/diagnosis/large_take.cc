@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
+#include "twin/benches/encoder_comparison/diagnosis/loop_in_walk.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
 #include "twin/core/linear_algebra.h"
@@ -44,6 +45,17 @@ bool IsSeenInAcceleration(const EffectSettings& latency, const EncoderRun& encod
 }
 
 }  // namespace
+
+/// What the loop leaves is the walk, or noise that remembers: neither has a shape.
+void LargeSearch::TakeLoopInWalk() {
+  large_.first->analysis.found.terms.clear();
+  const std::vector<LargeCause> loops = LoopsInWalk(*large_.first, fit_->projector());
+  const auto left = [this](const LargeCause& loop) { return fit_->PowerOf(fit_->Ask({loop}).left); };
+  const auto least = std::ranges::min_element(loops, {}, left);
+  if (least == loops.end() || !Take(*least)) return;
+  Searched& last = *large_.last;
+  std::erase_if(last.analysis.found.terms, [&](const Term& term) { return last.families[static_cast<std::size_t>(term.family)].kind == Kind::kUnknown; });
+}
 
 /// Signals that are cut off have all their faults at once: none of them is found alone.
 void LargeSearch::TakeSignals() {

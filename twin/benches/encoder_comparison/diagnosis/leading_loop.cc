@@ -6,14 +6,11 @@
 #include <string>
 #include <utility>
 
+#include "twin/benches/encoder_comparison/diagnosis/loop_in_walk.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
-
-bool IsLoop(const std::string& effect) {
-  return effect == "backlash" || effect == "hysteresis";
-}
 
 bool IsLeadingLoop(const Cause& cause) {
   const auto is_negative_size = [](const ParameterEstimate& p) { return (p.name == "width" || p.name == "lag") && p.value < 0.0; };

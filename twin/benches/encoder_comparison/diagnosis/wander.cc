@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "twin/benches/encoder_comparison/diagnosis/loop_in_walk.h"
+#include "twin/benches/encoder_comparison/diagnosis/means.h"
 #include "twin/benches/encoder_comparison/diagnosis/memory.h"
 #include "twin/core/distributions.h"
 #include "twin/core/linear_algebra.h"
@@ -69,38 +71,12 @@ Walk WalkOf(const DiagnosisRun& result, const SecondOrder& bent) {
   return walk;
 }
 
-/// Means of so many readings each, which noise hardly moves; no mean goes over a new mounting.
-struct Means {
-  std::vector<double> value;
-  std::vector<int> setup;
-
-  bool IsNext(std::size_t k) const { return setup[k] == setup[k - 1]; }
-  std::vector<double> Steps() const {
-    std::vector<double> steps;
-    for (std::size_t k = 1; k < value.size(); ++k) {
-      if (IsNext(k)) steps.push_back(value[k] - value[k - 1]);
-    }
-    return steps;
-  }
-};
-
-Means MeansOf(const Walk& walk, Eigen::Index each) {
-  Means means;
-  for (Eigen::Index i = 0; i + each <= walk.left.size(); i += each) {
-    const int first = walk.setup[static_cast<std::size_t>(i)], last = walk.setup[static_cast<std::size_t>(i + each - 1)];
-    if (first != last) continue;
-    means.value.push_back(walk.left.segment(i, each).mean());
-    means.setup.push_back(first);
-  }
-  return means;
-}
-
 /// By the test of Dickey and Fuller (1979, with a constant) at 5 %: the further it is from its mean, the more it goes back
 /// there, as what only remembers some readings does and a walk does not.
 bool ComesBack(const Walk& walk) {
   constexpr Eigen::Index kMeans = 64;
   constexpr double kMost = -2.86;  // t of a walk is above it in 95 of 100
-  const Means means = MeansOf(walk, walk.left.size() / kMeans);
+  const Means means = MeansOf(walk.left, walk.setup, walk.left.size() / kMeans);
   const std::vector<double> steps = means.Steps();
   std::vector<double> from;
   for (std::size_t k = 1; k < means.value.size(); ++k) {
@@ -281,7 +257,8 @@ double GiveToWander(DiagnosisRun& result, const Walk& walk, Eigen::VectorXd& wan
   for (const Accepted& accepted : result.accepted) {
     if (accepted.family.kind != Kind::kNamed) continue;
     const Eigen::VectorXd shown = accepted.columns * accepted.amplitudes;
-    const double chance = ChanceBeside(walk, shown);
+    const bool is_seen = IsLoop(accepted.family.effect) && IsSeenInWalk(walk.left, shown, walk.setup);
+    const double chance = is_seen ? 1.0 : ChanceBeside(walk, shown);
     for (const std::size_t k : GroupOf(accepted, before, done)) causes[k].probability *= chance;
     wander += (1.0 - chance) * shown;
     named += chance * SquaresAboutMean(shown);
@@ -341,7 +318,7 @@ bool IsNothingButWalk(const LinearRun& run) {
   const Walk walk{run.residual, run.schedule.setup, run.Rows() / 16};
   if (run.Channels() != 1 || run.Rows() < kTogether * kFewestMeans || !IsWalk(walk, run.sigma.minCoeff()))
     return false;
-  const std::vector<double> steps = MeansOf(walk, kTogether).Steps();
+  const std::vector<double> steps = MeansOf(walk.left, walk.setup, kTogether).Steps();
   const Eigen::Index count = std::ssize(steps);
   if (count < kFewestMeans / 2) return false;  // of several heads no readings in a row are of one
   const Eigen::ArrayXd phase_rad = units::turn / static_cast<double>(count) *

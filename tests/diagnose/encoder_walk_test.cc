@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/diagnose/encoder_record.h"
+#include "twin/core/reading_clock.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+using namespace lab;
+
+// What repeats and what does not: play beside friction that remembers, tables of one turn, a drift that bends.
+
+/// A joint that swings by two frequencies, which grow and die away, with a gap and friction of some memory.
+Record Joint(double gap_deg, double noise_deg, double memory_s, bool is_walk, unsigned seed) {
+  constexpr int kReadings = 2400;
+  constexpr double kEvery_s = 0.04, kEnd_s = kReadings * kEvery_s;
+  Noise unit(1.0, seed);
+  const double kept = is_walk ? 1.0 : std::exp(-kEvery_s / memory_s), new_deg = noise_deg * (is_walk ? 1.0 : std::sqrt(1.0 - kept * kept));
+  Record record;
+  double last_deg = 0.0, shaft_deg = 0.0, friction_deg = 0.0;
+  int direction = 1, pass = 0;
+  for (int k = 0; k < kReadings; ++k) {
+    const double t_s = kEvery_s * k, swell = std::pow(std::clamp(std::min(t_s, kEnd_s - t_s) / (0.4 * kEnd_s), 0.0, 1.0), 2);
+    const double angle_deg = swell * (24.0 * std::sin(2.0 * units::kPi * 0.041 * t_s) + 15.0 * std::sin(2.0 * units::kPi * 0.063 * t_s + 0.7));
+    shaft_deg = std::clamp(shaft_deg, angle_deg - 0.5 * gap_deg, angle_deg + 0.5 * gap_deg);
+    friction_deg = kept * friction_deg + new_deg * unit();
+    const int sense = angle_deg < last_deg ? -1 : 1;
+    if (sense != direction) ++pass;
+    direction = sense;
+    last_deg = angle_deg;
+    record.Add(t_s, angle_deg, shaft_deg + friction_deg, direction, pass);
+  }
+  return record;
+}
+
+/// Four fifths of the variance are play: a walk may follow all of it, and is not asked first.
+TEST(EncoderWalk, TakesNothingOfPlayBesideFrictionThatRemembers) {
+  for (const unsigned seed : Seeds({1u, 2u, 4u})) {
+    const Answer answer = Ask(Joint(3.6, 0.8, 0.35, false, seed));
+    SCOPED_TRACE(answer.Words());
+    EXPECT_TRUE(answer.Names("backlash"));
+    EXPECT_NEAR(answer.Value("backlash", "width"), 3.6, 0.6);
+    EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kNamed);
+  }
+}
+
+TEST(EncoderWalk, OfAJointWithoutPlayIsNoPlay) {
+  for (const unsigned seed : Seeds({11u, 12u, 13u})) {
+    const Answer answer = Ask(Joint(0.0, 0.06, 0.0, true, seed));
+    EXPECT_FALSE(answer.Names("backlash", 0.5) || answer.Names("hysteresis", 0.5)) << answer.Words();
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose::encoder
