@@ -52,14 +52,14 @@ std::string BelowEachOther() {
 TEST_F(Importing, TakesOneOfSeveralAxesAndSaysWhichThereAre) {
   for (const std::string& text : {SideBySide(), BelowEachOther()}) {
     for (int axis = 1; axis <= 3; ++axis) {
-      const Imported imported = Take(text, fmt::format("[course]\naxis = {}\n", axis));
+      const Imported imported = Take(text, fmt::format("[course]\naxis_number = {}\n", axis));
       EXPECT_EQ(imported.readings.size(), 900u);
       EXPECT_NEAR(ScaleOf(imported), 0.01 * axis, 1e-4) << axis;
       EXPECT_THAT(imported.story, HasSubstr("3 axes are in the file"));
-      EXPECT_THAT(imported.story, HasSubstr("--axis"));
+      EXPECT_THAT(imported.story, HasSubstr("--axis-number"));
     }
     EXPECT_NEAR(ScaleOf(Take(text)), 0.01, 1e-4) << "the first";
-    EXPECT_THAT(MessageOf([&] { Take(text, "[course]\naxis = 4\n"); }), HasSubstr("1 to 3"));
+    EXPECT_THAT(MessageOf([&] { Take(text, "[course]\naxis_number = 4\n"); }), HasSubstr("1 to 3"));
   }
 }
 

@@ -63,7 +63,7 @@ TEST(Investigate, LooksAgainWhereOneRunMayHideACause) {
   const auto line = std::ranges::find(causes, "non-integer line", &hidden::UnlistedCause::name);
   ASSERT_NE(line, causes.end());
   const hidden::SignatureScale& scale = hidden::ScaleOf(hidden::Design::kSweep);
-  const Judged judged = InvestigateUnlisted(hidden::Design::kSweep, *line, 7, 4.0, scale, TenHours());
+  const Judged judged = InvestigateUnlisted(hidden::Design::kSweep, *line, 2, 4.0, scale, TenHours());
   const std::vector<Step>& steps = judged.investigation.steps;
   EXPECT_EQ(steps.front().believed.front().first, "nothing");
   EXPECT_EQ(judged.result, Result::kRight) << judged.answer;

@@ -58,9 +58,9 @@ TEST_F(Commands, ACheckSaysDurationLossesAndWhichUTheRunStates) {
 TEST_F(Commands, ACheckForetellsThatARunComesToNothingOrLosesReadings) {
   Write("small.toml", kSmall);
   const std::string dark = Succeed({"check", "small.toml", "--set", "psd_a.distance_mm=0.001"});
-  EXPECT_THAT(dark, testing::AllOf(HasSubstr("its run is not. Bench"), HasSubstr("readings (full_circle): no_light\n"), HasSubstr("It would separate nothing: ")));
+  EXPECT_THAT(dark, testing::AllOf(HasSubstr("its run is not. Bench"), HasSubstr("readings (full_circle): no_light\n"), HasSubstr("It would come to no result: ")));
   const nlohmann::json json = Json({"check", "small.toml", "--set", "psd_a.distance_mm=0.001", "--json", "-"});
-  EXPECT_TRUE(json.contains("not_separated"));
+  EXPECT_TRUE(json.contains("no_results"));
   EXPECT_EQ(json.at("lost_readings").at(0).at("phase"), "calibration");
   const std::string wide = Succeed({"check", "small.toml", "--set", "procedure.sweep_arcsec=5000"});
   EXPECT_THAT(wide, testing::AllOf(HasSubstr(" readings (calibration): no_light\n"), HasSubstr("U = 2 u")));
@@ -71,6 +71,9 @@ TEST_F(Commands, ACheckForetellsThatARunComesToNothingOrLosesReadings) {
         "bench = \"turntable_autocollimator\"\n[multitooth]\nteeth = 3\n[turntable_procedure]\nphases = [\"full_circle\"]\npositions = 3\n"
         "passes = [1]\ntilts_arcsec = [50.0]\neccentricities_um = [0.0]\n");
   EXPECT_THAT(Succeed({"check", "collimator.toml"}), HasSubstr("It would come to no result: its run: there are only 3 readings"));
+  Write("part.toml", "bench = \"encoder_comparison\"\n[encoder_procedure]\nturns = 0.4\n");
+  EXPECT_THAT(Succeed({"check", "part.toml"}), HasSubstr("its run is not. Bench encoder_comparison, "));
+  EXPECT_TRUE(Json({"check", "part.toml", "--json", "-"}).contains("not_separated"));
 }
 
 TEST_F(Commands, WithoutAnyNoiseEveryBenchIsCheckedRunAndScored) {

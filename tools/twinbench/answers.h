@@ -65,7 +65,7 @@ struct ImportWish {
   std::string scenario, map;
   std::vector<std::string> overrides, columns;
   int most_readings = 0;
-  int axis = 0;
+  int axis_number = 0;
 };
 struct Imported : RecordedRun {
   std::string story;  // how they were understood; empty of a readings.csv

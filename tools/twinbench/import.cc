@@ -81,7 +81,7 @@ imports::Map MapOf(const ImportWish& options) {
   imports::Map map = imports::LoadMap(options.map);
   if (map.bench.empty() && !options.scenario.empty()) map.bench = BenchOfScenarioFile(options.scenario);
   for (const std::string& column : options.columns) imports::SetColumn(column, map);
-  if (options.axis > 0) map.course.axis = options.axis;
+  if (options.axis_number > 0) map.course.axis_number = options.axis_number;
   if (options.most_readings > 0) map.average.most_readings = options.most_readings;
   return map;
 }
@@ -152,7 +152,7 @@ void AddImport(CLI::App& app) {
   command->add_option("--map", options->map, "ready map or TOML file that says what the files do not (help map)");
   command->add_option("--column", options->columns, "one quantity: reference_deg='Axis 1.ActPos'")
       ->allow_extra_args(false);
-  command->add_option("--axis", options->axis, "of several axes in a file the one that is taken, counted from 1 (--look lists them)");
+  command->add_option("--axis-number", options->axis_number, "of several axes in a file the one that is taken, counted from 1 (--look lists them)");
   command->add_option("--most-readings", options->most_readings, "longer recordings are averaged in blocks");
   AddSet(*command, options->overrides);
   AnswerWith(*command, "what came of the import", [options](JsonAnswer& answer) { Import(*options, answer); });

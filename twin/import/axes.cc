@@ -28,10 +28,10 @@ std::string ListOf(const std::vector<std::string>& axes) {
 
 /// @param axes  In words, by number.
 std::size_t ChosenOf(const std::vector<std::string>& axes, const Map& map, Recording& recording) {
-  const auto number = static_cast<std::size_t>(std::max(1, map.course.axis));
+  const auto number = static_cast<std::size_t>(std::max(1, map.course.axis_number));
   if (number > axes.size())
-    throw InputError("--axis", fmt::format("axis {} of {} axes ({})", number, axes.size(), ListOf(axes)), fmt::format("1 to {}", axes.size()));
-  recording.remarks.push_back(fmt::format("{} axes are in the file ({}): {} is taken; another one by --axis N, or --column", axes.size(), ListOf(axes), number));
+    throw InputError("--axis-number", fmt::format("axis {} of {} axes ({})", number, axes.size(), ListOf(axes)), fmt::format("1 to {}", axes.size()));
+  recording.remarks.push_back(fmt::format("{} axes are in the file ({}): {} is taken; another one by --axis-number N, or --column", axes.size(), ListOf(axes), number));
   return number - 1;
 }
 

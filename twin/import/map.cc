@@ -102,7 +102,7 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
   course.Add("clock_offset", kSecond, Within(1e10), &map.course.clock_offset_s, "added to the second file's clock");
   course.Text("phase", &map.course.phase, {"full_circle", "calibration", "stability", "verification"},
               "of all readings");
-  course.Add("axis", kPure, {0, 1000}, &map.course.axis, "of several axes in a file the one that is taken, counted from 1");
+  course.Add("axis_number", kPure, {0, 1000}, &map.course.axis_number, "of several axes in a file the one that is taken, counted from 1");
   Table average(keys, "average");
   average.Add(
       "most_readings", kPure, {12, 1000000}, &map.average.most_readings,

@@ -27,7 +27,7 @@ struct CourseSettings {
   double wrap_rad = 0.0;        // the reference starts again at this angle; 0: at 360 deg if it does
   double clock_offset_s = 0.0;  // added to the clock of the second file
   std::string phase = "full_circle";  // of all readings
-  int axis = 0;                 // of several in a file, counted from 1; 0: the first
+  int axis_number = 0;          // of several in a file, counted from 1; 0: the first
 };
 
 struct AverageSettings {

@@ -40,14 +40,11 @@ LargeSearch::Beside LargeSearch::AskBeside(const std::vector<LargeCause>& causes
   return beside;
 }
 
-/// How many readings say as much as one of the k-th cause. A loop whose steps are seen in a walk is known by them: it has no more
+/// How many readings say as much as one of a cause. A loop whose steps are seen in a walk is known by them: it has no more
 /// of the memory than what goes to and fro as it does.
-double LargeSearch::MemoryBeside(std::size_t k, const Beside& beside, double memory) const {
-  const std::vector<EffectSettings>& effects = beside.asked.effects;
-  if (!IsLoop(effects[k].name)) return memory;
-  const Eigen::VectorXd shown = fit_->Shown(effects) - fit_->Shown(EffectsWithout(k, effects));
-  if (!shown.allFinite() || !IsSeenInWalk(beside.left, shown, fit_->Run().run.schedule.setup)) return memory;
-  return std::clamp(MemoryAlong(fit_->WhiteOf(shown), fit_->WhiteOf(beside.left)), 1.0, memory);
+double LargeSearch::MemoryBeside(const std::string& effect, const Eigen::VectorXd& shown, const Eigen::VectorXd& left, double memory) const {
+  if (!IsLoop(effect) || !shown.allFinite() || !IsSeenInWalk(left, shown, fit_->Run().run.schedule.setup)) return memory;
+  return std::clamp(MemoryAlong(fit_->WhiteOf(shown), fit_->WhiteOf(left)), 1.0, memory);
 }
 
 /// What is small was found with the parameters of the large causes free: these go to where they are best beside
@@ -59,9 +56,11 @@ void LargeSearch::MoveBesideTheRest() {
   const Eigen::VectorXd& all = fit_->Run().run.residual;
   if (fit_->PowerOf(all - fit_->Shown(beside.asked.effects)) > fit_->PowerOf(all)) return;
   const double memory = fit_->Memory(beside.left);
-  for (std::size_t k = 0; k < beside.asked.effects.size(); ++k) {
-    const double more = std::sqrt(MemoryBeside(k, beside, memory));
-    for (auto& [parameter, u] : beside.asked.effects[k].finding.u) u *= more;
+  std::vector<EffectSettings>& effects = beside.asked.effects;
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const Eigen::VectorXd shown = fit_->Shown(effects) - fit_->Shown(EffectsWithout(k, effects));
+    const double more = std::sqrt(MemoryBeside(effects[k].name, shown, beside.left, memory));
+    for (auto& [parameter, u] : effects[k].finding.u) u *= more;
   }
   TakeOver(beside.asked, large_.causes);
   if (beside.columns.cols() == 0) return;

@@ -152,9 +152,8 @@ std::vector<double> LargeSearch::Strengths(const std::vector<LargeCause>& causes
   const std::vector<EffectSettings> effects = is_possible ? beside.effects : EffectsOf(causes);
   std::vector<double> strengths;
   for (std::size_t k = 0; k < causes.size(); ++k) {
-    const Eigen::VectorXd own =
-        fit_->WhiteOf(fit_->Shown(effects) - fit_->Shown(EffectsWithout(k, effects)));
-    const double most = std::max(memory, MemoryAlong(own, left));
+    const Eigen::VectorXd shown = fit_->Shown(effects) - fit_->Shown(EffectsWithout(k, effects)), own = fit_->WhiteOf(shown);
+    const double most = std::max(MemoryBeside(effects[k].name, shown, beside.left, memory), MemoryAlong(own, left));
     strengths.push_back(own.squaredNorm() > least ? Deviations(causes[k].effect) / std::sqrt(most) : 0.0);
   }
   return strengths;
@@ -167,6 +166,7 @@ void LargeSearch::SearchPlain() {
   slopes_.resize(0, 0);
   most_searched_ = kFewCauses;
   SearchOn();
+  if (IsNothingButWalk(large_.first->encoder.run)) return large_.first->analysis.found.terms.clear();
   if (!TakeOneOfTwoWaves()) return;
   while (SearchOn()) TakeLarge();
   LeaveToLarge();

@@ -136,7 +136,8 @@ void LargeSearch::Review() {
 /// @return false if there was no need.
 bool LargeSearch::SearchOn() {
   std::unique_ptr<Searched>& last = large_.last ? large_.last : large_.first;
-  if (most_searched_ == kMostCauses || last->analysis.found.terms.empty()) return false;
+  const bool is_as_found = last->analysis.scanner != nullptr;  // no cause has been taken since, and dropped again
+  if (most_searched_ == kMostCauses || (last->analysis.found.terms.empty() && is_as_found)) return false;
   last->analysis.scanner.reset();
   last = SearchIn(std::move(last->encoder), Excluded(large_.causes), For(kMostCauses));
   LeaveSharedToLarge(slopes_, large_.causes, *last);
