@@ -67,6 +67,15 @@ TEST_F(Importing, SaysNothingOfAxesWhereThereIsOne) {
   std::string text = "time_s,command_1,actual_1,temperature_2\n";
   for (int i = 0; i < 300; ++i) text += fmt::format("{:.3f},{:.4f},{:.4f},{}\n", 0.01 * i, Command_deg(1, 0.01 * i), Shown_deg(1, 0.01 * i), 20 + i % 2);
   EXPECT_THAT(Take(text).story, Not(HasSubstr("axes")));
+  EXPECT_THAT(MessageOf([&] { Take(text, "[course]\naxis_number = 2\n"); }), HasSubstr("no several axes")) << "which would be ignored";
+}
+
+TEST_F(Importing, TakesOneOfSeveralAxesThatAreSentToOnePlaceEach) {
+  std::string text = "time_s,command_1,actual_1,command_2,actual_2\n";
+  for (int i = 0; i < 60; ++i) text += fmt::format("{},10.0,{:.4f},-25.0,{:.4f}\n", i, 10.0 + 0.01 * (i % 7), -25.3 + 0.02 * (i % 5));
+  const Imported second = Take(text, "[course]\naxis_number = 2\n");
+  EXPECT_THAT(second.story, HasSubstr("\"actual_2\" against \"command_2\""));
+  EXPECT_NEAR(second.readings.front().measured_rad / units::deg, -25.3, 1e-9);
 }
 
 /// Ways of 40 deg with rests between, every 5 ms, to places that differ.

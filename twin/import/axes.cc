@@ -62,9 +62,10 @@ void KeepRows(const std::vector<std::size_t>& rows, Track& track) {
   track.lines.clear();
 }
 
-void TakeRowsOfAxis(const Map& map, Recording& recording, Track& track) {
+/// @return false if the rows are not of several axes.
+bool TakeRowsOfAxis(const Map& map, Recording& recording, Track& track) {
   const auto whose = std::ranges::find_if(track.columns, SaysWhoseRow);
-  if (whose == track.columns.end()) return;
+  if (whose == track.columns.end()) return false;
   const Column label = *whose;
   const std::set<double> values(label.value.begin(), label.value.end());
   std::vector<std::string> axes;
@@ -77,6 +78,7 @@ void TakeRowsOfAxis(const Map& map, Recording& recording, Track& track) {
   recording.left_out.push_back({label.value.size() - rows.size(), "rows of other axes"});
   KeepRows(rows, track);
   std::erase_if(track.columns, [&label](const Column& column) { return column.name == label.name; });
+  return true;
 }
 
 // Columns of several axes side by side.
@@ -110,12 +112,12 @@ std::vector<AxisPair> PairsIn(const std::vector<Choice>& columns) {
     return !than || clearness(choice) > clearness(*than);
   };
   for (const Choice& choice : columns) {
-    if (!Changes(choice) || IsOtherQuantity(*choice.column) || IsCalledError(choice.name)) continue;
+    const bool is_command = IsCalledCommand(choice.name);  // which may be for one place
+    if ((!is_command && !Changes(choice)) || IsOtherQuantity(*choice.column) || IsCalledError(choice.name)) continue;
     const std::string axis = AxisOf(choice.name);
     if (axis.empty()) continue;
     if (!of_axis.contains(axis)) order.push_back(axis);
     AxisPair& pair = of_axis[axis];
-    const bool is_command = IsCalledCommand(choice.name);
     if (is_command && is_clearer(choice, pair.reference, Speaks::kReference)) pair.reference = &choice;
     if (!is_command && (Clearness(choice.name, Speaks::kDevice) > 0 || IsCalledPlace(choice.name)) && is_clearer(choice, pair.shown, Speaks::kDevice))
       pair.shown = &choice;
@@ -127,25 +129,32 @@ std::vector<AxisPair> PairsIn(const std::vector<Choice>& columns) {
   return pairs;
 }
 
-void TakePair(Map& map, std::vector<Recording>& recordings) {
+/// @return false if there are no columns of several axes.
+bool TakePair(Map& map, std::vector<Recording>& recordings) {
   const std::vector<Choice> columns = NumberColumns(recordings);
   const std::vector<AxisPair> pairs = PairsIn(columns);
-  if (pairs.size() < 2) return;
+  if (pairs.size() < 2) return false;
   std::vector<std::string> axes;
   for (const AxisPair& pair : pairs) axes.push_back(fmt::format("\"{}\" against \"{}\"", pair.shown->name, pair.reference->name));
   const AxisPair& chosen = pairs[ChosenOf(axes, map, recordings.front())];
   std::vector<std::string>& remarks = recordings.front().remarks;
   Put("reference_deg", *chosen.reference, "by its name", map, remarks);
   Put("measured_deg", *chosen.shown, "by its name", map, remarks);
+  return true;
 }
 
 }  // namespace
 
 void TakeAxis(Map& map, std::vector<Recording>& recordings) {
   const bool is_open = map.columns.empty() && map.bench.empty() && map.sought.empty();
-  if (recordings.size() != 1 || recordings.front().tracks.size() != 1) return;
-  TakeRowsOfAxis(map, recordings.front(), recordings.front().tracks.front());
-  if (is_open) TakePair(map, recordings);
+  bool is_taken = false;
+  if (recordings.size() == 1 && recordings.front().tracks.size() == 1) {
+    is_taken = TakeRowsOfAxis(map, recordings.front(), recordings.front().tracks.front());
+    if (is_open && TakePair(map, recordings)) is_taken = true;
+  }
+  if (map.course.axis_number > 1 && !is_taken)
+    throw InputError("--axis-number", fmt::format("axis {}, and of no several axes is a command beside a place known", map.course.axis_number),
+                     "a file of several axes, or the columns by --column");
 }
 
 }  // namespace twinbench::imports

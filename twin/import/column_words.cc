@@ -113,12 +113,12 @@ bool IsCalledError(const std::string& name) {
 
 bool IsCalledCommand(const std::string& name) {
   return HasAny(name, std::array{"target", "commanded", "command", "cmd", "setpoint", "posset", "setpos", "goal", "desired", "des", "demand", "demanded",
-                                 "soll", "sollwert", "sollposition", "sollwinkel", "consigne", "consigna", "poscmd", "comando"});
+                                 "soll", "sollwert", "sollposition", "sollwinkel", "consigne", "consigna", "poscmd", "comando", "ordered", "given"});
 }
 
 bool SpeaksOfSide(const std::string& word) {
   return Clearness(word, Speaks::kReference) > 0 || Clearness(word, Speaks::kDevice) > 0 || IsCalledPlace(word) ||
-         HasAny(word, std::array{"state", "status", "deg", "rad"});
+         HasAny(word, std::array{"state", "status", "given", "deg", "rad"});
 }
 
 bool IsCalledCorrection(const std::string& name) {
