@@ -10,10 +10,10 @@
 namespace twinbench::diagnose {
 namespace {
 
-/// Selects term k again with all others accepted. @return true if another family took its place.
-bool SelectAgain(const SearchProblem& problem, std::vector<Term>& terms, int k) {
+/// Selects term k again with all others accepted. @param beside  Their columns. @return true if another family took its place.
+bool SelectAgain(const SearchProblem& problem, std::vector<Term>& terms, int k, const Eigen::MatrixXd& beside) {
   Term& old = terms[static_cast<std::size_t>(k)];
-  const Deflation others(problem.projector, ColumnsWithout(problem, terms, k));
+  const Deflation others(problem.projector, beside);
   Evidence evidence;
   const Term term = TakeBest(problem, others, evidence);
   const bool changed = term.family != old.family;
@@ -53,7 +53,7 @@ void Swap(const SearchProblem& problem, std::vector<Term>& terms) {
       Eigen::MatrixXd others = ColumnsWithout(problem, terms, k);
       Eigen::MatrixXd& last = beside[static_cast<std::size_t>(k)];
       if (round > 0 && others.cols() == last.cols() && others == last) continue;
-      changed = SelectAgain(problem, terms, k) || changed;
+      changed = SelectAgain(problem, terms, k, others) || changed;
       last = std::move(others);
     }
     if (!changed) break;
@@ -89,7 +89,7 @@ void Revise(const SearchProblem& problem, SearchResult& result) {
     if (weakest->statistic >= problem.threshold) return;
     terms.erase(weakest);
   }
-  if (terms.size() == 1) SelectAgain(problem, terms, 0);
+  if (terms.size() == 1) SelectAgain(problem, terms, 0, ColumnsWithout(problem, terms, 0));
 }
 
 bool IsUnknown(const Family& family) {

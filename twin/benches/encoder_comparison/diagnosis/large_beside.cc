@@ -40,10 +40,10 @@ LargeSearch::Beside LargeSearch::AskBeside(const std::vector<LargeCause>& causes
   return beside;
 }
 
-/// How many readings say as much as one of a cause. A loop whose steps are seen in a walk is known by them: it has no more
+/// How many readings say as much as one of a loop. One whose steps are seen in a walk is known by them: it has no more
 /// of the memory than what goes to and fro as it does.
-double LargeSearch::MemoryBeside(const std::string& effect, const Eigen::VectorXd& shown, const Eigen::VectorXd& left, double memory) const {
-  if (!IsLoop(effect) || !shown.allFinite() || !IsSeenInWalk(left, shown, fit_->Run().run.schedule.setup)) return memory;
+double LargeSearch::MemoryOfLoop(const Eigen::VectorXd& shown, const Eigen::VectorXd& left, double memory) const {
+  if (!shown.allFinite() || !IsSeenInWalk(left, shown, fit_->Run().run.schedule.setup)) return memory;
   return std::clamp(MemoryAlong(fit_->WhiteOf(shown), fit_->WhiteOf(left)), 1.0, memory);
 }
 
@@ -58,8 +58,8 @@ void LargeSearch::MoveBesideTheRest() {
   const double memory = fit_->Memory(beside.left);
   std::vector<EffectSettings>& effects = beside.asked.effects;
   for (std::size_t k = 0; k < effects.size(); ++k) {
-    const Eigen::VectorXd shown = fit_->Shown(effects) - fit_->Shown(EffectsWithout(k, effects));
-    const double more = std::sqrt(MemoryBeside(effects[k].name, shown, beside.left, memory));
+    const bool is_loop = IsLoop(effects[k].name);
+    const double more = std::sqrt(is_loop ? MemoryOfLoop(fit_->Shown(effects) - fit_->Shown(EffectsWithout(k, effects)), beside.left, memory) : memory);
     for (auto& [parameter, u] : effects[k].finding.u) u *= more;
   }
   TakeOver(beside.asked, large_.causes);

@@ -140,11 +140,13 @@ std::optional<LargeCause> OneOfTwoWaves(const Searched& searched, double apart) 
   return {};
 }
 
+bool IsLoop(const std::string& effect) { return effect == "backlash" || effect == "hysteresis"; }
+
 bool LeadsBesideLatency(const std::string& effect, double size, const std::vector<LargeCause>& causes) {
   const auto is_behind = [](const LargeCause& cause) {
     return cause.effect.name == "latency" && cause.effect.parameters.at("delay") + cause.effect.parameters.at("time_constant") > 0.0;
   };
-  return (effect == "backlash" || effect == "hysteresis") && size < 0.0 && std::ranges::any_of(causes, is_behind);
+  return IsLoop(effect) && size < 0.0 && std::ranges::any_of(causes, is_behind);
 }
 
 std::vector<int> NamedLikeUnnamed(const Searched& searched) {

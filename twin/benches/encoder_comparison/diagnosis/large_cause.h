@@ -59,6 +59,9 @@ bool AreOneWave(const LargeCause& a, const LargeCause& b, double apart);
 /// @param apart  OrdersApart.
 std::optional<LargeCause> OneOfTwoWaves(const Searched& searched, double apart);
 
+/// Follows the direction, and stays behind on a reversal with a course of its own behind it, as play and hysteresis do.
+bool IsLoop(const std::string& effect);
+
 /// A loop in which the device leads, beside a latency by which it is behind: each takes away what the other makes too much.
 /// @param size  Of what the catalogue calls width or lag.
 bool LeadsBesideLatency(const std::string& effect, double size, const std::vector<LargeCause>& causes);

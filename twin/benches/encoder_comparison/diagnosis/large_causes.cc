@@ -1,7 +1,6 @@
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -14,16 +13,12 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-/// What stays behind on a reversal, with a course of its own behind it.
-constexpr std::array kLoops = {"backlash", "hysteresis"};
-
 /// Large or not.
 std::ptrdiff_t LoopsIn(const LargeCauses& large) {
-  const auto is_loop = [](const std::string& effect) { return std::ranges::count(kLoops, effect) > 0; };
   const Searched& last = large.Last();
-  return std::ranges::count_if(large.causes, [&](const LargeCause& cause) { return is_loop(cause.effect.name); }) +
+  return std::ranges::count_if(large.causes, [&](const LargeCause& cause) { return IsLoop(cause.effect.name); }) +
          std::ranges::count_if(last.analysis.found.terms, [&](const Term& term) {
-           return is_loop(last.families[static_cast<std::size_t>(term.family)].effect);
+           return IsLoop(last.families[static_cast<std::size_t>(term.family)].effect);
          });
 }
 
@@ -90,7 +85,7 @@ LargeCauses OrWithoutLoops(LargeCauses found, const std::vector<Reading>& readin
   } else if (LoopsIn(found) == 0) {
     return found;
   } else {
-    options.excluded.insert(options.excluded.end(), kLoops.begin(), kLoops.end());
+    options.excluded.insert(options.excluded.end(), {"backlash", "hysteresis"});
     options.excluded.emplace_back("slip");  // an onset is no plainer than a reversal
   }
   // Two loops show anything, one against the other.

@@ -153,7 +153,7 @@ std::vector<double> LargeSearch::Strengths(const std::vector<LargeCause>& causes
   std::vector<double> strengths;
   for (std::size_t k = 0; k < causes.size(); ++k) {
     const Eigen::VectorXd shown = fit_->Shown(effects) - fit_->Shown(EffectsWithout(k, effects)), own = fit_->WhiteOf(shown);
-    const double most = std::max(MemoryBeside(effects[k].name, shown, beside.left, memory), MemoryAlong(own, left));
+    const double most = std::max(IsLoop(effects[k].name) ? MemoryOfLoop(shown, beside.left, memory) : memory, MemoryAlong(own, left));
     strengths.push_back(own.squaredNorm() > least ? Deviations(causes[k].effect) / std::sqrt(most) : 0.0);
   }
   return strengths;

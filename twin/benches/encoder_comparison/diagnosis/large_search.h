@@ -68,7 +68,7 @@ class LargeSearch {
   std::vector<Cause> InPlaceOf(std::size_t k) const;
   std::vector<Term*> NamedTerms();
   Beside AskBeside(const std::vector<LargeCause>& causes);
-  double MemoryBeside(const std::string& effect, const Eigen::VectorXd& shown, const Eigen::VectorXd& left, double memory) const;
+  double MemoryOfLoop(const Eigen::VectorXd& shown, const Eigen::VectorXd& left, double memory) const;
   void MoveBesideTheRest();
   std::vector<EffectSettings> OthersLike(const EffectSettings& effect) const;
   bool TakeOther();

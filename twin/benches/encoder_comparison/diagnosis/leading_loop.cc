@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "twin/benches/encoder_comparison/diagnosis/loop_in_walk.h"
+#include "twin/benches/encoder_comparison/diagnosis/large_cause.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose::encoder {

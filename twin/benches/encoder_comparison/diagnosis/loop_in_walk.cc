@@ -11,19 +11,16 @@ constexpr double kVeryStrongly = 6.0;  // log Bayes factor; Kass and Raftery, Ba
 
 }  // namespace
 
-bool IsLoop(const std::string& effect) {
-  return effect == "backlash" || effect == "hysteresis";
-}
-
 std::vector<LargeCause> LoopsInWalk(const Searched& searched, const Projector& projector) {
   const LinearRun& run = searched.encoder.run;
+  const std::vector<double> steps = MeansOf(run.residual, run.schedule.setup, kInMean).Steps();
   std::vector<LargeCause> loops;
   for (const Family& family : searched.families) {
     if (family.kind != Kind::kNamed || !IsLoop(family.effect)) continue;
     int place = -1;
     double most = kVeryStrongly;
     for (int g = 0; g < family.grid; ++g) {
-      const double evidence = EvidenceOfSteps(run.residual, family.ColumnsAt(g).col(0), run.schedule.setup, kInMean);
+      const double evidence = EvidenceOfSteps(steps, MeansOf(family.ColumnsAt(g).col(0), run.schedule.setup, kInMean).Steps());
       if (evidence <= most) continue;
       most = evidence;
       place = g;
@@ -34,7 +31,7 @@ std::vector<LargeCause> LoopsInWalk(const Searched& searched, const Projector& p
 }
 
 bool IsSeenInWalk(const Eigen::VectorXd& left, const Eigen::VectorXd& shown, const std::vector<int>& setup) {
-  return EvidenceOfSteps(left + shown, shown, setup, kInMean) > kVeryStrongly;
+  return EvidenceOfSteps(MeansOf(left + shown, setup, kInMean).Steps(), MeansOf(shown, setup, kInMean).Steps()) > kVeryStrongly;
 }
 
 }  // namespace twinbench::diagnose::encoder

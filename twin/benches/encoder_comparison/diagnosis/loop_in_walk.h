@@ -7,9 +7,6 @@
 
 namespace twinbench::diagnose::encoder {
 
-/// Follows the direction, and stays behind on a reversal, as play and hysteresis do.
-bool IsLoop(const std::string& effect);
-
 /// Of rows that walk as a whole: the loops whose steps theirs go with, each where it is best. What repeats on each reversal is
 /// taken first; a shape in time may follow anything, and takes what does not repeat.
 std::vector<LargeCause> LoopsInWalk(const Searched& searched, const Projector& projector);

@@ -24,11 +24,9 @@ Means MeansOf(const Eigen::VectorXd& rows, const std::vector<int>& setup, Eigen:
   return means;
 }
 
-double EvidenceOfSteps(const Eigen::VectorXd& rows, const Eigen::VectorXd& signal, const std::vector<int>& setup,
-                       Eigen::Index each) {
+double EvidenceOfSteps(const std::vector<double>& steps, const std::vector<double>& of_signal) {
   constexpr double kFewest = 8.0, kMostAlike = 0.999999;
-  const std::vector<double> of_rows = MeansOf(rows, setup, each).Steps(), of_signal = MeansOf(signal, setup, each).Steps();
-  const Eigen::Map<const Eigen::VectorXd> r(of_rows.data(), std::ssize(of_rows)), s(of_signal.data(), std::ssize(of_signal));
+  const Eigen::Map<const Eigen::VectorXd> r(steps.data(), std::ssize(steps)), s(of_signal.data(), std::ssize(of_signal));
   const auto count = static_cast<double>(r.size());
   const double both = r.squaredNorm() * s.squaredNorm(), product = r.dot(s);
   if (count < kFewest || !(both > 0.0) || !(product > 0.0)) return 0.0;

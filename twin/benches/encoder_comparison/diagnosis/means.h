@@ -20,7 +20,6 @@ Means MeansOf(const Eigen::VectorXd& rows, const std::vector<int>& setup, Eigen:
 /// Whether steps from mean to mean go with those of a signal, in its sense: beside a walk, whose steps know nothing of each
 /// other, that is what tells a cause from a piece of the walk, however large the walk becomes.
 /// @return log Bayes factor of "walk and signal" against "walk" by Schwarz's criterion; 0 where they go against each other.
-double EvidenceOfSteps(const Eigen::VectorXd& rows, const Eigen::VectorXd& signal, const std::vector<int>& setup,
-                       Eigen::Index each);
+double EvidenceOfSteps(const std::vector<double>& steps, const std::vector<double>& of_signal);
 
 }  // namespace twinbench::diagnose::encoder
