@@ -62,12 +62,16 @@ void LargeSearch::LeaveToLarge() {
       return cause.effect.name == family.effect && term.shape.size() == 1 && order && std::abs(*order - term.shape[0]) < apart;
     });
   };
+  // In motion two loops show anything, one against the other.
+  const bool has_loop = last.encoder.context.Moves() &&
+                        std::ranges::any_of(large_.causes, [](const LargeCause& cause) { return IsLoop(cause.effect.name); });
   double least_odd = 0.0;  // passes of both directions tell it from what is the same in them
   for (const LargeCause& cause : large_.causes) least_odd += IsOfAngle(cause.effect) ? 0.0 : kAsExact * cause.explained;
   for (const Written& written : written_) least_odd += IsOfAngle(written.effect) ? 0.0 : kAsExact * written.explained;
   std::erase_if(terms, [&](const Term& term) {
     const bool is_odd = last.families[static_cast<std::size_t>(term.family)].effect.starts_with("direction");
     const std::string& effect = last.families[static_cast<std::size_t>(term.family)].effect;
+    if (has_loop && IsLoop(effect)) return true;
     return term.explained < (is_odd ? least_odd : least) || is_of_large(term) || LeadsBesideLatency(effect, term.amplitudes[0], large_.causes) || IsChance(term, left);
   });
   if (large_.causes.empty() && terms.empty()) TellNothing(last);
