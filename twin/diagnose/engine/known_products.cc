@@ -46,7 +46,7 @@ void KnownProducts::Add(const Eigen::MatrixXd& white, const std::vector<std::siz
 }
 
 std::vector<RunsByRow> KnownProducts::Of(const Eigen::MatrixXd& white) {
-  constexpr std::size_t kMost = 64;  // columns
+  constexpr Eigen::Index kMostValues = 12'000'000;  // 96 MB
   std::vector<std::size_t> digests, fresh_digests;
   std::vector<Eigen::Index> fresh;
   for (Eigen::Index k = 0; k < white.cols(); ++k) {
@@ -57,12 +57,16 @@ std::vector<RunsByRow> KnownProducts::Of(const Eigen::MatrixXd& white) {
   }
   if (!fresh.empty()) Add(Eigen::MatrixXd(white(Eigen::all, fresh)), fresh_digests);
   std::vector<RunsByRow> all;
-  for (const Bundle& bundle : bundles_) all.emplace_back(bundle.Grid() * bundle.Columns(), white.cols());
+  Eigen::Index signatures = 1;
+  for (const Bundle& bundle : bundles_) {
+    all.emplace_back(bundle.Grid() * bundle.Columns(), white.cols());
+    signatures += all.back().rows();
+  }
   for (std::size_t k = 0; k < digests.size(); ++k) {
     const Known* const known = Find(digests[k]);
     for (std::size_t b = 0; b < all.size(); ++b) all[b].col(static_cast<Eigen::Index>(k)) = known->of_bundle[b];
   }
-  while (known_.size() > std::max(kMost, digests.size())) known_.pop_back();
+  while (known_.size() > digests.size() && std::ssize(known_) > kMostValues / signatures) known_.pop_back();
   return all;
 }
 

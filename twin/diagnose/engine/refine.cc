@@ -45,9 +45,13 @@ Refined RefineShape(const Family& family, int grid_point, const LinearRun& run, 
   return {shape, Explain(noise.Whiten(run, family.at(shape)), projector, others, rows).power};
 }
 
+bool HasSlopes(const Family& family, const Eigen::VectorXd& shape) {
+  return family.at && shape.size() > 0;
+}
+
 Eigen::MatrixXd WithShapeSlopes(const Family& family, const Eigen::VectorXd& shape, const Eigen::MatrixXd& columns,
                                 const Eigen::VectorXd& amplitudes) {
-  if (!family.at || shape.size() == 0) return columns;
+  if (!HasSlopes(family, shape)) return columns;
   Eigen::MatrixXd all(columns.rows(), columns.cols() + shape.size());
   all.leftCols(columns.cols()) = columns;
   for (Eigen::Index k = 0; k < shape.size(); ++k) {

@@ -35,8 +35,11 @@ struct Refined {
 Refined RefineShape(const Family& family, int grid_point, const LinearRun& run, const NoiseModel& noise,
                     const Projector& projector, const Deflation& others, const Projected& data);
 
+/// Whether WithShapeSlopes has any.
+bool HasSlopes(const Family& family, const Eigen::VectorXd& shape);
+
 /// A signature and how its sum, weighted with the fitted amplitudes, changes with each shape parameter: rows x
-/// amplitudes and shapes, not whitened. Without slopes if the family has no `at`.
+/// amplitudes and shapes, not whitened.
 /// @param columns  The signature at `shape`.
 Eigen::MatrixXd WithShapeSlopes(const Family& family, const Eigen::VectorXd& shape, const Eigen::MatrixXd& columns,
                                 const Eigen::VectorXd& amplitudes);

@@ -141,6 +141,10 @@ Eigen::MatrixXd ColumnsWithout(const SearchProblem& problem, const std::vector<T
     if (k == left_out) continue;
     const Term& term = terms[static_cast<std::size_t>(k)];
     const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
+    if (!HasSlopes(family, term.shape)) {
+      columns = HStack(columns, term.columns);
+      continue;
+    }
     const Deflation alone(problem.projector, problem.noise.Whiten(problem.run, term.columns));
     const Eigen::VectorXd amplitudes = alone.Amplitudes(problem.projector.Apply(problem.white));
     columns = HStack(columns, WithShapeSlopes(family, term.shape, term.columns, amplitudes));

@@ -147,8 +147,11 @@ void LargeSearch::DropNeedless() {
 
 /// Of each large cause, how many of its uncertainties it is away from nothing, with the memory of the rest; 0 of what
 /// is less than the others are as exact as their formula.
-std::vector<double> LargeSearch::Strengths(const std::vector<LargeCause>& causes) const {
-  const AskedAgain beside = fit_->Ask(causes, LeftByTerms());
+std::vector<double> LargeSearch::Strengths(const std::vector<LargeCause>& causes) const { return Strengths(causes, LeftByTerms()); }
+
+/// @param rows  That they have to explain.
+std::vector<double> LargeSearch::Strengths(const std::vector<LargeCause>& causes, const Eigen::VectorXd& rows) const {
+  const AskedAgain beside = fit_->Ask(causes, rows);
   const Eigen::VectorXd left = fit_->WhiteOf(beside.left);
   const double memory = fit_->Memory(beside.left), least = LeastExplained();
   // Beside the rest a fit may end where the twin shows nothing.
@@ -208,11 +211,13 @@ std::vector<Cause> LargeSearch::InPlaceOf(std::size_t k) const {
 
 /// What is left for the large causes once the last search has explained the rest. A random walk is noise beside them: its many
 /// shapes would follow whatever they miss.
-Eigen::VectorXd LargeSearch::LeftByTerms() const {
+/// @param but  Whose terms are not taken off.
+Eigen::VectorXd LargeSearch::LeftByTerms(const Cause* but) const {
   Eigen::VectorXd rows = large_.first->encoder.run.residual;
   const Searched& last = large_.Last();
   for (const Term& term : last.analysis.found.terms) {
-    if (!FollowsWalk(last.families[static_cast<std::size_t>(term.family)], term.columns)) rows -= term.columns * term.amplitudes;
+    const Family& family = last.families[static_cast<std::size_t>(term.family)];
+    if (!FollowsWalk(family, term.columns) && !(but && IsOf(*but, family))) rows -= term.columns * term.amplitudes;
   }
   return rows;
 }

@@ -43,6 +43,7 @@ class LargeSearch {
   bool TakeNext();
   bool TakeOneOfTwoWaves();
   bool Take(const LargeCause& next);
+  bool WouldBeDropped(const AskedAgain& asked, std::vector<LargeCause> causes) const;
   bool IsOtherFunctionOfSpeed(const LargeCause& next, const AskedAgain& asked) const;
   bool IsClearlyLess(double power, const Eigen::VectorXd& left) const;
   bool TakeSum(std::size_t k, const LargeCause& more);
@@ -62,6 +63,7 @@ class LargeSearch {
   SecondOrder Bent() const;
   void DropNeedless();
   std::vector<double> Strengths(const std::vector<LargeCause>& causes) const;
+  std::vector<double> Strengths(const std::vector<LargeCause>& causes, const Eigen::VectorXd& rows) const;
   void SearchPlain();
   void EndTies();
   void JudgeUnsure();
@@ -74,7 +76,7 @@ class LargeSearch {
   bool TakeOther();
   bool Straighten();
   bool TakeInstead(std::vector<LargeCause> causes);
-  Eigen::VectorXd LeftByTerms() const;
+  Eigen::VectorXd LeftByTerms(const Cause* but = nullptr) const;
   void TellWhatEachShows();
   void TellWhatNamesLeave();
 

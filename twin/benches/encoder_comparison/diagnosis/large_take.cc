@@ -12,6 +12,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
 #include "twin/core/linear_algebra.h"
+#include "twin/diagnose/tuning.h"
 #include "twin/model/motion.h"
 
 /// What is large, one after the other.
@@ -142,9 +143,17 @@ bool LargeSearch::Take(const LargeCause& next) {
     const auto of = taken.parameters.find(size);
     if (of != taken.parameters.end() && LeadsBesideLatency(taken.name, of->second, large_.causes)) return false;
   }
+  if (WouldBeDropped(asked, causes)) return false;
   causes.back().explained = power_ - power;
   Accept(asked, std::move(causes), kFewCauses);
   return true;
+}
+
+/// The last of these, beside all else that is there: known when that has been searched for.
+bool LargeSearch::WouldBeDropped(const AskedAgain& asked, std::vector<LargeCause> causes) const {
+  if (most_searched_ != kMostCauses) return false;
+  TakeOver(asked, causes);
+  return Strengths(causes, LeftByTerms(&causes.back().causes.front())).back() <= tuning::kHeadline;
 }
 
 /// What is taken for a latency and goes with another function of the speed: that explains more alone, however the latency bends,
