@@ -239,9 +239,10 @@ void AddSettling(const Context& context, Candidates& named) {
 }
 
 /// What a servo is behind by. Where a motion is a sine its acceleration is its place, which is a scale; where it does not rest
-/// between its ways, what friction does is what play does.
+/// between its ways, what friction does is what play does, which any device may have: the readings at rest have to say so.
 void AddFollowingErrors(const SignalContext& c, Candidates& named) {
   constexpr double kOwn = 0.3, kShare = 0.02;  // of its size beside place and speed; of the readings
+  constexpr double kOfDrives = 0.1;            // of what any device may have
   Eigen::MatrixXd others(c.Readings(), 3);
   others << Eigen::VectorXd::Ones(c.Readings()), c.reference_rad, c.velocity_rad_s;
   const Eigen::VectorXd& a = c.acceleration_rad_s2;
@@ -250,7 +251,7 @@ void AddFollowingErrors(const SignalContext& c, Candidates& named) {
   const Eigen::VectorXd goes = Goes(c);
   const auto fewest = static_cast<Eigen::Index>(kShare * static_cast<double>(c.Readings()));
   const auto is_often = [&](double sense) { return (goes.array() == sense).count() > fewest; };
-  if (is_often(-1.0) && is_often(0.0) && is_often(1.0)) named.Add(Shown("friction", -1.0), {"lag"}, goes);
+  if (is_often(-1.0) && is_often(0.0) && is_often(1.0)) named.Add(Shown("friction", -1.0), {"lag"}, goes).prior_weight = kOfDrives;
 }
 
 void AddMotion(const Context& context, Candidates& named) {
