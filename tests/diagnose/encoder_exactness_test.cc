@@ -165,5 +165,14 @@ TEST(EncoderExactness, AWalkHasTheSizeThatTheReadingsShowAndNoOtherName) {
   }
 }
 
+/// A column that a program computed from the other one has rounding, which repeats, and no errors.
+TEST(EncoderExactness, WhatIsComputedHasNoCause) {
+  Record record;
+  for (int k = 0; k < 400; ++k) record.Add(0.1 * k, 0.9 * k, 0.9 * k + 3e-13 * std::cos(12.0 * 0.9 * k * units::deg), 1, 0);
+  const Answer answer = Ask(record);
+  EXPECT_EQ(answer.run.diagnosis.verdict, Verdict::kNone) << answer.Words();
+  EXPECT_THAT(answer.run.diagnosis.notes, testing::Contains(HasSubstr("computed")));
+}
+
 }  // namespace
 }  // namespace twinbench::diagnose::encoder
