@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/diagnose/encoder_fit.h"
 #include "tests/diagnose/encoder_record.h"
+#include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/core/reading_clock.h"
 
 namespace twinbench::diagnose::encoder {
@@ -66,6 +68,24 @@ TEST(EncoderWalk, OfAJointWithoutPlayIsNoPlay) {
     const Answer answer = Ask(Joint(0.0, 0.06, 0.0, true, seed));
     EXPECT_FALSE(answer.Names("backlash", 0.5) || answer.Names("hysteresis", 0.5)) << answer.Words();
   }
+}
+
+/// What a walk and another shape make against each other is in neither of them, and no word of it stays.
+TEST(EncoderWalk, SaysNothingOfAShapeThatItTakesBack) {
+  Noise step_deg(0.05, 3);
+  Record record;
+  double walk_deg = 0.0;
+  for (int k = 0; k < 600; ++k) record.Add(0.1 * k, 20.0 * std::sin(0.01 * k), 20.0 * std::sin(0.01 * k) + (walk_deg += step_deg()), 1, 0);
+  DiagnosisRun result;
+  result.run = RunOf(record.readings, record.Believed()).run;
+  Accepted& shape = result.accepted.emplace_back();
+  shape.family.kind = Kind::kUnknown;
+  shape.family.describe = [](int, const Eigen::VectorXd&, const Eigen::VectorXd&) { return std::string("by the speed"); };
+  shape.columns = Eigen::VectorXd::LinSpaced(600, 0.0, 6.0).array().cos().matrix();
+  shape.amplitudes = Eigen::VectorXd::Constant(1, 5.0 * units::deg);
+  result.diagnosis.unknown.signature = "by the speed";
+  TellWander({}, result);
+  EXPECT_THAT(result.diagnosis.unknown.signature, testing::AllOf(testing::HasSubstr("random walk"), testing::Not(testing::HasSubstr("speed"))));
 }
 
 }  // namespace

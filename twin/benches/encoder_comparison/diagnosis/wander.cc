@@ -182,6 +182,18 @@ void TakeSizes(const Accepted& accepted, const Eigen::MatrixXd& cov, const Eigen
     cause->parameters = accepted.family.parameters(accepted.shape, accepted.amplitudes, cov);
 }
 
+/// Without the parts that say so.
+void DropParts(const std::string& words, std::string& signature) {
+  std::string kept;
+  for (std::size_t at = 0; at < signature.size();) {
+    const std::size_t end = std::min(signature.find(" | ", at), signature.size());
+    const std::string part = signature.substr(at, end - at);
+    if (part.find(words) == std::string::npos) kept += (kept.empty() ? "" : " | ") + part;
+    at = end + 3;
+  }
+  signature = kept;
+}
+
 /// What was fitted beside a shape in time that follows nearly anything has to be as large without it: else the two cancel.
 void DropCancelled(const Eigen::MatrixXd& free, DiagnosisRun& result) {
   constexpr double kSame = 0.5;
@@ -195,7 +207,9 @@ void DropCancelled(const Eigen::MatrixXd& free, DiagnosisRun& result) {
       kept.push_back(accepted);
       continue;
     }
-    std::erase_if(result.diagnosis.causes, [&](const Cause& c) { return c.effect == accepted.family.effect && c.where == accepted.family.where; });
+    const Family& family = accepted.family;
+    std::erase_if(result.diagnosis.causes, [&](const Cause& c) { return c.effect == family.effect && c.where == family.where; });
+    if (family.describe) DropParts(family.describe(accepted.grid_point, accepted.amplitudes, accepted.shape), result.diagnosis.unknown.signature);
   }
   result.accepted = std::move(kept);
 }
@@ -281,18 +295,6 @@ Accepted CourseOf(const Walk& walk, const LinearRun& run) {
   course.amplitudes = SolveShortest(all, walk.left).tail(course.columns.cols());
   course.family.amplitudes.assign(static_cast<std::size_t>(course.columns.cols()), {"strength", "1", 1.0, 1.0});
   return course;
-}
-
-/// Without the parts that say so.
-void DropParts(const std::string& words, std::string& signature) {
-  std::string kept;
-  for (std::size_t at = 0; at < signature.size();) {
-    const std::size_t end = std::min(signature.find(" | ", at), signature.size());
-    const std::string part = signature.substr(at, end - at);
-    if (part.find(words) == std::string::npos) kept += (kept.empty() ? "" : " | ") + part;
-    at = end + 3;
-  }
-  signature = kept;
 }
 
 void AddWords(const Eigen::VectorXd& walk, const LinearRun& run, std::string& signature) {

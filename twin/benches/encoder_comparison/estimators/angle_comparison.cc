@@ -1,5 +1,6 @@
 #include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -43,13 +44,16 @@ class Continued {
   bool is_first_ = true;
 };
 
-Eigen::VectorXd WithoutSetUpMeans(const AngleComparison& comparison, const std::vector<Reading>& readings) {
+/// @return the errors less the mean of their set-up, which the comparison has then.
+Eigen::VectorXd TakeSetUpMeansOut(const std::vector<Reading>& readings, AngleComparison& comparison) {
   std::map<int, std::pair<double, int>> sums;
   const auto setup_of = [&](Eigen::Index i) { return readings[comparison.used[i]].setup; };
   for (Eigen::Index i = 0; i < comparison.error_rad.size(); ++i) {
     sums[setup_of(i)].first += comparison.error_rad[i];
     ++sums[setup_of(i)].second;
   }
+  comparison.mean_rad.resize(std::ssize(sums));
+  std::ranges::transform(sums, comparison.mean_rad.begin(), [](const auto& entry) { return entry.second.first / entry.second.second; });
   Eigen::VectorXd rest_rad = comparison.error_rad;
   for (Eigen::Index i = 0; i < rest_rad.size(); ++i)
     rest_rad[i] -= sums[setup_of(i)].first / sums[setup_of(i)].second;
@@ -83,7 +87,7 @@ AngleComparison CompareAngles(const std::vector<Reading>& readings) {
   comparison.left_out = static_cast<int>(readings.size() - comparison.used.size());
   comparison.error_rad = Eigen::Map<const Eigen::VectorXd>(error_rad.data(), std::ssize(error_rad));
   if (error_rad.empty()) return comparison;
-  const Eigen::VectorXd rest_rad = WithoutSetUpMeans(comparison, readings);
+  const Eigen::VectorXd rest_rad = TakeSetUpMeansOut(readings, comparison);
   comparison.rms_rad = std::sqrt(rest_rad.squaredNorm() / static_cast<double>(rest_rad.size()));
   comparison.range_rad = rest_rad.maxCoeff() - rest_rad.minCoeff();
   comparison.mean_forward_rad = MeanInDirection(rest_rad, comparison, readings, 1);

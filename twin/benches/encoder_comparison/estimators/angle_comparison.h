@@ -13,6 +13,8 @@ struct AngleComparison {
   Eigen::VectorXd error_rad;  // measured - reference, one a used reading
   int left_out = 0;           // readings without a value
 
+  Eigen::VectorXd mean_rad;  // of each set-up, in the order of their numbers
+
   // Of error_rad without the mean of its set-up; NaN without readings.
   double rms_rad = kNaN;
   double range_rad = kNaN;         // largest - smallest
