@@ -101,11 +101,14 @@ void AddAsynchronous(const std::array<double, kComponents>& rms, TableEstimate& 
   }
 }
 
-/// What repeats in about two turns looks like an error of either table at the positions of a few mountings.
+/// What repeats in about two turns looks like an error of either table at the positions of a few mountings; the reference's tilt
+/// moves the grating by another lever than the target's would, for which it is taken.
 std::array<double, kComponents> AsynchronousOf(const RotarySettings& bench, std::size_t table) {
   const auto of_both = [&](double TableSettings::*half) { return std::hypot(bench.target.*half, bench.reference.*half) / std::sqrt(2.0); };
+  const double lever_m = table == 0 ? bench.reference_height_m / std::sqrt(2.0) : 0.0;
   const double tilt_rad = std::hypot(bench.mechanics.asynchronous_tilt_rad[table], of_both(&TableSettings::half_frequency_tilt_rad));
-  const double radial_m = std::hypot(bench.mechanics.asynchronous_radial_m[table], of_both(&TableSettings::half_frequency_radial_m));
+  const double radial_m = std::hypot(bench.mechanics.asynchronous_radial_m[table], of_both(&TableSettings::half_frequency_radial_m),
+                                     bench.reference.half_frequency_tilt_rad * lever_m);
   return {tilt_rad, tilt_rad, 0.0, radial_m, radial_m, 0.0};  // in the order of Component
 }
 

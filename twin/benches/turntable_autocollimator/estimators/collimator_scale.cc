@@ -1,5 +1,8 @@
 #include "twin/benches/turntable_autocollimator/estimators/collimator_scale.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "twin/benches/turntable_autocollimator/settings.h"
 
 namespace twinbench::separate::turntable {
@@ -14,6 +17,13 @@ Eigen::Vector2d MirrorAngles_rad(const Eigen::Vector2d& shown_rad, const Scenari
   for (int step = 0; step < kSteps; ++step)
     angle_rad = scaled_rad / (1.0 + edge * angle_rad.squaredNorm() / (range_rad * range_rad));
   return angle_rad;
+}
+
+double BeamWalk_rad(const TurntableSettings& own, int setup, double turntable_rad) {
+  const TurntableProcedureSettings& p = own.turntable_procedure;
+  const int stated = std::clamp(setup, 0, p.SetUps() - 1);
+  const double aside_m = p.Of(p.eccentricities_m, stated) * std::cos(turntable_rad + p.Of(p.tilt_azimuths_rad, stated));
+  return -8.0 * own.mirror.flatness_m * aside_m / (own.mirror.width_m * own.mirror.width_m);
 }
 
 }  // namespace twinbench::separate::turntable

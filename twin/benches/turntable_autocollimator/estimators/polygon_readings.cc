@@ -19,14 +19,6 @@ int FaceOf(const Reading& r, const TurntableSettings& own) {
   return face < 0 ? face + faces : face;
 }
 
-/// What a beam does that meets a hollow face off its middle.
-double BeamWalk_rad(const TurntableSettings& own, int setup, double turntable_rad) {
-  const TurntableProcedureSettings& p = own.turntable_procedure;
-  const double aside_m =
-      p.Of(p.eccentricities_m, setup) * std::cos(turntable_rad + p.Of(p.tilt_azimuths_rad, setup));
-  return -8.0 * own.mirror.flatness_m * aside_m / (own.mirror.width_m * own.mirror.width_m);
-}
-
 /// The mirror's yaw and tilt without scale and roll of the autocollimator.
 Eigen::Vector2d Levelled_rad(const Reading& r, const Scenario& scenario) {
   const Eigen::Vector2d mirror_rad = MirrorAngles_rad({r.autocollimator_yaw_rad, r.autocollimator_tilt_rad}, scenario);

@@ -20,7 +20,8 @@ namespace {
 TurntableStop StopOf(const Reading& r, const Scenario& scenario) {
   const Eigen::Vector2d mirror_rad =
       MirrorAngles_rad({r.autocollimator_yaw_rad, r.autocollimator_tilt_rad}, scenario);
-  return {r.setup, r.pass, r.direction, r.target_rad, r.reference_rad, mirror_rad.x(), mirror_rad.y()};
+  const double walk_rad = BeamWalk_rad(TurntableOf(scenario), r.setup, r.target_rad);
+  return {r.setup, r.pass, r.direction, r.target_rad, r.reference_rad, mirror_rad.x() - walk_rad, mirror_rad.y()};
 }
 
 bool IsStop(const Reading& r, Phase phase) {
