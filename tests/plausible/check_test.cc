@@ -117,6 +117,18 @@ TEST(Plausible, DoubtsADeviceThatComesLaterAndRefusesOneThatNeverComes) {
   EXPECT_THAT(lines(other), HasSubstr("cannot be: measured_deg does not go with"));
 }
 
+/// Closed forms in all their digits: what they differ by from the curve through their neighbours is the last bit.
+TEST(Plausible, SaysNothingOfAScatterThatIsTheLastDigits) {
+  for (const double noise_rad : {0.0, 1e-6}) {
+    std::vector<Reading> readings = Readings();
+    for (Reading& r : readings) {
+      r.measured_rad = r.reference_rad + 1e-3 + noise_rad * std::sin(17.0 * r.reading * r.reading) + (r.reading == 60 ? 1e-3 : 0.0);
+    }
+    const std::string said = InLines(Check(readings, Angles(), {{.column = "measured_deg", .nominal = [](const Reading& r) { return r.reference_rad; }, .is_angle = true}}));
+    EXPECT_EQ(said.find("times its scatter") != said.npos, noise_rad > 0.0) << said;
+  }
+}
+
 TEST(Plausible, RefusesVoltsThatTheCardCannotGive) {
   const Scenario scenario = ParseScenario("bench = \"rotary_4dof\"\n", "test", "");
   EXPECT_THAT(Lines(Voltages(), scenario), IsEmpty());

@@ -100,9 +100,10 @@ void CheckSingleValues(const Channel& channel, const Expected& expected, std::ve
     unlike[second] = std::min(unlike[second], apart);
   }
   const double usual = std::max({RobustNoiseOnCourse(left), expected.noise, expected.step, StepOf(channel)});
+  if (!(usual > LeastScatterOf(channel))) return;
   std::size_t worst = 0;
   double times = 0.0;
-  for (std::size_t i = 1; i + 1 < channel.size() && usual > 0.0; ++i) {
+  for (std::size_t i = 1; i + 1 < channel.size(); ++i) {
     const double course = std::abs(left[i + 1] - left[i - 1]), alone = std::abs(left[i] - 0.5 * (left[i + 1] + left[i - 1]));
     if (2.0 * course > alone || std::min(alone, unlike[i]) < kAlone * usual) continue;  // a step, a slope, or of its place
     if (const double here = std::min(alone, unlike[i]) / std::max(usual, WayAbout(i, left)); here > times) times = here, worst = i;

@@ -59,6 +59,11 @@ double StepOf(const Channel& channel) {
   return 100 * off <= std::ssize(different) ? step : 0.0;
 }
 
+double LeastScatterOf(const Channel& channel) {
+  constexpr double kOfDigits = 1e-12;  // some thousand times the last bit: sums and remainders have lost a few
+  return kOfDigits * std::abs(*std::ranges::max_element(channel.value, {}, [](double x) { return std::abs(x); }));
+}
+
 std::vector<double> Sizes(std::vector<double> x) {
   for (double& one : x) one = std::abs(one);
   return x;

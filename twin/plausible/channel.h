@@ -32,6 +32,10 @@ bool Moves(const Channel& channel);
 /// The step of which all values are multiples; 0 if there is none.
 double StepOf(const Channel& channel);
 
+/// What values differ by no less than, for any reason but the digits that they were written or computed with: below it there is no
+/// scatter, and nothing lies any times of it away.
+double LeastScatterOf(const Channel& channel);
+
 /// Without their signs.
 std::vector<double> Sizes(std::vector<double> x);
 

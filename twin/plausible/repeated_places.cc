@@ -104,6 +104,7 @@ void CheckRepeatedPlaces(const Expected& expected, const Channel& channel, const
   if (sizes.size() < kFewestToJudge) return;
   const double usual =
       std::max({RobustDeviation(std::move(sizes)), expected.noise, expected.step, StepOf(channel)});
+  if (!(usual > LeastScatterOf(channel))) return;
   double times = kTimesOthers;
   std::size_t worst = channel.size();
   for (const RowsOfPass& pass : passes) {
