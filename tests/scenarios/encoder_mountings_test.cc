@@ -237,7 +237,10 @@ TEST(EncoderHeads, AreDiagnosedWhereAllOfThemStayBehindOnReversal) {
   Scenario believed = made;
   believed.effects.clear();
   const diagnose::DiagnosisRun found = diagnose::Diagnose(test::RunEncoderTwin(made).readings, believed, {});
-  EXPECT_NE(found.diagnosis.verdict, diagnose::Verdict::kNone);
+  const std::vector<diagnose::Cause>& causes = found.diagnosis.causes;
+  EXPECT_NE(std::ranges::find(causes, "backlash", &diagnose::Cause::effect), causes.end());
+  for (const char* against_targets : {"scale", "reference_fault"})
+    EXPECT_EQ(std::ranges::find(causes, against_targets, &diagnose::Cause::effect), causes.end()) << against_targets;
 }
 
 }  // namespace

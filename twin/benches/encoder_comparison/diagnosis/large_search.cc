@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
+#include "twin/benches/encoder_comparison/diagnosis/target_curve.h"
 #include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/core/linear_algebra.h"
 #include "twin/diagnose/conclusion.h"
@@ -22,9 +23,17 @@ void TellSignalZero(const std::vector<EffectSettings>& effects, DeviceSettings& 
   }
 }
 
-/// Errors of targets may be anything.
+/// Errors of targets may be anything. What goes by the angle is one number at a target, and theirs: along what a reference's own
+/// noise makes of a target it would be fitted to that noise, at any size.
 void LeaveTargetsFree(const Eigen::MatrixXd& targets, EncoderRun& encoder) {
   encoder.targets = targets;
+  if (targets.cols() > 0) {
+    SignalContext& c = encoder.context;
+    const Eigen::VectorXd is_at_one = targets.rowwise().sum();
+    const Eigen::VectorXd aside_rad = is_at_one.cwiseProduct(c.reference_rad) - targets * AtTargets(targets, c.reference_rad);
+    c.reference_rad -= aside_rad;
+    c.device_rad -= aside_rad;
+  }
   Nuisance& nuisance = encoder.run.nuisance;
   const double precision = nuisance.prior_precision[0];
   AskedAgain any;
