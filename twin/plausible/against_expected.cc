@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
@@ -115,12 +117,35 @@ void CheckSingleValues(const Channel& channel, const Expected& expected, std::ve
                           Text(*channel.column, channel.value[worst]), channel.reading[worst]->reading, times)});
 }
 
+/// Values in a row that stand elsewhere in the same row, to the last digit: noise of a step and more does not
+/// repeat itself.
+void CheckCopied(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
+  constexpr std::size_t kInARow = 20;
+  if (!(expected.noise > 0.0)) return;
+  const std::vector<double>& value = channel.value;
+  std::map<std::pair<double, double>, std::size_t> first;
+  std::size_t apart = 0, run = 1, longest = 1, end = 0, of_end = 0;
+  for (std::size_t i = 1; i < channel.size(); ++i) {
+    const auto [entry, is_new] = first.try_emplace({value[i - 1], value[i]}, i);
+    const bool goes_on = !is_new && i - entry->second == apart && value[i] != value[i - 1];
+    run = goes_on ? run + 1 : 1;
+    apart = i - entry->second;
+    if (run > longest) longest = run, end = i, of_end = entry->second;
+  }
+  if (longest < kInARow) return;
+  findings.push_back(
+      {false, fmt::format("{} of readings {} to {} is that of readings {} to {} to the last digit: was it copied?",
+                          channel.column->name, channel.reading[end - longest]->reading, channel.reading[end]->reading,
+                          channel.reading[of_end - longest]->reading, channel.reading[of_end]->reading)});
+}
+
 }  // namespace
 
 void CheckAgainst(const Expected& expected, const Channel& channel, std::vector<Finding>& findings) {
   CheckGoesWith(channel, expected, findings);
   CheckSize(channel, expected, findings);
   CheckOrdered(channel, expected, findings);
+  CheckCopied(channel, expected, findings);
   const std::size_t before = findings.size();
   CheckSingleValues(channel, expected, findings);
   if (findings.size() == before) CheckRepeatedPlaces(expected, channel, LeftOf(channel, expected), findings);
