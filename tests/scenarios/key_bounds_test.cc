@@ -83,9 +83,11 @@ TEST(Keys, RefuseWhatNoBenchCanBe) {
   };
   for (const auto& [file, override_text] : refused)
     EXPECT_THROW(LoadScenario(test::ScenarioPath(file), {override_text}), InputError) << override_text;
-  EXPECT_THROW(LoadScenario(test::ScenarioPath("encoder_comparison.toml"), {"encoder_procedure.kind=sweep", "encoder_procedure.rest_s=86400"}),
-               InputError)
-      << "readings that no memory holds";
+  std::string heads = "encoder_procedure.heads_deg=[0";
+  for (int k = 1; k < 5000; ++k) heads += ", 1";
+  for (const std::string& many : {std::string("encoder_procedure.rest_s=86400"), heads + "]"})
+    EXPECT_THROW(LoadScenario(test::ScenarioPath("encoder_comparison.toml"), {"encoder_procedure.kind=sweep", many}), InputError)
+        << "readings that no memory holds";
 }
 
 }  // namespace

@@ -98,18 +98,18 @@ void CheckCoast(const ScenarioText& text, const EncoderSettings& own) {
   }
 }
 
-/// @throws InputError if so slow a sweep would have more readings than fit into memory.
-void CheckSweep(const ScenarioText& text, const EncoderProcedureSettings& p) {
+/// @throws InputError if stops, or so slow a sweep, would have more readings than fit into memory.
+void CheckReadings(const ScenarioText& text, const EncoderProcedureSettings& p) {
   constexpr double kMostReadings = 2e6;  // of some kilobytes each
-  if (p.kind != "sweep") return;
-  double readings = 0.0;
+  if (p.kind == "coast") return;
+  double readings = p.kind == "stops" ? p.turns * p.stops : 0.0;
   for (const double speed_rad_s : p.speeds_rad_s)
-    readings += (p.turns * units::turn / speed_rad_s + 2.0 * p.ramp_s + p.rest_s) / p.interval_s;
-  readings *= static_cast<double>(p.passes.size() * p.mounting_rad.size());
+    readings += p.kind == "sweep" ? (p.turns * units::turn / speed_rad_s + 2.0 * p.ramp_s + p.rest_s) / p.interval_s : 0.0;
+  readings *= static_cast<double>(p.passes.size() * p.mounting_rad.size() * p.heads_rad.size());
   if (readings <= kMostReadings) return;
-  throw InputError(text.Where("encoder_procedure.speeds_deg_s", text.name() + ":1"),
-                   fmt::format("sweeps of {:.4g} turns at these speeds and rests of {:.4g} s, read every {:.4g} s, are {:.3g} readings", p.turns,
-                               p.rest_s, p.interval_s, readings),
+  throw InputError(text.Where("encoder_procedure.turns", text.name() + ":1"),
+                   fmt::format("{} of {:.4g} turns by {} heads in {} passes of {} mountings are {:.3g} readings", p.kind, p.turns,
+                               p.heads_rad.size(), p.passes.size(), p.mounting_rad.size(), readings),
                    fmt::format("at most {:.0f}", kMostReadings));
 }
 
@@ -128,7 +128,7 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
   CheckPasses(text, "encoder_procedure.passes", own.encoder_procedure.passes);
   CheckReadingsOfAStop(text, own.encoder_procedure);
   CheckCoast(text, own);
-  CheckSweep(text, own.encoder_procedure);
+  CheckReadings(text, own.encoder_procedure);
 }
 
 }  // namespace twinbench::benches::encoder
