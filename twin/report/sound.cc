@@ -37,13 +37,6 @@ bool IsNoNumber(std::string_view word) {
   return number && std::abs(*number) >= kAbsurd;
 }
 
-/// Infinitely many degrees of freedom, in words or in the column before percents: that is what a stated uncertainty has.
-bool IsByRight(std::string_view rest) {
-  if (rest.starts_with(" degrees of freedom")) return true;
-  const std::size_t next = rest.find_first_not_of(' '), end = rest.find_first_not_of("0123456789.", next);
-  return end != rest.npos && end > next && rest.substr(end).starts_with(" %");
-}
-
 std::vector<Piece> PiecesOf(std::string_view line) {
   std::vector<Piece> pieces;
   for (std::size_t at = 0; at < line.size();) {
@@ -51,7 +44,7 @@ std::vector<Piece> PiecesOf(std::string_view line) {
     std::size_t end = at;
     while (end < line.size() && IsInWord(line[end]) == in_word) ++end;
     const std::string_view word = line.substr(at, end - at);
-    pieces.push_back({std::string(word), in_word && IsNoNumber(word) && !(word == "inf" && IsByRight(line.substr(end)))});
+    pieces.push_back({std::string(word), in_word && IsNoNumber(word)});
     at = end;
   }
   return pieces;

@@ -23,7 +23,7 @@ using uncertainty::Spread;
 using Rows = std::vector<std::vector<std::string>>;
 
 std::string DofText(double dof) {
-  return std::isfinite(dof) ? fmt::format("{:.0f}", dof) : "inf";
+  return std::isfinite(dof) ? fmt::format("{:.0f}", dof) : "∞";
 }
 
 /// "0.02 nm"; empty of what the readings leave.
