@@ -4,8 +4,8 @@
 
 #include "mechanics/encoder_signal.h"
 #include "twin/core/reading.h"
-#include "twin/core/scenario.h"
 #include "twin/core/time.h"
+#include "twin/sim/effect_makers.h"
 
 namespace twinbench::sim {
 
@@ -49,10 +49,8 @@ class AngleEffect {
   virtual double ReferenceError_rad(const AngleMoment& /*moment*/) const { return 0.0; }
 };
 
-/// @param effect  Checked against the catalogue by the scenario loader.
-/// @throws InputError if the scenario does not state what the effect needs; std::logic_error if the catalogue has
-/// an
-///         effect that the twin has not.
-std::unique_ptr<AngleEffect> MakeAngleEffect(const EffectSettings& effect, const Scenario& scenario);
+using AngleMakers = EffectMakers<AngleEffect>;
+AngleMakers ShaftEffects();    // of where the shaft is, and when it is read
+AngleMakers ReadingEffects();  // of what is shown. @throws InputError if the scenario lacks what the effect needs
 
 }  // namespace twinbench::sim

@@ -84,7 +84,8 @@ EncoderTwin::EncoderTwin(const Scenario& scenario, double run_up_rad)
       spindle_(EncoderOf(scenario)),
       empirical_(scenario.empiricals, "angle") {
   if (Changes(scenario.environment)) room_.emplace(scenario.environment, scenario.RunSeed());
-  for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeAngleEffect(effect, scenario));
+  static const AngleMakers makers = Merged(ShaftEffects(), ReadingEffects());
+  for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeBy(makers, effect, scenario));
   for (const auto& effect : effects_) {
     effect->AlterSignals(signals_);
     signal_zero_rad_ += effect->SignalZero_rad();

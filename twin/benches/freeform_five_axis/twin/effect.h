@@ -4,7 +4,7 @@
 
 #include "twin/benches/freeform_five_axis/twin/chain.h"
 #include "twin/benches/freeform_five_axis/twin/probe.h"
-#include "twin/core/scenario.h"
+#include "twin/sim/effect_makers.h"
 
 namespace twinbench::sim {
 
@@ -41,8 +41,7 @@ class FreeformEffect {
   virtual void AlterSignals(const FreeformMoment& /*moment*/, ProbeSignals& /*shown*/) const {}
 };
 
-/// @param effect  Checked against the catalogue by the scenario loader.
-/// @throws std::logic_error if the catalogue has an effect that the twin has not.
-std::unique_ptr<FreeformEffect> MakeFreeformEffect(const EffectSettings& effect, const Scenario& scenario);
+EffectMakers<FreeformEffect> MachineEffects();   // and of the artefact
+EffectMakers<FreeformEffect> DetectorEffects();
 
 }  // namespace twinbench::sim

@@ -96,7 +96,8 @@ DrawnBench Draw(const Scenario& scenario) {
 
 FreeformTwin::FreeformTwin(const Scenario& scenario, DrawnBench drawn, LightAsked asked)
     : scenario_(scenario), actual_(ActualOf(scenario)), drawn_(std::move(drawn)) {
-  for (const EffectSettings& effect : BeyondKeys(scenario)) effects_.push_back(MakeFreeformEffect(effect, scenario));
+  static const EffectMakers<FreeformEffect> makers = Merged(MachineEffects(), DetectorEffects());
+  for (const EffectSettings& effect : BeyondKeys(scenario)) effects_.push_back(MakeBy(makers, effect, scenario));
   light_ = std::make_unique<ProbeLight>(actual_, FormOf(actual_.artefact), asked);
   for (const std::string& channel : FormatOf(scenario.bench).channels)
     empirical_.emplace_back(scenario.empiricals, channel);

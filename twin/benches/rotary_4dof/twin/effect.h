@@ -7,7 +7,7 @@
 
 #include "mechanics/pose_error.h"
 #include "twin/core/devices.h"
-#include "twin/core/scenario.h"
+#include "twin/sim/effect_makers.h"
 
 namespace twinbench::sim {
 
@@ -95,8 +95,9 @@ class Effect {
   virtual void AlterReadout(Acquisition& /*block*/) const {}
 };
 
-/// @param effect  Checked against the catalogue by the scenario loader.
-/// @throws std::logic_error if the catalogue has an effect that the twin has not.
-std::unique_ptr<Effect> MakeEffect(const EffectSettings& effect, const Scenario& scenario);
+EffectMakers<Effect> PoseEffects();    // in where things stand and how they move
+EffectMakers<Effect> SignalEffects();  // on the way of the light, in the electronics and the wiring
+
+std::unique_ptr<Effect> MakeEmpirical(const EmpiricalSettings& settings, const Scenario& scenario);
 
 }  // namespace twinbench::sim

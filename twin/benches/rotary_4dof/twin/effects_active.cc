@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "twin/benches/rotary_4dof/settings.h"
-#include "twin/benches/rotary_4dof/twin/effects/effects.h"
 #include "twin/sim/actual_bench.h"
 
 namespace twinbench::sim {
@@ -23,7 +22,9 @@ void SilenceRotary(RotarySettings& own) {
 }  // namespace
 
 ActiveEffects::ActiveEffects(const Scenario& scenario) {
-  for (const EffectSettings& settings : BeyondKeys(scenario)) effects_.push_back(MakeEffect(settings, scenario));
+  static const EffectMakers<Effect> makers = Merged(PoseEffects(), SignalEffects());
+  for (const EffectSettings& settings : BeyondKeys(scenario))
+    effects_.push_back(MakeBy(makers, settings, scenario));
   for (const EmpiricalSettings& settings : scenario.empiricals)
     effects_.push_back(MakeEmpirical(settings, scenario));
 }

@@ -1,12 +1,51 @@
 #include <cmath>
 
-#include "twin/benches/freeform_five_axis/twin/effects/effects.h"
+#include "twin/benches/freeform_five_axis/twin/effect.h"
 #include "twin/core/units.h"
 #include "twin/sim/first_order_lag.h"
 #include "twin/sim/outlier_draw.h"
 
+/// Errors of the machine and of the artefact.
 namespace twinbench::sim {
 namespace {
+
+/// Stretched along the artefact's x: a cell stands off its place, as if all of it had been moved under the probe.
+class ArtefactPitch : public FreeformEffect {
+ public:
+  ArtefactPitch(const EffectSettings& e, const Scenario& scenario)
+      : ratio_(Parameter(e, "ratio")), own_(FreeformOf(scenario)) {}
+  void Disturb(const FreeformMoment& moment, FreeformExtra& extra) override {
+    const auto setup = static_cast<std::size_t>(moment.setup);
+    const std::vector<MountSettings>& mounts = own_.freeform_procedure.mounts;
+    const double yaw_rad = setup < mounts.size() ? mounts[setup].yaw_rad : 0.0;
+    const double off_m = ratio_ * moment.cell.i * own_.artefact.pitch_m;
+    extra.slipped_S_m += off_m * Vector3(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
+  }
+
+ private:
+  double ratio_;
+  FreeformSettings own_;
+};
+
+/// Cells that stand higher and lower: one wave over the array.
+class ArtefactForm : public FreeformEffect {
+ public:
+  ArtefactForm(const EffectSettings& e, const Scenario& scenario)
+      : cosine_m_(Parameter(e, "cosine")),
+        sine_m_(Parameter(e, "sine")),
+        waves_(Parameter(e, "waves") *
+               Eigen::Vector2d(std::cos(Parameter(e, "azimuth")), std::sin(Parameter(e, "azimuth")))),
+        side_(2 * FreeformOf(scenario).artefact.cells + 1) {}
+  void Disturb(const FreeformMoment& moment, FreeformExtra& extra) override {
+    const double phase_rad = units::turn * (waves_.x() * moment.cell.i + waves_.y() * moment.cell.j) / side_;
+    extra.cell_height_m += cosine_m_ * std::cos(phase_rad) + sine_m_ * std::sin(phase_rad);
+  }
+
+ private:
+  double cosine_m_, sine_m_;
+  Eigen::Vector2d waves_;
+  int side_;
+};
 
 /// "x" to "b": 0 to 4.
 std::size_t AxisOf(const EffectSettings& e) {
@@ -92,31 +131,25 @@ class ArtefactSlip : public FreeformEffect {
   int setup_ = -1;  // in which it slipped
 };
 
+/// Of an axis, or picked up by the wires of one signal.
 class Tone : public FreeformEffect {
  public:
-  explicit Tone(const EffectSettings& e) : axis_(AxisOf(e)), wave_(e), frequency_Hz_(Parameter(e, "frequency")) {}
+  explicit Tone(const EffectSettings& e)
+      : where_(e.where),
+        axis_(AxisOf(e)),
+        wave_(e, where_.starts_with("qpd") ? "_signal" : ""),
+        frequency_Hz_(Parameter(e, "frequency")) {}
   void Disturb(const FreeformMoment& moment, FreeformExtra& extra) override {
-    OwnError(extra.machine, axis_) += wave_.At(frequency_Hz_ * moment.time_s);
+    double& disturbed = where_ == "qpd_x"   ? extra.qpd_x_V
+                        : where_ == "qpd_y" ? extra.qpd_y_V
+                                            : OwnError(extra.machine, axis_);
+    disturbed += wave_.At(frequency_Hz_ * moment.time_s);
   }
 
  private:
-  std::size_t axis_;
+  std::string where_;
+  std::size_t axis_;  // where it is one's
   WaveSize wave_;
-  double frequency_Hz_;
-};
-
-/// Picked up by the wires of one signal.
-class SignalTone : public FreeformEffect {
- public:
-  explicit SignalTone(const EffectSettings& e)
-      : of_x_(e.where == "qpd_x"), wave_V_(e, "_signal"), frequency_Hz_(Parameter(e, "frequency")) {}
-  void Disturb(const FreeformMoment& moment, FreeformExtra& extra) override {
-    (of_x_ ? extra.qpd_x_V : extra.qpd_y_V) += wave_V_.At(frequency_Hz_ * moment.time_s);
-  }
-
- private:
-  bool of_x_;
-  WaveSize wave_V_;
   double frequency_Hz_;
 };
 
@@ -133,24 +166,17 @@ class Outliers : public FreeformEffect {
 
 }  // namespace
 
-FreeformEffectPointer MakeCyclic(const EffectSettings& e) {
-  return std::make_unique<Cyclic>(e);
-}
-FreeformEffectPointer MakeAxisBacklash(const EffectSettings& e) {
-  return std::make_unique<AxisBacklash>(e);
-}
-FreeformEffectPointer MakeThermalGrowth(const EffectSettings& e) {
-  return std::make_unique<ThermalGrowth>(e);
-}
-FreeformEffectPointer MakeArtefactSlip(const EffectSettings& e) {
-  return std::make_unique<ArtefactSlip>(e);
-}
-FreeformEffectPointer MakeTone(const EffectSettings& e) {
-  if (e.where.starts_with("qpd")) return std::make_unique<SignalTone>(e);
-  return std::make_unique<Tone>(e);
-}
-FreeformEffectPointer MakeFreeformOutliers(const EffectSettings& e, const Scenario& scenario) {
-  return std::make_unique<Outliers>(e, scenario);
+EffectMakers<FreeformEffect> MachineEffects() {
+  return {
+      {"artefact_pitch", Made<FreeformEffect, ArtefactPitch>},
+      {"artefact_form", Made<FreeformEffect, ArtefactForm>},
+      {"cyclic", Made<FreeformEffect, Cyclic>},
+      {"backlash", Made<FreeformEffect, AxisBacklash>},
+      {"thermal_growth", Made<FreeformEffect, ThermalGrowth>},
+      {"slip", Made<FreeformEffect, ArtefactSlip>},
+      {"tone", Made<FreeformEffect, Tone>},
+      {"outliers", Made<FreeformEffect, Outliers>},
+  };
 }
 
 }  // namespace twinbench::sim

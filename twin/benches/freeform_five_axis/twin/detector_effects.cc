@@ -1,9 +1,10 @@
 #include <array>
 
-#include "twin/benches/freeform_five_axis/twin/effects/effects.h"
+#include "twin/benches/freeform_five_axis/twin/effect.h"
 #include "twin/core/units.h"
 #include "twin/model/product.h"
 
+/// Faults of the detectors.
 namespace twinbench::sim {
 namespace {
 
@@ -93,20 +94,16 @@ class Signal : public FreeformEffect {
 
 }  // namespace
 
-FreeformEffectPointer MakeGainOrLeakage(const EffectSettings& e) {
-  return std::make_unique<GainOrLeakage>(e);
-}
-FreeformEffectPointer MakeSpotDrift(const EffectSettings& e) {
-  return std::make_unique<SpotDrift>(e);
-}
-FreeformEffectPointer MakeAxesTurned(const EffectSettings& e) {
-  return std::make_unique<AxesTurned>(e);
-}
-FreeformEffectPointer MakeCameraFault(const EffectSettings& e, const Scenario& scenario) {
-  return std::make_unique<CameraFault>(e, scenario);
-}
-FreeformEffectPointer MakeFreeformSignal(const EffectSettings& e, const Scenario& scenario) {
-  return std::make_unique<Signal>(e, scenario);
+EffectMakers<FreeformEffect> DetectorEffects() {
+  return {
+      {"qpd_gain", Made<FreeformEffect, GainOrLeakage>},
+      {"leakage", Made<FreeformEffect, GainOrLeakage>},
+      {"laser_drift", Made<FreeformEffect, SpotDrift>},
+      {"qpd_roll", Made<FreeformEffect, AxesTurned>},
+      {"ccd_nonlinearity", Made<FreeformEffect, CameraFault>},
+      {"slope_crosstalk", Made<FreeformEffect, CameraFault>},
+      {"signal", Made<FreeformEffect, Signal>},
+  };
 }
 
 }  // namespace twinbench::sim
