@@ -1,18 +1,36 @@
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
+#include <nlohmann/json.hpp>
 
 #include <chrono>
+#include <cstdint>
 #include <exception>
 #include <thread>
 #include <vector>
 
 #include "twin/campaign/ranks.h"
-#include "twin/campaign/row_message.h"
+#include "twin/campaign/trial.h"
 #include "twin/core/errors.h"
 
 /// A build with MPI. Another rank sends its row, empty the first time, and is sent the number of its next trial.
 namespace twinbench::campaign {
 namespace {
+
+/// A row on its way between processes (CBOR); numbers keep their bits.
+std::vector<std::uint8_t> MessageOf(const TrialRow& row) {
+  nlohmann::json results = nlohmann::json::array();
+  for (const TrialResult& r : row.results) results.push_back({r.name, r.value, r.u, r.error, r.k});
+  return nlohmann::json::to_cbor({row.trial, row.failure, row.verdict, results});
+}
+
+TrialRow RowOf(const std::vector<std::uint8_t>& message) {
+  const nlohmann::json json = nlohmann::json::from_cbor(message);
+  TrialRow row{json[0].get<std::int64_t>(), json[1].get<std::string>(), json[2].get<std::string>(), {}};
+  for (const nlohmann::json& r : json[3])
+    row.results.push_back({r[0].get<std::string>(), r[1].get<double>(), r[2].get<double>(), r[3].get<double>(),
+                           r[4].get<double>()});
+  return row;
+}
 
 constexpr int kRowTag = 1, kTrialTag = 2, kFirst = 0;
 constexpr std::int64_t kNoMore = -1;

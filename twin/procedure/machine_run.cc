@@ -1,15 +1,67 @@
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "twin/core/bench_format.h"
 #include "twin/core/device_fault.h"
+#include "twin/core/machine_call.h"
+#include "twin/core/run_log.h"
 #include "twin/procedure/attempts.h"
-#include "twin/procedure/machine_journal.h"
 #include "twin/procedure/machine_sequencer.h"
 #include "twin/procedure/machine_watch.h"
 
 namespace twinbench::procedure {
 namespace {
+
+/// The devices of a machine bench; every call is written down with its answer before anybody sees it, so that the run can be
+/// played back.
+class MachineJournal {
+ public:
+  /// @param shown  InstrumentColumns of the bench.
+  /// @param log    None: nothing is written down, and the bench is used as it is. Text costs more than a simulated reading
+  ///               does.
+  MachineJournal(MachineBench inner, const std::vector<ReadingColumn>& shown, RunLog* log)
+      : inner_(inner), shown_(shown), log_(log) {
+    if (!log_) return;
+    asked_ = std::make_unique<AskedMachine>(
+        [this](const std::string& device, const std::string& request) { return AskInner(device, request); },
+        [this] { return Now(); },
+        AskedMachine::Parts{inner.machine.Axes(), shown, inner.indexer != nullptr, inner.simulation});
+  }
+
+  MachineBench Bench() { return log_ ? asked_->Bench() : inner_; }
+
+  /// Says that the way begins: from the start on a simulated bench, with the first reading that is missing on a real one.
+  void BeginAttempt() {
+    if (log_) Note(inner_.clock.Now(), kRunDevice, kAttemptBegins, inner_.simulation ? kOnSimulation : kOnRealBench);
+  }
+
+ private:
+  std::string AskInner(const std::string& device, const std::string& request) {
+    std::string answer = Perform(inner_, shown_, device, request);
+    Note(inner_.clock.Now(), device, request, answer);
+    return answer;
+  }
+
+  /// A simulated clock shows what it showed at the end of the last call. A real one goes on, and where it is looked at the
+  /// way may depend on it.
+  Time Now() {
+    const Time now = inner_.clock.Now();
+    if (now != noted_) Note(now, kClockDevice, kClockShows, "");
+    return now;
+  }
+
+  void Note(Time time, const std::string& device, const std::string& request, const std::string& answer) {
+    log_->Called({time, device, request, answer});
+    noted_ = time;
+  }
+
+  MachineBench inner_;
+  std::vector<ReadingColumn> shown_;
+  RunLog* log_;
+  Time noted_{};  // of the last call in the log
+  std::unique_ptr<AskedMachine> asked_;
+};
 
 /// Somebody else had the axes, and nothing that was read at rest tells whether their zeros and units are still the
 /// same.

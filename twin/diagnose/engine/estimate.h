@@ -14,7 +14,7 @@ Eigen::MatrixXd Signatures(const LinearRun& run, const std::vector<Term>& terms,
 /// Fits the amplitudes of all terms together and fills their `amplitudes` and `cov`.
 ///
 /// The amplitudes are free; their covariance lets every shape move as well (its slopes stand beside the amplitudes,
-/// with the catalogue's range as prior; the grid widens it, shape_spread.h), and scales with the noise that is
+/// with the catalogue's range as prior; the grid widens it), and scales with the noise that is
 /// left, as far as the stated noise is not trusted. Columns of the terms must not be dependent: directions that the
 /// data do not resolve are left at zero.
 /// @param white  The residual, whitened, rows x 1.

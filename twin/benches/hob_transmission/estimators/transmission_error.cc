@@ -4,13 +4,67 @@
 #include <cmath>
 
 #include "twin/benches/hob_transmission/estimators/hob_orders.h"
-#include "twin/benches/hob_transmission/estimators/pass_fit.h"
 #include "twin/benches/hob_transmission/estimators/rounding_orders.h"
+#include "twin/benches/hob_transmission/estimators/turn_fit.h"
+#include "twin/benches/hob_transmission/estimators/turns.h"
 #include "twin/core/errors.h"
 #include "twin/core/rounding.h"
 
 namespace twinbench::separate::hob {
 namespace {
+
+struct FittedTurn {
+  int index = 0;
+  TurnFit fit;
+};
+
+/// Slope of the turn means of one pass over the number of the turn; zero unless known.
+struct Drift {
+  double rad_per_turn = 0.0;
+  double variance = 0.0;
+  bool known = false;
+};
+
+struct FittedPass {
+  std::vector<FittedTurn> turns;
+  int left_out = 0;  // not determined, or inflated beyond the limit
+  Drift drift;
+};
+
+/// Each run of turns without a gap has a constant of its own: counts may have been lost in the gap.
+Drift FitDrift(const std::vector<FittedTurn>& turns) {
+  const auto n = std::ssize(turns);
+  Eigen::ArrayXd x(n), y(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    x[i] = turns[static_cast<std::size_t>(i)].index;
+    y[i] = turns[static_cast<std::size_t>(i)].fit.mean_rad;
+  }
+  Eigen::Index dof = n - 1;
+  for (Eigen::Index first = 0, end = 0; first < n; first = end, --dof) {
+    for (end = first + 1; end < n && x[end] - x[end - 1] < 1.5;) ++end;
+    x.segment(first, end - first) -= x.segment(first, end - first).mean();
+    y.segment(first, end - first) -= y.segment(first, end - first).mean();
+  }
+  if (dof < 1) return {};  // a line through two means leaves nothing to judge it by
+  const double slope = (x * y).sum() / x.square().sum();
+  const double residual2 = (y - slope * x).square().sum() / static_cast<double>(dof);
+  return {slope, residual2 / x.square().sum(), true};
+}
+
+/// Fits the turns of one pass, and a steady drift if there are three of them.
+FittedPass FitPass(const Pass& pass, const TransmissionOptions& options) {
+  FittedPass fitted;
+  for (const Turn& turn : CutIntoTurns(pass)) {
+    TurnFit fit = FitTurn(turn.th_rad, turn.value_rad, turn.middle_rad, pass.direction, options.max_order);
+    if (fit.determined && fit.inflation < options.max_inflation) {
+      fitted.turns.push_back({turn.index, std::move(fit)});
+    } else {
+      ++fitted.left_out;
+    }
+  }
+  fitted.drift = FitDrift(fitted.turns);
+  return fitted;
+}
 
 Complex WithoutDrift(const FittedTurn& turn, const Drift& drift, Eigen::Index k) {
   return turn.fit.value[k] - drift.rad_per_turn * turn.fit.ramp[k];
