@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <numbers>
 
+#include "mechanics/matrices.h"
 #include "mechanics/require.h"
 #include "mechanics/servo.h"
 #include "mechanics/stack_propagator.h"
@@ -22,7 +23,7 @@ ComplexResponse RespondToBase(const StackParameters& parameters, double frequenc
   RequirePositive(frequency_Hz, "base response: frequency_Hz");
   const StackParameters stack = InPayloadFrame(parameters);
   StackDynamics dynamics(stack);
-  const Matrix12 mass = dynamics.InverseMass(Vector12::Zero()).inverse();
+  const Matrix12 mass = InverseOf(dynamics.InverseMass(Vector12::Zero()));
   const Complex p(0.0, 2.0 * std::numbers::pi * frequency_Hz);
   Eigen::Matrix<Complex, kCoordinates, kCoordinates> stiffness = p * p * mass;
   stiffness.diagonal() += p * BearingDamping(stack) + BearingStiffness(stack).cast<Complex>();

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mechanics/drive_loads.h"
+#include "mechanics/matrices.h"
 #include "mechanics/stack.h"
 
 // A float build of Bullet would add 0.02 arcsec of noise, and mixing the two corrupts memory.
@@ -203,7 +204,7 @@ double StackDynamics::Energy(const Vector12& q, const Vector12& qd) {
   };
   const double weight = potential(q) - potential(Vector12::Zero());
   const double springs = 0.5 * q.dot(stiffness_.cwiseProduct(q)) - preload_.dot(q);
-  return weight + springs + 0.5 * qd.dot(InverseMass(q).ldlt().solve(qd));
+  return weight + springs + 0.5 * qd.dot(InverseOf(InverseMass(q)) * qd);
 }
 
 }  // namespace twinbench::mechanics

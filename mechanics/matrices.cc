@@ -1,6 +1,6 @@
 #include "mechanics/matrices.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <unsupported/Eigen/MatrixFunctions>
 
 namespace twinbench::mechanics {
@@ -9,8 +9,14 @@ Eigen::MatrixXd ExponentialOf(const Eigen::MatrixXd& a) {
   return a.exp();
 }
 
-Eigen::VectorXd EigenvaluesOfSymmetric(const Eigen::MatrixXd& a) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
+Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& a) {
+  return a.inverse();
+}
+
+double LargestEigenvalueOf(const Eigen::MatrixXd& a) {
+  Eigen::MatrixXd power = a / a.norm();  // squared again and again, it keeps the largest alone
+  for (int k = 0; k < 30; ++k, power /= power.norm()) power = power * power;
+  return a.cwiseProduct(power).sum() / power.trace();
 }
 
 }  // namespace twinbench::mechanics

@@ -9,7 +9,10 @@ namespace twinbench::mechanics {
 /// e^a of a square matrix.
 Eigen::MatrixXd ExponentialOf(const Eigen::MatrixXd& a);
 
-/// Rising; `a` is symmetric.
-Eigen::VectorXd EigenvaluesOfSymmetric(const Eigen::MatrixXd& a);
+/// Of a regular matrix.
+Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& a);
+
+/// Of a symmetric matrix that has no negative one; two that differ by less than a part in 1e9 count as one.
+double LargestEigenvalueOf(const Eigen::MatrixXd& a);
 
 }  // namespace twinbench::mechanics

@@ -26,8 +26,8 @@ RestDecay::RestDecay(const StackParameters& p, const StackPropagator& propagator
     period.col(integral).head<2 * kCoordinates>() += gains.integral_Nm_rad_s * push;
     period(integral, angle) -= p.servo_period_s;
   }
-  power_.push_back(period);
-  for (int k = 1; k < kPowers; ++k) power_.push_back(power_.back() * power_.back());
+  Eigen::MatrixXd power = period;
+  for (int k = 0; k < kPowers; ++k, power = power * power) power_.push_back(power);
 }
 
 RestDecay::Distance RestDecay::After(const Distance& from, std::int64_t periods) const {

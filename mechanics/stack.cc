@@ -119,21 +119,22 @@ BearingPose BearingOf(const Vector12& q, int table) {
 
 namespace {
 
-/// Squares of all natural frequencies, rising; the two free rotors' come first, zero.
-Vector12 SquaredFrequencies(StackDynamics& dynamics) {
+/// Its eigenvalues are the squares of the natural frequencies: of two rotors that turn freely, whose rows are zero, and ten more.
+Eigen::MatrixXd SquaredFrequencies(StackDynamics& dynamics) {
   const Vector12 root = BearingStiffness(dynamics.parameters()).cwiseSqrt();
-  const Matrix12 symmetric = root.asDiagonal() * dynamics.InverseMass(Vector12::Zero()) * root.asDiagonal();
-  return EigenvaluesOfSymmetric(symmetric);
+  return root.asDiagonal() * dynamics.InverseMass(Vector12::Zero()) * root.asDiagonal();
 }
 
 }  // namespace
 
 double HighestFrequency(StackDynamics& dynamics) {
-  return std::sqrt(SquaredFrequencies(dynamics)[kCoordinates - 1]);
+  return std::sqrt(LargestEigenvalueOf(SquaredFrequencies(dynamics)));
 }
 
 double LowestFrequency(StackDynamics& dynamics) {
-  return std::sqrt(SquaredFrequencies(dynamics)[2]);
+  Eigen::MatrixXd held = SquaredFrequencies(dynamics);
+  for (int t = 0; t < 2; ++t) held(SpinIndex(t), SpinIndex(t)) = held.norm();  // no longer free: above all others
+  return 1.0 / std::sqrt(LargestEigenvalueOf(InverseOf(held)));
 }
 
 int SubSteps(StackDynamics& dynamics) {

@@ -1,6 +1,5 @@
 #include "mechanics/stack_propagator.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +12,7 @@ StackPropagator::StackPropagator(const StackParameters& parameters) : period_s_(
   const StackParameters p = InPayloadFrame(parameters);
   StackDynamics dynamics(p);
   inverse_mass_ = dynamics.InverseMass(Vector12::Zero());
-  mass_ = inverse_mass_.inverse();
+  mass_ = InverseOf(inverse_mass_);
   rates_.setZero();
   rates_.topRightCorner<kCoordinates, kCoordinates>().setIdentity();
   rates_.bottomLeftCorner<kCoordinates, kCoordinates>() = -inverse_mass_ * BearingStiffness(p).asDiagonal();
@@ -23,13 +22,14 @@ StackPropagator::StackPropagator(const StackParameters& parameters) : period_s_(
   system.topLeftCorner<2 * kCoordinates, 2 * kCoordinates>() = rates_;
   system.block<kCoordinates, kCoordinates>(kCoordinates, 2 * kCoordinates).setIdentity();
   const Eigen::MatrixXd part = ExponentialOf(system * (period_s_ / kParts));
-  const Transition once = part.topLeftCorner<2 * kCoordinates, 2 * kCoordinates>();
-  const Drive push = part.topRightCorner<2 * kCoordinates, kCoordinates>();
-  transition_[0].setIdentity();
-  drive_[0].setZero();
-  for (std::size_t i = 1; i <= kParts; ++i) {
-    transition_[i] = once * transition_[i - 1];
-    drive_[i] = once * drive_[i - 1] + push;
+  const Eigen::MatrixXd once = part.topLeftCorner<2 * kCoordinates, 2 * kCoordinates>();
+  const Eigen::MatrixXd push = part.topRightCorner<2 * kCoordinates, kCoordinates>();
+  Eigen::MatrixXd transition = Transition::Identity(), drive = Drive::Zero();
+  for (std::size_t i = 0; i <= kParts; ++i) {
+    transition_[i] = transition;
+    drive_[i] = drive;
+    transition = once * transition;
+    drive = once * drive + push;
   }
 }
 

@@ -58,13 +58,16 @@ struct Block {
 
 Quadrature GaussHermite(int n) {
   if (n < 1) throw std::invalid_argument("Gauss-Hermite: at least one node");
-  Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(n, n);
-  for (int i = 1; i < n; ++i) jacobi(i, i - 1) = jacobi(i - 1, i) = std::sqrt(static_cast<double>(i));
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobi);
+  // The square roots of 1 ... n - 1 beside the diagonal are all of the matrix (Golub and Welsch); its largest element becomes 1.
+  const double scale = std::sqrt(std::max(1.0, n - 1.0));
+  const Eigen::VectorXd beside = Eigen::VectorXd::LinSpaced(n, 0.0, n - 1.0).cwiseSqrt().tail(n - 1) / scale;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
+  eigen.computeFromTridiagonal(Eigen::VectorXd::Zero(n), beside);
+  const Eigen::VectorXd node = scale * eigen.eigenvalues();
   Quadrature rule;
   for (int i = 0; i < n; ++i) {
     // The rule is symmetric; averaging mirror pairs removes the solver's rounding from every odd moment.
-    rule.node.push_back(0.5 * (eigen.eigenvalues()(i) - eigen.eigenvalues()(n - 1 - i)));
+    rule.node.push_back(0.5 * (node(i) - node(n - 1 - i)));
     rule.weight.push_back(
         0.5 * (std::pow(eigen.eigenvectors()(0, i), 2) + std::pow(eigen.eigenvectors()(0, n - 1 - i), 2)));
   }

@@ -4,6 +4,7 @@
 
 #include "mechanics/sag.h"
 #include "tests/mechanics/plant_runs.h"
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench::mechanics {
 namespace {
@@ -152,6 +153,16 @@ TEST(StackDynamics, DampingOnlyTakesEnergy) {
     EXPECT_LT(after, std::max(before, 1e-11));
     before = after;
   }
+}
+
+TEST(StackDynamics, LowestAndHighestFrequencyAreThoseOfTheEigenvalueSolver) {
+  const StackParameters p = OffCentreStack();
+  StackDynamics dynamics(p);
+  const Vector12 root = BearingStiffness(p).cwiseSqrt();
+  const Eigen::VectorXd squared_rad2_s2 =
+      EigenvaluesOfSymmetric(root.asDiagonal() * dynamics.InverseMass(Vector12::Zero()) * root.asDiagonal());
+  EXPECT_NEAR(LowestFrequency(dynamics), std::sqrt(squared_rad2_s2[2]), 1e-6);  // behind the two rotors; a part in 1e9
+  EXPECT_NEAR(HighestFrequency(dynamics), std::sqrt(squared_rad2_s2[11]), 1e-5);
 }
 
 TEST(StackDynamics, SubStepsDivideThePeriodAndHoldTheStiffestMode) {
