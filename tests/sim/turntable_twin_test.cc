@@ -1,5 +1,5 @@
 #include "tests/support/angle_benches.h"
-#include "twin/benches/turntable_autocollimator/twin/effects/effects.h"
+#include "twin/benches/turntable_autocollimator/twin/effect.h"
 #include "twin/benches/turntable_autocollimator/twin/follow.h"
 #include "twin/sim/table_motion.h"
 
@@ -37,7 +37,7 @@ TEST(TurntableTwin, SeatsItsTeethWithTheScattersOfScenarioAndEffectInSquares) {
   EffectSettings seating;
   seating.name = "multitooth_seating";
   seating.parameters["scatter"] = 0.3 * arcsec;
-  sim::MakeWrongConstant(seating)->AlterBench(s);
+  sim::MakeTurntableEffect(seating, s)->AlterBench(s);
   EXPECT_NEAR(sd_rad / arcsec, 0.5, 1e-12);
 }
 
