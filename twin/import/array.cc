@@ -152,12 +152,15 @@ void TakeBareList(std::string_view code, std::vector<Column>& arrays) {
   if (others == 0 && !list.value.empty()) arrays.push_back(std::move(list));
 }
 
-/// Those as long as the longest that say together which is whose: the angles of a reference beside a device's.
+/// Those as long as the longest that say together which is whose: the angles of a reference beside a device's. Of one name again, as for
+/// another machine, the first.
 std::vector<Column> SideBySide(const std::vector<Column>& arrays) {
   std::vector<Column> beside;
   std::size_t rows = 0;
   for (const Column& array : arrays) rows = std::max(rows, array.value.size());
-  std::ranges::copy_if(arrays, std::back_inserter(beside), [rows](const Column& a) { return a.value.size() == rows; });
+  for (const Column& array : arrays) {
+    if (array.value.size() == rows && std::ranges::count(beside, array.name, &Column::name) == 0) beside.push_back(array);
+  }
   const auto speak = [&beside](Speaks of) {
     return std::ranges::any_of(beside, [of](const Column& a) { return Clearness(a.name, of) > 0; });
   };

@@ -35,6 +35,7 @@ std::string UsualUnit(const Choice& from, const std::string& target, const Map& 
     const auto unit = UnitAtEnd(other.column);
     if (unit && wanted && unit->dimension == wanted->dimension && !other.unit.empty()) return other.unit;
   }
+  if (wanted && wanted->dimension == Dimension::kAngle && IsCalledLength(from.name)) return "mm";
   if (wanted && wanted->dimension == Dimension::kAngle && StaysWithin(*from.column, kTwoTurns_rad))
     return LooksLikeRad(from) ? "rad" : from.recording->usual_angle;
   return wanted ? std::string(wanted->name) : "";

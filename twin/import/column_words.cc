@@ -16,13 +16,13 @@ namespace {
 /// The clearest first.
 const std::vector<std::string>& WordsFor(Speaks of) {
   static const std::vector<std::string> reference = {
-      "reference", "ref",      "true",     "laser",    "interferometer", "truth",        "target",     "commanded",
-      "command",   "cmd",      "setpoint", "posset",   "setpos",         "set",          "goal",       "nominal",
+      "reference", "ref",      "true",     "laser",    "interferometer", "truth",        "target",     "setpoint",   "set point",
+      "commanded", "command",  "cmd",      "posset",   "setpos",         "set",          "goal",       "nominal",
       "nom",       "calibrated", "certified", "desired",  "des",      "demand",   "demanded",       "soll",         "sollwert",   "sollposition",
       "sollwinkel", "referenz", "consigne", "consigna", "cible",          "référence",    "referencia", "riferimento",
       "comando",   "zadana",   "эталон",   "задание",  "目标",           "指令",         "参考",       "motor",
       "poscmd",    "referência", "desejado", "alvo",    "gewenst",        "doel",         "börvärde",  "hedef",
-      "zadaný",    "目標",     "rsol",     "aspos",    "ordered",      "order"};
+      "zadaný",    "目標",     "rsol",     "aspos",    "ordered",      "order",      "given"};
   static const std::vector<std::string> device = {
       "measured", "meas",     "device",   "dut",      "encoder",     "sensor",    "actual",    "actpos",  "posact",
       "present",  "resolver", "feedback", "fb",       "fbk",         "act",       "dial",      "gauge",   "indicator",
@@ -30,7 +30,7 @@ const std::vector<std::string>& WordsFor(Speaks of) {
       "mesuré",   "medido",   "medida",   "misurato", "misura",      "zmierzona", "измерено",  "实际",    "测量",
       "反馈",     "编码器",   "reading",  "angle",    "enc",         "probe",     "pos",       "load",
       "saída",     "saida",    "gemeten",  "ärvärde",     "uppmätt",     "ölçülen",   "zmierzone", "měřeno",    "測定",
-      "output",    "rist",     "aipos",    "real"};
+      "output",    "rist",     "aipos",    "real",      "process value"};
   return of == Speaks::kReference ? reference : device;
 }
 
@@ -116,6 +116,18 @@ bool IsCalledCommand(const std::string& name) {
                                  "soll", "sollwert", "sollposition", "sollwinkel", "consigne", "consigna", "poscmd", "comando", "ordered", "given"});
 }
 
+bool AreOfTwoAxes(const std::string& a, const std::string& b) {
+  const auto axis_in = [](const std::string& name) -> std::string {
+    const std::set<std::string> own = WordsOf(name);
+    for (const char* axis : {"roll", "pitch", "yaw", "pan", "tilt", "azimuth", "elevation", "az", "el"}) {
+      if (own.contains(axis)) return axis;
+    }
+    return "";
+  };
+  const std::string of_a = axis_in(a), of_b = axis_in(b);
+  return !of_a.empty() && !of_b.empty() && of_a != of_b;
+}
+
 bool SpeaksOfSide(const std::string& word) {
   return Clearness(word, Speaks::kReference) > 0 || Clearness(word, Speaks::kDevice) > 0 || IsCalledPlace(word) ||
          HasAny(word, std::array{"state", "status", "given", "deg", "rad"});
@@ -187,7 +199,7 @@ bool IsOtherQuantity(const Column& column) {
     if (column.unit == other) return true;
   }
   if (IsCalledTemperature(column.name) || IsRate(column)) return true;
-  return HasAny(column.name, std::array{"torque", "tor", "trq", "tau", "voltage", "volt", "volts", "current", "amp", "amps", "kp", "ki", "kd",
+  return HasAny(column.name, std::array{"torque", "tor", "trq", "tau", "effort", "efforts", "voltage", "volt", "volts", "current", "amp", "amps", "kp", "ki", "kd",
                                         "acceleration", "acc", "pwm", "humidity", "pressure"}) &&
          !IsCalledPlace(column.name);
 }
@@ -196,7 +208,7 @@ bool IsRate(const Column& column) {
   if (const auto unit = UnitNamed(column.unit)) return unit->dimension == Dimension::kSpeed || unit->dimension == Dimension::kTurning;
   const bool is_of_shaft = HasAny(column.name, std::array{"high", "low"});  // "high speed" is the fast one of a gear
   return !is_of_shaft && !IsCalledPlace(column.name) &&
-         HasAny(column.name, std::array{"velocity", "vel", "speed", "rate", "rates", "gyro", "omega", "rpm", "dq", "qd", "geschwindigkeit", "drehzahl"});
+         HasAny(column.name, std::array{"velocity", "vel", "speed", "rate", "rates", "gyro", "omega", "rpm", "dq", "qd", "dot", "geschwindigkeit", "drehzahl"});
 }
 
 bool IsCalledJoint(const std::string& name) {
@@ -205,6 +217,11 @@ bool IsCalledJoint(const std::string& name) {
 
 bool IsCalledPlace(const std::string& name) {
   return HasAny(name, std::array{"position", "pos", "angle", "encoder", "enc"}) || IsCalledJoint(name);
+}
+
+bool IsCalledLength(const std::string& name) {
+  return HasAny(name, std::array{"distance", "dist", "displacement", "stroke", "extension", "elongation", "height", "length", "abstand", "distancia", "distanza"}) &&
+         !HasAny(name, std::array{"angle", "angular", "deg", "rad"});
 }
 
 bool IsNoUnit(const std::string& unit) {

@@ -20,6 +20,9 @@ int Clearness(const std::string& name, Speaks of);
 /// What a controller told an axis, and no other reference.
 bool IsCalledCommand(const std::string& name);
 
+/// "motor_roll" and "imu_pitch": each name has a word for an axis, and not the same.
+bool AreOfTwoAxes(const std::string& a, const std::string& b);
+
 /// One word that says which side of a comparison a column is, or that it is a place, but not of which axis.
 bool SpeaksOfSide(const std::string& word);
 
@@ -59,6 +62,9 @@ bool IsCalledJoint(const std::string& name);
 
 /// "position", "pos", "angle", "encoder", "q": a place, whatever else the name says.
 bool IsCalledPlace(const std::string& name);
+
+/// "distance", "stroke", "displacement": a length, whatever its unit.
+bool IsCalledLength(const std::string& name);
 
 /// A unit that says that there is none: "", "-", "1", "none".
 bool IsNoUnit(const std::string& unit);

@@ -153,9 +153,14 @@ class Parser {
     Refuse();
   }
 
+  /// A name may have brackets of its own: "[Measured Z [m] - Run 1]".
   NodePtr Bracketed() {
-    const std::size_t end = text_.find(']', at_);
-    if (end == std::string::npos) Refuse();
+    std::size_t end = at_;
+    for (int open = 0; end < text_.size(); ++end) {
+      open += text_[end] == '[' ? 1 : text_[end] == ']' ? -1 : 0;
+      if (open == 0) break;
+    }
+    if (end == text_.size()) Refuse();
     auto node = std::make_unique<Node>();
     node->kind = Node::Kind::kName;
     node->text = text_.substr(at_ + 1, end - at_ - 1);

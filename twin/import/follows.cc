@@ -32,6 +32,16 @@ constexpr std::array kRatios = std::to_array<KnownRatio>({
     {25.4, "one of the two is in inches, the other in mm"},
 });
 
+double SizeOf(double gain) {
+  return std::max(std::abs(gain), 1.0 / std::abs(gain));
+}
+
+/// null: it is none.
+const KnownRatio* KnownRatioOf(double gain) {
+  const auto known = std::ranges::find_if(kRatios, [gain](const KnownRatio& k) { return std::abs(SizeOf(gain) / k.ratio - 1.0) < 0.02; });
+  return known == kRatios.end() ? nullptr : &*known;
+}
+
 constexpr double kLine = 0.995;  // correlation: what is left of a line is a tenth of the way at most
 
 /// Two places alone lie on a line whatever the device does.
@@ -61,15 +71,20 @@ Following AtArrivals(const std::vector<double>& reference, const std::vector<dou
     y.push_back(shown[row]);
   }
   constexpr std::size_t kFewest = 4;
-  return x.size() < kFewest ? Following{} : LeastSquares(x, y);
+  constexpr double kLeastShare = 0.5;  // of the way: rests beside each other say nothing of the whole
+  if (x.size() < kFewest) return {};
+  const auto [low, high] = std::ranges::minmax(reference);
+  const auto [lowest, highest] = std::ranges::minmax(x);
+  return highest - lowest < kLeastShare * (high - low) ? Following{} : LeastSquares(x, y);
 }
 
 /// From row to row, whole turns aside: of two columns that have nothing to do with each other half of the steps are
-/// longer than a quarter of a turn, and unwrapping them would find a course in chance.
+/// longer than a quarter of a turn, and unwrapping them would find a course in chance. Neither may be so while it moves, if it mostly rests.
 bool GoesSmoothly(const std::vector<double>& angle) {
   std::vector<double> sizes;
   for (const double step : StepsOf(angle)) sizes.push_back(std::abs(std::remainder(step, units::turn)));
-  return MedianOf(std::move(sizes)) < units::turn / 12.0;
+  constexpr double kNearlyAll = 0.9;
+  return QuantileOf(sizes, kNearlyAll) < units::turn / 4.0 && MedianOf(std::move(sizes)) < units::turn / 12.0;
 }
 
 /// The one that goes more closely together; of two that do the one nearer to one to one.
@@ -110,12 +125,13 @@ Following FollowingLater(const std::vector<double>& reference, const std::vector
 }
 
 std::string MeaningOfGain(double gain) {
-  const double size = std::abs(gain) >= 1.0 ? std::abs(gain) : 1.0 / std::abs(gain);
-  for (const KnownRatio& known : kRatios) {
-    if (std::abs(size / known.ratio - 1.0) < 0.02) return known.meaning;
-  }
-  if (std::abs(size - 1.0) < 0.2 && gain < 0.0) return "they count in opposite directions";
-  return "";
+  if (const KnownRatio* known = KnownRatioOf(gain)) return known->meaning;
+  return std::abs(SizeOf(gain) - 1.0) < 0.2 && gain < 0.0 ? "they count in opposite directions" : "";
+}
+
+double NominalGain(double gain) {
+  const KnownRatio* known = KnownRatioOf(gain);
+  return known ? std::copysign(std::abs(gain) >= 1.0 ? known->ratio : 1.0 / known->ratio, gain) : gain;
 }
 
 }  // namespace twinbench::imports

@@ -24,4 +24,7 @@ Following FollowingLater(const std::vector<double>& reference, const std::vector
 /// What a gain far from 1 looks like, "one of them is in rad, the other in deg"; empty if it is no known ratio.
 std::string MeaningOfGain(double gain);
 
+/// That ratio itself with the gain's sign, without an error of a scale; the gain where it is none.
+double NominalGain(double gain);
+
 }  // namespace twinbench::imports

@@ -175,12 +175,39 @@ void PutDevice(const std::string& target, const std::vector<const Choice*>& tied
   Put(target, **best, tied.size() > 1 ? fmt::format("by its name, one of {} such", tied.size()) : "by its name", map, remarks);
 }
 
+/// Beside several that are called devices the only one that is not; null: of none, or of several.
+const Choice* OnlyNoDevice(const std::vector<Choice>& columns, const std::set<std::string>& taken) {
+  const Choice* only = nullptr;
+  std::size_t devices = 0;
+  for (const Choice& c : columns) {
+    if (taken.contains(c.name) || IsCounter(*c.column)) continue;
+    if (Clearness(c.name, Speaks::kDevice) > 0) {
+      ++devices;
+    } else if (only) {
+      return nullptr;
+    } else {
+      only = &c;
+    }
+  }
+  return devices > 1 ? only : nullptr;
+}
+
+/// "real" is where a device is beside a command, and the truth beside what is called neither.
+const Choice* TheReal(const std::vector<Choice>& columns, const std::set<std::string>& taken) {
+  const auto is_open = [&taken](const Choice& c) { return !taken.contains(c.name); };
+  const auto real = std::ranges::find_if(columns, [&](const Choice& c) { return is_open(c) && ClearnessBy(c.name, {"real"}) > 0; });
+  const bool is_alone = std::ranges::none_of(columns, [&](const Choice& c) { return is_open(c) && &c != &*real && Clearness(c.name, Speaks::kDevice) > 0; });
+  return real != columns.end() && is_alone ? &*real : nullptr;
+}
+
 void TakeByName(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
                 std::vector<std::string>& remarks) {
   for (std::size_t k = 0; k < compared.size(); ++k) {
     if (IsGiven(map, compared[k])) continue;
     const std::set<std::string> taken = Taken(map);
     const Choice* found = Clearest(columns, k == 0 ? Speaks::kReference : Speaks::kDevice, taken);
+    if (!found && k == 0) found = OnlyNoDevice(columns, taken);
+    if (!found && k == 0) found = TheReal(columns, taken);
     if (!found) continue;
     if (k == 0) {
       Put(compared[k], *found, "by its name", map, remarks);
@@ -238,6 +265,20 @@ bool IsOfAnotherDimension(const Choice& choice, const Map& map) {
          });
 }
 
+/// The line to type, with columns that there are: which of them it is only the user knows.
+std::string ExampleOf(const std::vector<Choice>& left, const std::vector<Recording>& recordings, const std::vector<std::string>& compared, const Map& map) {
+  std::string example;
+  auto next = left.begin();
+  for (const std::string& target : compared) {
+    if (IsGiven(map, target)) continue;
+    const std::string unit = next == left.end() ? "" : UnitFor(*next->column, target);
+    const std::string name = next == left.end() ? "a column" : FullName(next->name, *next->recording, recordings);
+    example += fmt::format(" --column '{}=[{}]'", unit.empty() ? target : BaseOf(target) + "_" + unit, name);
+    if (next != left.end()) ++next;
+  }
+  return fmt::format("the columns that are meant, as in{}, or under [columns] of a map", example);
+}
+
 void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Recording>& recordings,
                     const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks) {
   for (std::size_t k = 0; k < compared.size(); ++k) {
@@ -246,6 +287,7 @@ void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Record
     std::vector<Choice> left;
     std::ranges::copy_if(columns, std::back_inserter(left),
                          [&taken](const Choice& c) { return !taken.contains(c.name); });
+    const std::vector<Choice> open = left;
     const std::size_t missing = static_cast<std::size_t>(
         std::ranges::count_if(compared, [&map](const auto& c) { return !IsGiven(map, c); }));
     if (left.size() > missing) std::erase_if(left, [](const Choice& c) { return IsCounter(*c.column); });
@@ -258,11 +300,8 @@ void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Record
       Put(compared[k], left[0], "the first column that is left", map, remarks);
       continue;
     }
-    throw InputError(
-        recordings[0].file,
-        fmt::format("which column is {} is not clear; there are {}", compared[k], ColumnNames(recordings)),
-        fmt::format("{} = \"a column\" under [columns] of a map, or --column '{}=a column'{}", compared[k],
-                    compared[k], ReadyMapsByNames(recordings[0])));
+    throw InputError(recordings[0].file, fmt::format("which column is {} is not clear; there are {}", compared[k], ColumnNames(recordings)),
+                     ExampleOf(left.size() > missing ? left : open, recordings, compared, map) + ReadyMapsByNames(recordings[0]));
   }
 }
 
@@ -280,6 +319,8 @@ void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
   std::erase_if(columns, [](const Choice& choice) { return !Changes(choice) || IsOtherQuantity(*choice.column); });
   if (TakeAngleAndError(columns, compared, map, remarks)) return;
   if (columns.size() > compared.size()) std::erase_if(columns, [](const Choice& c) { return IsCalledError(c.name); });
+  const std::string reference = GivenExpression(map, compared[0]);
+  std::erase_if(columns, [&reference](const Choice& c) { return AreOfTwoAxes(c.name, reference); });
   TakeByName(columns, compared, map, remarks);
   TakeWhatIsLeft(columns, recordings, compared, map, remarks);
   TakeCountsBesideAngle(compared, recordings, map, remarks);

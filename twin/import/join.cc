@@ -85,6 +85,11 @@ bool IsOfFormulas(const std::string& name) {
   return name == "time_s" || name == "count" || name == "index";
 }
 
+/// A file of one number a line may be read as a list or as a table.
+bool IsListCalled(const std::string& name, const Track& track) {
+  return track.columns.size() == 1 && ((name == "entry" && track.columns[0].name == "column 1") || (name == "column 1" && track.columns[0].name == "entry"));
+}
+
 std::vector<Source> Candidates(const Together& together, std::string name) {
   const auto file = FileIn(name);
   const NameAndUnit split = SplitHeader(name);
@@ -92,7 +97,7 @@ std::vector<Source> Candidates(const Together& together, std::string name) {
   for (const Side& side : together) {
     if (file && side.file != *file) continue;
     for (const Column& column : side.track->columns) {
-      if (column.name == name) found.push_back({side.track, &column, 0.0});
+      if (column.name == name || IsListCalled(name, *side.track)) found.push_back({side.track, &column, 0.0});
       if (column.name == split.name && column.unit == split.unit) with_unit.push_back({side.track, &column, 0.0});
       if (!IsOfFormulas(name) && UnitAtEnd(column.name) && BaseOf(column.name) == name) without_unit.push_back({side.track, &column, 0.0});
     }
@@ -241,6 +246,10 @@ class Evaluation {
   Values Column_(Source source, const std::string& name) {
     const std::vector<std::string>* words = source.column->IsNumber() ? nullptr : &source.column->words;
     if (source.track == base_) return {source.column->value, words};
+    if (!source.track->HasClock() && !base_->HasClock() && source.track->Rows() == base_->Rows()) {
+      joined_.remarks.push_back(fmt::format("{} is taken beside {}, row by row", recordings_[FileOf(*source.track)].file, recordings_[FileOf(*base_)].file));
+      return {source.column->value, words};
+    }
     if (words)
       throw InputError(recordings_[0].file, fmt::format("\"{}\" holds words on a clock of its own", name),
                        "numbers");
@@ -356,13 +365,22 @@ void Unique(std::vector<std::string>& remarks) {
 
 }  // namespace
 
+std::string FullName(const std::string& column, const Recording& recording, const std::vector<Recording>& recordings) {
+  const auto has = [&column](const Recording& r) {
+    return std::ranges::any_of(r.tracks, [&column](const Track& t) { return IsListCalled(column, t) || std::ranges::count(t.columns, column, &Column::name) > 0; });
+  };
+  if (recordings.size() != 2 || std::ranges::count_if(recordings, has) < 2) return column;
+  return fmt::format("{}:{}", &recording - recordings.data() + 1, column);
+}
+
 std::string ColumnNames(const std::vector<Recording>& recordings) {
   std::string names;
   for (const Recording& recording : recordings) {
     for (const Track& track : recording.tracks) {
       for (const Column& column : track.columns) {
-        if (names.size() < 600 && names.find('"' + column.name + '"') == std::string::npos)
-          names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", column.name);
+        const std::string name = FullName(column.name, recording, recordings);
+        if (names.size() < 600 && names.find('"' + name + '"') == std::string::npos)
+          names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", name);
       }
     }
   }

@@ -35,6 +35,9 @@ struct Joined {
 /// @throws InputError if a name is in no file or in several, if clocks do not overlap, or if nothing is left.
 Joined Join(const std::vector<Recording>& recordings, const Map& map, const std::string& shown);
 
+/// "2:angle" where both of two files have an "angle", else "angle".
+std::string FullName(const std::string& column, const Recording& recording, const std::vector<Recording>& recordings);
+
 /// Every column there is, for messages: "1:angle".
 std::string ColumnNames(const std::vector<Recording>& recordings);
 

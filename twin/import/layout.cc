@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <map>
 
 #include "twin/import/array.h"
@@ -31,11 +32,16 @@ bool Has(const std::vector<std::string_view>& lines, std::string_view what) {
                              [what](std::string_view line) { return line.find(what) != std::string_view::npos; });
 }
 
-/// `name[...] = {`
+/// `name[...] = {`, or the brace on the next line.
 bool OpensArray(std::string_view line) {
-  const std::size_t brace = line.find('{'), bracket = line.find('[');
-  return bracket != std::string_view::npos && brace != std::string_view::npos && bracket < brace &&
-         line.substr(bracket, brace - bracket).find('=') != std::string_view::npos;
+  const std::string_view declared = Trimmed(line.substr(0, line.find('{')));
+  const std::size_t bracket = declared.find('['), close = declared.rfind(']');
+  const bool is_array = bracket != std::string_view::npos && close != std::string_view::npos && bracket < close;
+  return is_array && (declared.size() < Trimmed(line).size() ? declared.find('=', bracket) != std::string_view::npos : declared.ends_with('=') && declared.find(',') == std::string_view::npos);
+}
+
+bool IsOneLine(const std::vector<std::string_view>& lines) {
+  return std::ranges::count_if(lines, std::not_fn(IsComment)) == 1;
 }
 
 /// A scope's export pairs each key with a value, and its first channel's row begins a line.
@@ -95,7 +101,7 @@ std::string FindKind(const std::vector<std::string_view>& lines, bool columns_ar
   if (2 * changes > std::ssize(lines)) return "changes";
   if (Has(lines, "ref_pos(i,")) return "cycles";
   if (std::ranges::any_of(lines, OpensArray)) return "array";
-  if (std::ranges::count_if(lines, OpensList) > 1 || (columns_are_open && IsBareList(lines))) return "array";
+  if (std::ranges::count_if(lines, OpensList) > 1 || (IsBareList(lines) && (columns_are_open || IsOneLine(lines)))) return "array";
   if (columns_are_open && AreCycles(lines)) return "cycles";
   return "table";
 }

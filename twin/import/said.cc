@@ -21,7 +21,7 @@ std::string NameOf(const Map& map, const std::string& column) {
 std::string ExpressionOf(const Map& map, const std::string& column) {
   const MappedColumn* mapped = Find(map, column);
   if (!mapped) return column;
-  const bool is_name = mapped->expression.find_first_of("+*/()[]") == std::string::npos;
+  const bool is_name = mapped->where.empty() || mapped->expression.find_first_of("+*/()[]") == std::string::npos;
   return is_name ? "[" + mapped->expression + "]" : "(" + mapped->expression + ")";
 }
 

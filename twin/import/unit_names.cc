@@ -168,6 +168,15 @@ std::optional<NameAndUnit> BehindABlank(std::string_view field) {
   return NameAndUnit{std::string(name), std::string(unit)};
 }
 
+/// "Measured Z [m] - Run 1": such a name is kept whole.
+std::optional<NameAndUnit> InTheMiddle(std::string_view field) {
+  const std::size_t open = field.find('['), close = field.find(']', std::min(open, field.size()));
+  if (open == std::string_view::npos || open == 0 || close == std::string_view::npos) return std::nullopt;
+  const std::string_view unit = Trimmed(field.substr(open + 1, close - open - 1));
+  if (!UnitNamed(unit)) return std::nullopt;
+  return NameAndUnit{std::string(field), std::string(unit)};
+}
+
 /// "angle_degrees", "positionRad": such a name is kept whole. "q_m" is a joint's at its motor.
 std::optional<NameAndUnit> InTheName(std::string_view field) {
   if (field == "q_m" || field.ends_with("_q_m")) return std::nullopt;
@@ -194,7 +203,8 @@ std::optional<NamedUnit> UnitNamed(std::string_view text) {
   const auto spelling = std::ranges::find(kSpellings, small, &Spelling::spelling);
   if (spelling != kSpellings.end()) return PlainUnit(spelling->name);
   for (const NamedUnit& unit : kUnits) {
-    if (SmallLetters(unit.name) == small && small != "mv" && small.size() > 1) return unit;
+    const bool is_of_torque = small == "nm" && text.front() == 'N';
+    if (SmallLetters(unit.name) == small && small != "mv" && small.size() > 1 && !is_of_torque) return unit;
   }
   return OverATime(text);
 }
@@ -245,7 +255,7 @@ NameAndUnit SplitHeader(std::string_view field) {
   const std::size_t slash = field.rfind('/');
   if (slash != std::string_view::npos && slash > 0 && UnitNamed(field.substr(slash + 1)))
     return {std::string(Trimmed(field.substr(0, slash))), std::string(Trimmed(field.substr(slash + 1)))};
-  for (const auto& split : {BehindABlank(field), InTheName(field)}) {
+  for (const auto& split : {BehindABlank(field), InTheMiddle(field), InTheName(field)}) {
     if (split) return *split;
   }
   return {std::string(field), ""};
