@@ -1,3 +1,5 @@
+#include <random>
+
 #include "tests/import/importing.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/noise.h"
@@ -239,7 +241,7 @@ double Triangle(int row) {
 TEST_F(Importing, TakesAServoThatLagsAndSaysByHowMuch) {
   const Wave late = [](int i) { return Triangle(i - 90); };
   EXPECT_THAT(Take(Beside("time [s];goal [deg];position [deg]", 2400, Triangle, late)).story, HasSubstr("about 90 rows (1.8 s) later\n"));
-  EXPECT_THAT(Take(Beside("sample;goal [deg];position [deg]", 2400, Triangle, late)).story, HasSubstr("about 90 rows later\n"));
+  EXPECT_THAT(Take(Beside("sample;goal [deg];position [deg]", 2400, Triangle, late)).story, HasSubstr("about 90 rows later; rows"));
   const Wave coarse = [](int i) { return 20.0 * std::round(Triangle(i - 90) / 20.0); };
   EXPECT_THAT(Take(Beside("time [s];goal [deg];position [deg]", 2400, Triangle, coarse)).story, HasSubstr(" later\n"));
   EXPECT_THAT(Take(Beside("time [s];goal [deg];position [deg]", 2400, Triangle, [](int i) { return Triangle(i - 3); })).story,
@@ -295,6 +297,27 @@ TEST_F(Importing, TakesAServoThatSwingsThroughItsPlaceForNoPush) {
     return command(i) + 0.35 * (from - command(i)) * (std::cos(0.05 * since) > 0.0 ? 1.0 : -1.0);
   };
   EXPECT_THAT(Take(Beside("time [s];goal [deg];position [deg]", 8 * kRest, command, servo)).story, Not(HasSubstr("pushed")));
+}
+
+/// A row a second, each of another place within a turn.
+TEST_F(Importing, TakesACommandThatEveryRowSendsElsewhereForAPlaceARow) {
+  std::string text = "time [s];commanded [deg];feedback [deg]\n";
+  std::mt19937 random(3);
+  for (int i = 0; i < 120; ++i) {
+    const double place = 0.1 * static_cast<double>(random() % 3600);
+    text += fmt::format("{};{:.1f};{:.1f}\n", i, place, place + (i == 50 ? 20.0 : 0.0));
+  }
+  const Imported imported = Take(text);
+  ASSERT_EQ(imported.readings.size(), 120u);
+  EXPECT_THAT(imported.story, HasSubstr("taken as stops"));
+  EXPECT_NEAR(Worst_deg(imported.readings), 20.0 * 119 / 120, 1e-6);
+}
+
+/// Two encoders of a gear in counts, at rest for two thirds: rests close together say nothing of the whole way, and counts go round nowhere.
+TEST_F(Importing, TellsARatioByTheWholeWay) {
+  const Wave motor = [](int i) { return i < 1600 ? 30.0 * (i / 30 % 3) : 6000.0 * std::sin(0.5 * (i - 1600)); };
+  const Wave output = [&motor](int i) { return i < 1600 ? 0.05 * motor(i) : 0.087 * motor(i) + 60.0 * std::sin(7.0 * i); };
+  EXPECT_THAT(MessageOf([&] { Take(Beside("time [s];goal [deg];position [deg]", 2400, motor, output)); }), testing::ContainsRegex("times 0\\.0[89]"));
 }
 
 TEST_F(Importing, SaysWhatARecordingOfOneStepLacks) {

@@ -58,7 +58,8 @@ void Maker::Take(const Session& session, const MostReadings& most, Imported& imp
   const double wrap = is_driven_back ? 0.0 : FindWrap(reference, map_.course, linear_);
   const std::vector<double> no_clock;
   const bool one_place = bench_.compared && IsOnePlace(session);
-  Course course = CourseOf(reference, session.has_clock && !one_place ? session.time_s : no_clock, map_.course, wrap);
+  const bool is_in_time = session.has_clock && !one_place && !IsSentAnewEveryRow(session);
+  Course course = CourseOf(reference, is_in_time ? session.time_s : no_clock, map_.course, wrap);
   if (one_place && session.value.contains("direction")) NumberApproaches(session.value.at("direction"), course);
   if (bench_.compared && !one_place) {
     const Alignment alignment = AlignmentOf(session, course.reference, bench_, map_);
@@ -152,6 +153,18 @@ bool Maker::IsProfile(const Session& session, const Course& course) const {
   const double moving = (1.0 - course.rest_share) * static_cast<double>(session.Rows());
   return MedianOf(StepsOf(session.time_s)) <= kLongest_s && moving > kFewestRows * course.rests &&
          moving > kLeastShare * static_cast<double>(session.Rows());
+}
+
+/// A command that goes to and fro from each row to the next, rows that are far apart: each of them is a place.
+bool Maker::IsSentAnewEveryRow(const Session& session) const {
+  constexpr double kShortest_s = 0.1, kLeastShare = 0.5;
+  if (!bench_.compared || map_.course.kind != "auto" || !IsCalledCommand(ExpressionOf(map_, bench_.compared->reference))) return false;
+  std::vector<double> steps = StepsOf(session.value.at(bench_.compared->reference));
+  const double rows = static_cast<double>(steps.size());
+  std::erase(steps, 0.0);
+  std::size_t turns = 0;
+  for (std::size_t i = 1; i < steps.size(); ++i) turns += steps[i] * steps[i - 1] < 0.0 ? 1 : 0;
+  return MedianOf(StepsOf(session.time_s)) > kShortest_s && static_cast<double>(turns) > kLeastShare * rows;
 }
 
 /// Of a drive from stop to stop; empty: of another.

@@ -45,6 +45,7 @@ class Maker {
   };
   Session Aligned(Session session, const Alignment& alignment);
   std::vector<std::size_t> Fresh(const Session& session, const Course& course) const;
+  bool IsSentAnewEveryRow(const Session& session) const;
   bool IsProfile(const Session& session, const Course& course) const;
   std::vector<Rest> RestsIn(const Session& session, const Course& course) const;
   std::string CourseColumn(const Session& session) const;

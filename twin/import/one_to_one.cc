@@ -68,7 +68,9 @@ std::string LaterText(double step_s, double later_s) {
 std::string LagText(const std::string& name, const std::string& reference, const Session& session, const Following& later) {
   const double step_s = MedianOf(StepsOf(session.time_s)), later_s = static_cast<double>(later.rows_later) * step_s;
   return fmt::format("{} follows {} about {} rows{} later{}", name, reference, later.rows_later,
-                     session.has_clock ? LaterText(step_s, later_s) : "", GainText(later.gain));
+                     session.has_clock ? LaterText(step_s, later_s) : "",
+                     GainText(later.gain)) +
+         (session.has_clock ? "" : "; rows that were read at equal times are motion: --column 'rate_Hz=100' says how often");
 }
 
 [[noreturn]] void RefuseGain(const std::string& name, const std::string& reference, double gain, const Map& map) {
@@ -78,7 +80,7 @@ std::string LagText(const std::string& name, const std::string& reference, const
       std::abs(gain + 1.0) <= kLikeOne
           ? fmt::format("the same sense: {} = \"-{}\"", KeyOf(map, name), ExpressionOf(map, name))
           : fmt::format("the same unit and sense: {} = \"...\" in the unit it has, or {} = \"{} / {:.6g}\"", KeysOf(name), KeyOf(map, name),
-                        ExpressionOf(map, name), gain));
+                        ExpressionOf(map, name), NominalGain(gain)));
 }
 
 /// The whole number of turns that one side makes for one of the other; 0: it is none.
