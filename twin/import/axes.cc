@@ -26,7 +26,8 @@ std::string ListOf(const std::vector<std::string>& axes) {
   return list;
 }
 
-/// @param axes  In words, by number.
+}  // namespace
+
 std::size_t ChosenOf(const std::vector<std::string>& axes, const Map& map, Recording& recording) {
   const auto number = static_cast<std::size_t>(std::max(1, map.course.axis_number));
   if (number > axes.size())
@@ -34,6 +35,8 @@ std::size_t ChosenOf(const std::vector<std::string>& axes, const Map& map, Recor
   recording.remarks.push_back(fmt::format("{} axes are in the file ({}): {} is taken; another one by --axis-number N, or --column", axes.size(), ListOf(axes), number));
   return number - 1;
 }
+
+namespace {
 
 // Rows of several axes below each other.
 

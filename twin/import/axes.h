@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "twin/import/map.h"
@@ -12,5 +13,10 @@ namespace twinbench::imports {
 /// it is 0. What the map gives already stays, and nothing is chosen where there is one axis.
 /// @throws InputError if there are not so many, or none but one where another is asked for.
 void TakeAxis(Map& map, std::vector<Recording>& recordings);
+
+/// The one of several that the map says, the first where it says none, which is said.
+/// @param axes  In words, by number.
+/// @throws InputError if there are not so many.
+std::size_t ChosenOf(const std::vector<std::string>& axes, const Map& map, Recording& recording);
 
 }  // namespace twinbench::imports

@@ -12,6 +12,7 @@
 #include "twin/import/guess.h"
 #include "twin/import/join.h"
 #include "twin/import/make_readings.h"
+#include "twin/import/side_by_side.h"
 #include "twin/import/sought.h"
 #include "twin/import/source.h"
 #include "twin/import/story.h"
@@ -72,9 +73,9 @@ std::vector<Recording> ReadAll(const std::vector<std::string>& files, Map& map) 
     const std::string others = layout.columns_are_open && map.name.empty() ? ReadyMapsByNames(recordings.back()) : "";
     if (!others.empty()) recordings.back().remarks.push_back("by its names it may be of another kind" + others);
     TakeSought(map, recordings.back());
-    TakeUnnamedClock(map, recordings.back());
   }
-  TakeAxis(map, recordings);
+  TakeUnnamedClock(map, recordings);
+  if (!TakeSideBySide(map, recordings)) TakeAxis(map, recordings);
   return recordings;
 }
 

@@ -14,6 +14,7 @@
 #include "twin/core/schema_table.h"
 #include "twin/core/toml_reader.h"
 #include "twin/import/ready_texts.h"
+#include "twin/import/text.h"
 
 namespace twinbench::imports {
 namespace {
@@ -196,8 +197,14 @@ Map LoadMap(const std::string& name_or_path) {
 
 namespace {
 
-/// "time_ms=[column 1]": the clock, which is no quantity of a bench.
+/// "time_ms=[column 1]", "rate_Hz=100": the clock, which is no quantity of a bench.
 bool SetClock(const std::string& key, const std::string& column, Map& map) {
+  if (key == "rate_Hz") {
+    const auto rate_Hz = FieldNumber(column, false);
+    if (!rate_Hz || !(*rate_Hz > 0.0)) throw InputError("--column rate_Hz=" + column, "no rate of rows", "a number above 0");
+    map.clock.rate_Hz = *rate_Hz;
+    return true;
+  }
   const auto unit = UnitAtEnd(key);
   if (!unit || unit->dimension != Dimension::kTime || BaseOf(key) != "time") return false;
   const bool in_brackets = column.starts_with('[') && column.ends_with(']');

@@ -104,6 +104,7 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
     ReadScope(text, recording);
   } else if (kind == "array") {
     ReadArray(text, layout.array, recording);
+    for (Track& track : recording.tracks) FindClock(clock, path, track);
   } else if (kind == "cycles") {
     ReadCycles(text, layout, recording);
   } else if (kind == "records") {

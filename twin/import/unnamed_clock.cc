@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "twin/import/clock.h"
@@ -29,14 +30,22 @@ bool GoTogether(const Column& first, const Column& second) {
   return std::abs(following.gain - 1.0) < 0.2 && following.correlation > 0.9;
 }
 
+bool FirstIsAngle(const Track& track) {
+  const Column& first = track.columns.front();
+  return std::any_of(track.columns.begin() + 1, track.columns.end(), [&first](const Column& other) { return other.IsNumber() && GoTogether(first, other); });
+}
+
 /// Of a column that rises evenly, up to the rounding of its last digit; or as evenly as a computer logs, if it is not itself an angle
 /// that goes with the others.
 double StepOfClock(const Track& track) {
   constexpr double kEqual = 0.02, kLogged = 0.9;
-  const Column& first = track.columns.front();
-  if (const double step = StepWithin(kEqual, first.value); step > 0.0) return step;
-  const bool is_angle = std::any_of(track.columns.begin() + 1, track.columns.end(), [&first](const Column& other) { return other.IsNumber() && GoTogether(first, other); });
-  return is_angle ? 0.0 : StepWithin(kLogged, first.value);
+  const double step = StepWithin(kEqual, track.columns.front().value);
+  return step > 0.0 ? step : FirstIsAngle(track) ? 0.0 : StepWithin(kLogged, track.columns.front().value);
+}
+
+/// Of what two files have in common: there may be gaps, but not an angle that the second column shows.
+double StepOfSharedClock(const Track& track) {
+  return FirstIsAngle(track) ? 0.0 : StepWithin(std::numeric_limits<double>::infinity(), track.columns.front().value);
 }
 
 /// Two columns that go together one to one: the reference and the device are there already.
@@ -48,6 +57,13 @@ bool TwoOthersFollow(const Track& track) {
     }
   }
   return false;
+}
+
+/// Two files of one quantity each begin with the same column: they were written at the same instants.
+bool IsShared(const std::vector<Recording>& recordings) {
+  const auto is_table = [](const Recording& r) { return r.tracks.size() == 1 && r.tracks[0].columns.size() == 2; };
+  return recordings.size() == 2 && std::ranges::all_of(recordings, is_table) &&
+         recordings[0].tracks[0].columns.front().value == recordings[1].tracks[0].columns.front().value;
 }
 
 bool IsSpokenOf(const std::string& name, const Map& map) {
@@ -78,14 +94,17 @@ void Take(Track& track, double step, Recording& recording) {
 
 }  // namespace
 
-void TakeUnnamedClock(const Map& map, Recording& recording) {
+void TakeUnnamedClock(const Map& map, std::vector<Recording>& recordings) {
   if (!map.clock.column.empty() || map.clock.rate_Hz > 0.0) return;
-  for (Track& track : recording.tracks) {
-    if (track.HasClock() || track.columns.size() < 3) continue;
-    const Column& first = track.columns.front();
-    if (first.name != "column 1" || !first.IsNumber() || IsSpokenOf(first.name, map)) continue;
-    const double step = StepOfClock(track);
-    if (step > 0.0 && TwoOthersFollow(track)) Take(track, step, recording);
+  const bool is_shared = IsShared(recordings);
+  for (Recording& recording : recordings) {
+    for (Track& track : recording.tracks) {
+      if (track.HasClock() || track.columns.size() < 2) continue;
+      const Column& first = track.columns.front();
+      if (first.name != "column 1" || !first.IsNumber() || IsSpokenOf(first.name, map)) continue;
+      const double step = is_shared ? StepOfSharedClock(track) : StepOfClock(track);
+      if (step > 0.0 && (is_shared || TwoOthersFollow(track))) Take(track, step, recording);
+    }
   }
 }
 
