@@ -196,8 +196,9 @@ const Choice* OnlyNoDevice(const std::vector<Choice>& columns, const std::set<st
 const Choice* TheReal(const std::vector<Choice>& columns, const std::set<std::string>& taken) {
   const auto is_open = [&taken](const Choice& c) { return !taken.contains(c.name); };
   const auto real = std::ranges::find_if(columns, [&](const Choice& c) { return is_open(c) && ClearnessBy(c.name, {"real"}) > 0; });
+  if (real == columns.end()) return nullptr;
   const bool is_alone = std::ranges::none_of(columns, [&](const Choice& c) { return is_open(c) && &c != &*real && Clearness(c.name, Speaks::kDevice) > 0; });
-  return real != columns.end() && is_alone ? &*real : nullptr;
+  return is_alone ? &*real : nullptr;
 }
 
 void TakeByName(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
