@@ -2,22 +2,60 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 
 #include "hw_bridge/clock_notices.h"
 #include "hw_bridge/control/described_devices.h"
 #include "hw_bridge/control/esp_machine.h"
+#include "hw_bridge/control/instrument.h"
 #include "hw_bridge/control/linuxcnc_machine.h"
 #include "hw_bridge/control/operator_devices.h"
 #include "hw_bridge/control/scpi_instruments.h"
 #include "hw_bridge/control/served_clock.h"
 #include "hw_bridge/conversations.h"
-#include "hw_bridge/numbers/number_instrument.h"
+#include "hw_bridge/numbers/number_source.h"
+#include "twin/core/device_fault.h"
 #include "twin/core/errors.h"
+#include "twin/core/number_text.h"
 
 namespace twinbench::hw {
 namespace {
+
+/// An instrument whose numbers are read in a card or behind a gateway. It latches nothing, and is read with every
+/// look.
+class NumberInstrument : public Instrument {
+ public:
+  /// @param names, scale, columns, where  As of Instrument, one a number of the source.
+  NumberInstrument(std::unique_ptr<NumberSource> source, const std::vector<std::string>& names,
+                   const std::vector<double>& scale, const std::vector<ReadingColumn>& columns,
+                   const std::string& where);
+  Reading Read() override;
+
+ private:
+  std::unique_ptr<NumberSource> source_;
+};
+
+NumberInstrument::NumberInstrument(std::unique_ptr<NumberSource> source, const std::vector<std::string>& names,
+                                   const std::vector<double>& scale, const std::vector<ReadingColumn>& columns,
+                                   const std::string& where)
+    : Instrument(names, scale, columns, where), source_(std::move(source)) {}
+
+/// A float that is none, or not finite, is how a register says that nothing is shown.
+Reading NumberInstrument::Read() {
+  static const std::vector<std::string> nothing;
+  const std::vector<double> numbers = source_->Read();
+  Reading sample;
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    if (!std::isfinite(numbers[k])) {
+      sample.status = ReadingStatus::kNoLight;
+    } else if (!Put(fields()[k], PrintInUnit(numbers[k], 1.0), nothing, sample)) {
+      throw DeviceFault(FaultKind::kProtocol, source_->Identity(), "shows what is no " + fields()[k].name);
+    }
+  }
+  return sample;
+}
 
 class OpenedMachine : public OpenMachine {
  public:

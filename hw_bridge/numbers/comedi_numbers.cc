@@ -1,4 +1,4 @@
-#include "hw_bridge/numbers/comedi_numbers.h"
+#include "hw_bridge/numbers/number_drivers.h"
 
 #include <fmt/format.h>
 

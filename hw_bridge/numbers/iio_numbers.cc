@@ -1,4 +1,4 @@
-#include "hw_bridge/numbers/iio_numbers.h"
+#include "hw_bridge/numbers/number_drivers.h"
 
 #include <fmt/format.h>
 

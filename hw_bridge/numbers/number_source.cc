@@ -5,13 +5,11 @@
 #include "hw_bridge/ad/ad_source.h"
 #include "twin/core/errors.h"
 #ifdef TWINBENCH_WITH_IIO
-#include "hw_bridge/numbers/iio_numbers.h"
+#include "hw_bridge/numbers/number_drivers.h"
 #endif
 #ifdef TWINBENCH_WITH_COMEDI
-#include "hw_bridge/numbers/comedi_numbers.h"
 #endif
 #ifdef TWINBENCH_WITH_MODBUS
-#include "hw_bridge/numbers/modbus_numbers.h"
 #endif
 
 namespace twinbench::hw {

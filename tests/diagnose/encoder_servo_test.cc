@@ -3,8 +3,8 @@
 #include "tests/diagnose/encoder_record.h"
 #include "twin/benches/encoder_comparison/diagnosis/few_counts.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_cause.h"
-#include "twin/benches/encoder_comparison/diagnosis/leading_loop.h"
 #include "twin/benches/encoder_comparison/diagnosis/memory.h"
+#include "twin/benches/encoder_comparison/diagnosis/told.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {

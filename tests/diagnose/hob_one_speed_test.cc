@@ -1,6 +1,5 @@
 #include "tests/support/twin_run.h"
-#include "twin/benches/hob_transmission/orders_of_ring.h"
-#include "twin/benches/hob_transmission/orders_of_tones.h"
+#include "twin/benches/hob_transmission/told_orders.h"
 #include "twin/core/time.h"
 #include "twin/core/units.h"
 

@@ -1,4 +1,4 @@
-#include "hw_bridge/numbers/comedi_numbers.h"
+#include "hw_bridge/numbers/number_drivers.h"
 #include "tests/core/input_error.h"
 #include "tests/hw_ad/backend_test.h"
 #include "tests/support/kept_text.h"

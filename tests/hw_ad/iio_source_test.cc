@@ -1,7 +1,7 @@
 #include <asio.hpp>
 #include <regex>
 
-#include "hw_bridge/numbers/iio_numbers.h"
+#include "hw_bridge/numbers/number_drivers.h"
 #include "tests/core/input_error.h"
 #include "tests/hw_ad/backend_test.h"
 #include "tests/support/kept_text.h"

@@ -3,7 +3,7 @@
 
 #include "tests/import/importing.h"
 #include "tests/support/noise.h"
-#include "twin/import/named_lists.h"
+#include "twin/import/layouts.h"
 
 /// Logs in which a program prints the lists of a robot's joints, each under its name.
 namespace twinbench::imports {

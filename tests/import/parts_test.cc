@@ -1,11 +1,11 @@
 #include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"
 #include "twin/core/units.h"
-#include "twin/import/array.h"
 #include "twin/import/blocks.h"
 #include "twin/import/clock.h"
 #include "twin/import/expression.h"
 #include "twin/import/follows.h"
+#include "twin/import/layouts.h"
 
 namespace twinbench::imports {
 namespace {

@@ -3,7 +3,7 @@
 #include "tests/support/angle_benches.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/machine_run.h"
-#include "twin/benches/circular_motion/twin/driven.h"
+#include "twin/benches/circular_motion/twin/live.h"
 
 /// Same scenario, same seed, same readings: on the twin in this program and through the network.
 namespace twinbench::test {

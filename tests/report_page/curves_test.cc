@@ -4,10 +4,8 @@
 
 #include "tests/report_page/blocks.h"
 #include "twin/report/page/circles.h"
-#include "twin/report/page/direction_curves.h"
-#include "twin/report/page/harmonics_of.h"
 #include "twin/report/page/scored.h"
-#include "twin/report/page/tiles.h"
+#include "twin/report/page/tables.h"
 
 namespace twinbench::report {
 namespace {

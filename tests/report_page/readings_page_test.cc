@@ -1,9 +1,9 @@
 #include <regex>
 
 #include "tests/report_page/blocks.h"
+#include "twin/report/page/curves.h"
 #include "twin/report/page/readings_page.h"
 #include "twin/report/page/svg.h"
-#include "twin/report/page/volumetric.h"
 
 namespace twinbench::report {
 namespace {

@@ -1,4 +1,4 @@
-#include "twin/benches/rotary_4dof/error_motion_results.h"
+#include "twin/benches/rotary_4dof/parts_of_results.h"
 
 #include "tests/separate/bench.h"
 

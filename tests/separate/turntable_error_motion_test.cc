@@ -1,4 +1,4 @@
-#include "twin/benches/turntable_autocollimator/error_motion_results.h"
+#include "twin/benches/turntable_autocollimator/parts_of_results.h"
 
 #include "twin/core/units.h"
 

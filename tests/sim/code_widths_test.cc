@@ -4,7 +4,7 @@
 #include "tests/core/refusals.h"
 #include "tests/support/small_scenario.h"
 #include "tests/support/twin_run.h"
-#include "twin/benches/rotary_4dof/twin/follow.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/sim/ad_sampler.h"
 #include "twin/sim/code_width_table.h"
 

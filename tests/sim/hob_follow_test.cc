@@ -1,5 +1,5 @@
 #include "tests/support/angle_benches.h"
-#include "twin/benches/hob_transmission/twin/follow.h"
+#include "twin/benches/hob_transmission/twin/twin.h"
 #include "twin/benches/hob_transmission/twin/world.h"
 
 // The hobbing machine's twin on the course of a record says what the readings should have been.

@@ -1,7 +1,7 @@
 #include "tests/core/input_error.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/kept_text.h"
-#include "twin/benches/turntable_autocollimator/twin/follow.h"
+#include "twin/benches/turntable_autocollimator/twin/twin.h"
 
 // A polygon on the turntable: each face is nulled by turning the table, and the encoder is read.
 namespace twinbench {

@@ -2,8 +2,8 @@
 #include "tests/core/input_error.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/small_scenario.h"
-#include "twin/benches/encoder_comparison/twin/follow.h"
-#include "twin/benches/rotary_4dof/twin/follow.h"
+#include "twin/benches/encoder_comparison/twin/twin.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 
 namespace twinbench::sim {
 namespace {

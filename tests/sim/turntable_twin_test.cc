@@ -1,6 +1,6 @@
 #include "tests/support/angle_benches.h"
 #include "twin/benches/turntable_autocollimator/twin/effect.h"
-#include "twin/benches/turntable_autocollimator/twin/follow.h"
+#include "twin/benches/turntable_autocollimator/twin/twin.h"
 #include "twin/sim/table_motion.h"
 
 namespace twinbench {

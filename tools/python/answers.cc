@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tools/python/answers.h"
 #include "tools/python/interrupt.h"
 #include "tools/python/json_values.h"
+#include "tools/python/parts.h"
 #include "tools/python/readings.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "twin/benches/evaluated.h"

@@ -1,4 +1,4 @@
-#include "tools/python/follow_class.h"
+#include "tools/python/parts.h"
 
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>

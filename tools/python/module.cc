@@ -8,15 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tools/python/answers.h"
-#include "tools/python/follow_class.h"
 #include "tools/python/interrupt.h"
 #include "tools/python/json_values.h"
 #include "tools/python/own_bench.h"
 #include "tools/python/own_machine.h"
+#include "tools/python/parts.h"
 #include "tools/python/readings.h"
-#include "tools/python/readings_columns.h"
-#include "tools/python/studies.h"
 #include "twin/benches/diagnosis_json.h"
 #include "twin/benches/encoder_comparison/procedure.h"
 #include "twin/benches/evaluated.h"

@@ -1,4 +1,4 @@
-#include "tools/python/readings_columns.h"
+#include "tools/python/parts.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>

@@ -1,4 +1,4 @@
-#include "tools/python/studies.h"
+#include "tools/python/parts.h"
 
 #include <pybind11/stl.h>
 

@@ -1,4 +1,4 @@
-#include "tools/twinbench/measure_machine.h"
+#include "tools/twinbench/measure.h"
 
 #include <fmt/core.h>
 

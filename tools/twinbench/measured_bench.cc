@@ -1,4 +1,4 @@
-#include "tools/twinbench/measured_bench.h"
+#include "tools/twinbench/measure.h"
 
 #include "hw_bridge/replay/replay_bench.h"
 #include "tools/twinbench/stop_signal.h"

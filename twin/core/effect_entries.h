@@ -13,4 +13,11 @@ EffectParameter Parameter(const std::string& name, const std::string& unit, doub
 EffectParameter Signed(const std::string& name, const std::string& unit, double value, double limit,
                        const std::string& meaning, std::vector<std::string> only_at = {});
 
+/// The parts of a bench's catalogue, one behind another.
+inline std::vector<EffectEntry> Joined(std::initializer_list<std::vector<EffectEntry>> parts) {
+  std::vector<EffectEntry> entries;
+  for (const auto& part : parts) entries.insert(entries.end(), part.begin(), part.end());
+  return entries;
+}
+
 }  // namespace twinbench

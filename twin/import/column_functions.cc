@@ -10,10 +10,8 @@
 #include "twin/core/errors.h"
 #include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
-#include "twin/import/commanded_circle.h"
 #include "twin/import/common.h"
-#include "twin/import/speed_levels.h"
-#include "twin/import/two_shafts.h"
+#include "twin/import/formula_functions.h"
 
 namespace twinbench::imports {
 namespace {

@@ -1,4 +1,4 @@
-#include "twin/import/commanded_circle.h"
+#include "twin/import/formula_functions.h"
 
 #include <Eigen/Core>
 #include <array>

@@ -1,4 +1,4 @@
-#include "twin/import/cycles.h"
+#include "twin/import/layouts.h"
 
 #include <fmt/format.h>
 

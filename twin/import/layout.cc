@@ -5,10 +5,8 @@
 #include <functional>
 #include <map>
 
-#include "twin/import/array.h"
 #include "twin/import/clock.h"
-#include "twin/import/cycles.h"
-#include "twin/import/records.h"
+#include "twin/import/layouts.h"
 
 namespace twinbench::imports {
 namespace {

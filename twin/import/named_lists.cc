@@ -1,4 +1,4 @@
-#include "twin/import/named_lists.h"
+#include "twin/import/layouts.h"
 
 #include <fmt/format.h>
 

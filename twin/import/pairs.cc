@@ -1,4 +1,4 @@
-#include "twin/import/pairs.h"
+#include "twin/import/layouts.h"
 
 #include <algorithm>
 #include <cctype>

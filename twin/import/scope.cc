@@ -1,4 +1,4 @@
-#include "twin/import/scope.h"
+#include "twin/import/layouts.h"
 
 #include <fmt/format.h>
 

@@ -6,17 +6,9 @@
 #include <cmath>
 
 #include "twin/core/errors.h"
-#include "twin/import/array.h"
-#include "twin/import/bar_export.h"
-#include "twin/import/changes.h"
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
-#include "twin/import/cycles.h"
-#include "twin/import/indexed.h"
-#include "twin/import/named_lists.h"
-#include "twin/import/pairs.h"
-#include "twin/import/records.h"
-#include "twin/import/scope.h"
+#include "twin/import/layouts.h"
 #include "twin/import/text.h"
 
 namespace twinbench::imports {

@@ -1,4 +1,4 @@
-#include "twin/import/speed_levels.h"
+#include "twin/import/formula_functions.h"
 
 #include <algorithm>
 #include <cmath>

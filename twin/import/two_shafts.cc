@@ -1,4 +1,4 @@
-#include "twin/import/two_shafts.h"
+#include "twin/import/formula_functions.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "twin/plausible/against_expected.h"
+#include "twin/plausible/checks.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,6 @@
 #include "twin/core/lag.h"
 #include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
-#include "twin/plausible/course.h"
-#include "twin/plausible/repeated_places.h"
 
 namespace twinbench::plausible {
 namespace {

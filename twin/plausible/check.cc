@@ -10,10 +10,8 @@
 #include "twin/core/number_text.h"
 #include "twin/core/robust_scale.h"
 #include "twin/core/units.h"
-#include "twin/plausible/against_expected.h"
 #include "twin/plausible/channel.h"
-#include "twin/plausible/course.h"
-#include "twin/plausible/labels.h"
+#include "twin/plausible/checks.h"
 
 namespace twinbench::plausible {
 namespace {

@@ -1,4 +1,4 @@
-#include "twin/plausible/course.h"
+#include "twin/plausible/checks.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "twin/plausible/labels.h"
+#include "twin/plausible/checks.h"
 
 #include <fmt/format.h>
 

@@ -27,4 +27,21 @@ class SimulatedMachine : public BenchTwin {
   SimTwin twin_;
 };
 
+/// The same of devices that are made for the run, with a truth that follows from the scenario.
+template <auto kTruth, auto kDevices, auto kDrive>
+class MachineOfScenario : public BenchTwin {
+ public:
+  explicit MachineOfScenario(const Scenario& scenario) : scenario_(scenario) {}
+
+  nlohmann::json Truth() const override { return kTruth(scenario_); }
+  void CarryOut(ReadingSink& readings, const std::function<void(const procedure::Progress&)>& progress, RunLog* /*log*/) override {
+    const auto devices = kDevices(scenario_);
+    MachineBench bench = devices->Devices();
+    kDrive(bench, scenario_, readings, progress, {});
+  }
+
+ private:
+  Scenario scenario_;
+};
+
 }  // namespace twinbench::sim

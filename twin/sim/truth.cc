@@ -21,13 +21,17 @@ nlohmann::json ToJson(const EffectSettings& effect) {
   return json;
 }
 
-nlohmann::json ToJson(const Truth& truth) {
-  nlohmann::json json = {{"target", ToJson(truth.target)},
-                         {"reference", ToJson(truth.reference)},
-                         {"effects", nlohmann::json::array()},
-                         {"seed", truth.seed}};
-  for (const EffectSettings& effect : truth.effects) json["effects"].push_back(ToJson(effect));
+nlohmann::json ToJson(const std::vector<EffectSettings>& effects) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const EffectSettings& effect : effects) json.push_back(ToJson(effect));
   return json;
+}
+
+nlohmann::json ToJson(const Truth& truth) {
+  return {{"target", ToJson(truth.target)},
+          {"reference", ToJson(truth.reference)},
+          {"effects", ToJson(truth.effects)},
+          {"seed", truth.seed}};
 }
 
 }  // namespace twinbench::sim

@@ -19,6 +19,7 @@ nlohmann::json ToJson(const TableErrors& errors);
 
 /// {"effect": name, "where": place, "parameters_SI": {...}}
 nlohmann::json ToJson(const EffectSettings& effect);
+nlohmann::json ToJson(const std::vector<EffectSettings>& effects);
 
 /// {"target": {"position_deg": [...], "ex_arcsec": [...], ...}, "reference": {...}, "effects": [...], "seed": n}
 nlohmann::json ToJson(const Truth& truth);

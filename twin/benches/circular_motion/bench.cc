@@ -5,7 +5,6 @@
 
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/procedure.h"
-#include "twin/benches/circular_motion/procedure/drive.h"
 #include "twin/benches/circular_motion/twin/factory.h"
 #include "twin/plan/next_run.h"
 #include "twin/plausible/plan.h"

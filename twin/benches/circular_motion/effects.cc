@@ -131,11 +131,7 @@ std::vector<EffectEntry> ReadingEffects() {
 }  // namespace
 
 std::vector<EffectEntry> Effects() {
-  std::vector<EffectEntry> effects;
-  for (const auto& part :
-       {GeometryEffects(), MotionEffects(), ThermalEffects(), InstrumentEffects(), ReadingEffects()})
-    effects.insert(effects.end(), part.begin(), part.end());
-  return effects;
+  return Joined({GeometryEffects(), MotionEffects(), ThermalEffects(), InstrumentEffects(), ReadingEffects()});
 }
 
 }  // namespace twinbench::benches::circular

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "twin/benches/encoder_comparison/procedure.h"
-#include "twin/benches/encoder_comparison/procedure/drive.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/encoder_comparison/twin/factory.h"
 #include "twin/plan/next_run.h"

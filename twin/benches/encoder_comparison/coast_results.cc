@@ -1,4 +1,4 @@
-#include "twin/benches/encoder_comparison/coast_results.h"
+#include "twin/benches/encoder_comparison/parts_of_results.h"
 
 #include <fmt/format.h>
 

@@ -159,11 +159,7 @@ std::vector<EffectEntry> PeriodicEffects() {
 }  // namespace
 
 std::vector<EffectEntry> Effects() {
-  std::vector<EffectEntry> effects;
-  for (const auto& part :
-       {MountingAndShapeEffects(), SignalEffects(), MotionEffects(), PeriodicEffects(), TimeAndReadingEffects()})
-    effects.insert(effects.end(), part.begin(), part.end());
-  return effects;
+  return Joined({MountingAndShapeEffects(), SignalEffects(), MotionEffects(), PeriodicEffects(), TimeAndReadingEffects()});
 }
 
 }  // namespace twinbench::benches::encoder

@@ -7,14 +7,12 @@
 #include <utility>
 
 #include "twin/benches/encoder_comparison/bench.h"
-#include "twin/benches/encoder_comparison/coast_results.h"
 #include "twin/benches/encoder_comparison/comparison.h"
 #include "twin/benches/encoder_comparison/curve_results.h"
 #include "twin/benches/encoder_comparison/estimators/coast_passes.h"
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
 #include "twin/benches/encoder_comparison/estimators/head_readings.h"
-#include "twin/benches/encoder_comparison/heads_results.h"
-#include "twin/benches/encoder_comparison/positioning_results.h"
+#include "twin/benches/encoder_comparison/parts_of_results.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/encoder_comparison/uncertainty_parts.h"
 #include "twin/core/errors.h"

@@ -1,7 +1,7 @@
 #include "twin/benches/freeform_five_axis/bench.h"
 
 #include "twin/benches/freeform_five_axis/displacement_results.h"
-#include "twin/benches/freeform_five_axis/procedure/drive.h"
+#include "twin/benches/freeform_five_axis/procedure.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/freeform_five_axis/twin/factory.h"
 #include "twin/plan/next_run.h"

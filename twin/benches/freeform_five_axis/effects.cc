@@ -114,10 +114,7 @@ std::vector<EffectEntry> MachineEffects() {
 }  // namespace
 
 std::vector<EffectEntry> Effects() {
-  std::vector<EffectEntry> effects;
-  for (const auto& part : {QuadrantEffects(), HeightEffects(), ArtefactEffects(), MachineEffects()})
-    effects.insert(effects.end(), part.begin(), part.end());
-  return effects;
+  return Joined({QuadrantEffects(), HeightEffects(), ArtefactEffects(), MachineEffects()});
 }
 
 }  // namespace twinbench::benches::freeform

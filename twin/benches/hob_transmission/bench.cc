@@ -5,7 +5,6 @@
 
 #include "twin/benches/hob_transmission/estimators/index_errors.h"
 #include "twin/benches/hob_transmission/procedure.h"
-#include "twin/benches/hob_transmission/procedure/drive.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/factory.h"
 #include "twin/plan/next_run.h"

@@ -5,10 +5,8 @@
 #include <map>
 
 #include "twin/benches/hob_transmission/bench.h"
-#include "twin/benches/hob_transmission/orders_of_ring.h"
-#include "twin/benches/hob_transmission/orders_of_tones.h"
-#include "twin/benches/hob_transmission/rounded_orders.h"
 #include "twin/benches/hob_transmission/settings.h"
+#include "twin/benches/hob_transmission/told_orders.h"
 #include "twin/benches/hob_transmission/twin/factory.h"
 #include "twin/core/errors.h"
 #include "twin/core/reading_clock.h"

@@ -109,10 +109,7 @@ std::vector<EffectEntry> HobTimeEffects() {
 }  // namespace
 
 std::vector<EffectEntry> Effects() {
-  std::vector<EffectEntry> effects;
-  for (const auto& part : {RingEffects(), HobSignalEffects(), ChainEffects(), HobTimeEffects()})
-    effects.insert(effects.end(), part.begin(), part.end());
-  return effects;
+  return Joined({RingEffects(), HobSignalEffects(), ChainEffects(), HobTimeEffects()});
 }
 
 }  // namespace twinbench::benches::hob

@@ -1,4 +1,4 @@
-#include "twin/benches/hob_transmission/orders_of_tones.h"
+#include "twin/benches/hob_transmission/told_orders.h"
 
 #include <fmt/format.h>
 

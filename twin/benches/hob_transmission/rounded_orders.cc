@@ -1,4 +1,4 @@
-#include "twin/benches/hob_transmission/rounded_orders.h"
+#include "twin/benches/hob_transmission/told_orders.h"
 
 #include <algorithm>
 #include <cmath>

@@ -192,10 +192,7 @@ std::vector<EffectEntry> ElectronicEffects() {
 }  // namespace
 
 std::vector<EffectEntry> Effects() {
-  std::vector<EffectEntry> catalogue;
-  for (const auto& part : {DetectorEffects(), LightEffects(), BodyEffects(), TimeEffects(), ElectronicEffects()})
-    catalogue.insert(catalogue.end(), part.begin(), part.end());
-  return catalogue;
+  return Joined({DetectorEffects(), LightEffects(), BodyEffects(), TimeEffects(), ElectronicEffects()});
 }
 
 }  // namespace twinbench::benches::rotary

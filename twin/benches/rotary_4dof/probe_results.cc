@@ -1,4 +1,4 @@
-#include "twin/benches/rotary_4dof/probe_results.h"
+#include "twin/benches/rotary_4dof/parts_of_results.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -5,7 +5,6 @@
 
 #include "twin/benches/turntable_autocollimator/estimators/index_errors.h"
 #include "twin/benches/turntable_autocollimator/procedure.h"
-#include "twin/benches/turntable_autocollimator/procedure/drive.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
 #include "twin/plan/shift_sets.h"

@@ -102,10 +102,7 @@ std::vector<EffectEntry> TurntableBodyEffects() {
 }  // namespace
 
 std::vector<EffectEntry> Effects() {
-  std::vector<EffectEntry> effects;
-  for (const auto& part : {InstrumentEffects(), TurntableTimeEffects(), TurntableBodyEffects()})
-    effects.insert(effects.end(), part.begin(), part.end());
-  return effects;
+  return Joined({InstrumentEffects(), TurntableTimeEffects(), TurntableBodyEffects()});
 }
 
 }  // namespace twinbench::benches::turntable

@@ -6,12 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/turntable_autocollimator/bench.h"
-#include "twin/benches/turntable_autocollimator/error_motion_results.h"
 #include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
-#include "twin/benches/turntable_autocollimator/polygon_results.h"
+#include "twin/benches/turntable_autocollimator/parts_of_results.h"
 #include "twin/benches/turntable_autocollimator/series_json.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
-#include "twin/benches/turntable_autocollimator/sweep_results.h"
 #include "twin/core/errors.h"
 #include "twin/core/written_number.h"
 #include "twin/report/curve_score.h"

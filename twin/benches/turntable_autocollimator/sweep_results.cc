@@ -1,4 +1,4 @@
-#include "twin/benches/turntable_autocollimator/sweep_results.h"
+#include "twin/benches/turntable_autocollimator/parts_of_results.h"
 
 #include <fmt/core.h>
 

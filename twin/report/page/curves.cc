@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "twin/report/page/harmonics_of.h"
 #include "twin/report/page/named_numbers.h"
 #include "twin/report/page/scored.h"
 #include "twin/report/page/walk.h"

@@ -1,4 +1,4 @@
-#include "twin/report/page/direction_curves.h"
+#include "twin/report/page/curves.h"
 
 #include <algorithm>
 #include <cmath>

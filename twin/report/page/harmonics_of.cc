@@ -1,4 +1,4 @@
-#include "twin/report/page/harmonics_of.h"
+#include "twin/report/page/curves.h"
 
 #include <cmath>
 #include <complex>

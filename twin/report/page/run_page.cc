@@ -13,12 +13,8 @@
 #include "twin/report/page/circles.h"
 #include "twin/report/page/curves.h"
 #include "twin/report/page/diagnosis_page.h"
-#include "twin/report/page/direction_curves.h"
-#include "twin/report/page/harmonics_of.h"
 #include "twin/report/page/readings_page.h"
 #include "twin/report/page/tables.h"
-#include "twin/report/page/tiles.h"
-#include "twin/report/page/volumetric.h"
 
 namespace twinbench::report {
 namespace {

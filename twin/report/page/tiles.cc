@@ -1,4 +1,4 @@
-#include "twin/report/page/tiles.h"
+#include "twin/report/page/tables.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include "twin/report/page/curves.h"
 #include "twin/report/page/diagnosis_page.h"
 #include "twin/report/page/named_numbers.h"
-#include "twin/report/page/tables.h"
 #include "twin/report/page/walk.h"
 
 namespace twinbench::report {

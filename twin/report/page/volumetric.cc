@@ -1,4 +1,4 @@
-#include "twin/report/page/volumetric.h"
+#include "twin/report/page/curves.h"
 
 #include <nlohmann/json.hpp>
 

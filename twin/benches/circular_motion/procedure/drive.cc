@@ -1,11 +1,10 @@
-#include "twin/benches/circular_motion/procedure/drive.h"
+#include "twin/benches/circular_motion/procedure.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "twin/benches/circular_motion/columns.h"
-#include "twin/benches/circular_motion/procedure.h"
 #include "twin/core/device_fault.h"
 
 namespace twinbench::procedure {

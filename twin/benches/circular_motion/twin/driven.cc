@@ -1,4 +1,4 @@
-#include "twin/benches/circular_motion/twin/driven.h"
+#include "twin/benches/circular_motion/twin/live.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,34 +1,21 @@
 #include "twin/benches/circular_motion/twin/factory.h"
 
-#include <nlohmann/json.hpp>
-
-#include "twin/benches/circular_motion/procedure/drive.h"
-#include "twin/benches/circular_motion/twin/driven.h"
-#include "twin/benches/circular_motion/twin/follow.h"
+#include "twin/benches/circular_motion/procedure.h"
 #include "twin/benches/circular_motion/twin/live.h"
+#include "twin/benches/circular_motion/twin/twin.h"
+#include "twin/sim/simulated_machine.h"
 
 namespace twinbench::benches::circular {
 namespace {
 
-class Twin : public BenchTwin {
- public:
-  explicit Twin(const Scenario& scenario) : scenario_(scenario) {}
-  nlohmann::json Truth() const override { return sim::CircleRun(scenario_).Truth(); }
-
-  void CarryOut(ReadingSink& readings, const procedure::ProgressCallback& progress, RunLog* /*log*/) override {
-    const auto devices = MakeDevices(scenario_);
-    MachineBench bench = devices->Devices();
-    procedure::DriveCircles(bench, scenario_, readings, progress, {});
-  }
-
- private:
-  Scenario scenario_;
-};
+nlohmann::json TruthOf(const Scenario& scenario) {
+  return sim::CircleRun(scenario).Truth();
+}
 
 }  // namespace
 
 std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
-  return std::make_unique<Twin>(scenario);
+  return std::make_unique<sim::MachineOfScenario<TruthOf, MakeDevices, procedure::DriveCircles>>(scenario);
 }
 
 std::unique_ptr<MachineDevices> MakeDevices(const Scenario& scenario) {

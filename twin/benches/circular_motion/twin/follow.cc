@@ -1,8 +1,7 @@
-#include "twin/benches/circular_motion/twin/follow.h"
+#include "twin/benches/circular_motion/twin/twin.h"
 
 #include <cmath>
 
-#include "twin/benches/circular_motion/twin/twin.h"
 #include "twin/model/signals.h"
 #include "twin/sim/pointwise_follow.h"
 

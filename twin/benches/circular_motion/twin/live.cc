@@ -191,7 +191,7 @@ nlohmann::json CircleRun::Truth() const {
   nlohmann::json json = {{"errors", Errors(scenario_)},
                          {"setups", nlohmann::json::array()},
                          {"path", nlohmann::json::array()},
-                         {"effects", nlohmann::json::array()},
+                         {"effects", ToJson(scenario_.effects)},
                          {"seed", scenario_.seed}};
   for (std::size_t k = 0; k < mounted_.size(); ++k)
     json["setups"].push_back(SetupJson(static_cast<int>(k), s.procedure.setups[k], s, mounted_[k]));
@@ -205,7 +205,6 @@ nlohmann::json CircleRun::Truth() const {
     path["dx_um"].push_back((p_m.x() - kCommandedX_m(r)) / units::um);
     path["dy_um"].push_back((p_m.y() - kCommandedY_m(r)) / units::um);
   }
-  for (const EffectSettings& effect : scenario_.effects) json["effects"].push_back(ToJson(effect));
   return json;
 }
 

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
 #include "twin/benches/circular_motion/twin/twin.h"
+#include "twin/core/scenario.h"
+#include "twin/sim/driven_machine.h"
 #include "twin/sim/environment.h"
 #include "twin/sim/outlier_draw.h"
 
@@ -46,5 +49,9 @@ class CircleRun {
   std::vector<CircleExtra> mounted_;  // one a set-up
   std::vector<OutlierDraw> outliers_;
 };
+
+/// The circles' machine and its instruments, to be driven: on the plan of the scenario it shows what CircleRun
+/// does, beside it what the same machine shows there.
+std::unique_ptr<DrivenPhysics> MakeCirclePhysics(const Scenario& scenario);
 
 }  // namespace twinbench::sim

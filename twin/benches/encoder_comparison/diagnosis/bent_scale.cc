@@ -1,4 +1,4 @@
-#include "twin/benches/encoder_comparison/diagnosis/bent_scale.h"
+#include "twin/benches/encoder_comparison/diagnosis/told.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "twin/benches/encoder_comparison/diagnosis/leading_loop.h"
+#include "twin/benches/encoder_comparison/diagnosis/told.h"
 
 #include <algorithm>
 #include <cmath>

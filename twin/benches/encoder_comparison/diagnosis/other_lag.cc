@@ -1,4 +1,4 @@
-#include "twin/benches/encoder_comparison/diagnosis/other_lag.h"
+#include "twin/benches/encoder_comparison/diagnosis/told.h"
 
 #include <fmt/format.h>
 

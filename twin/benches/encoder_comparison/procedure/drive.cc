@@ -1,10 +1,9 @@
-#include "twin/benches/encoder_comparison/procedure/drive.h"
+#include "twin/benches/encoder_comparison/procedure.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "twin/benches/encoder_comparison/procedure.h"
 #include "twin/core/device_fault.h"
 
 namespace twinbench::procedure {

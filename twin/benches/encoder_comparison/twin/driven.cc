@@ -1,10 +1,9 @@
-#include "twin/benches/encoder_comparison/twin/driven.h"
+#include "twin/benches/encoder_comparison/twin/twin.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "twin/benches/encoder_comparison/procedure.h"
-#include "twin/benches/encoder_comparison/twin/twin.h"
 #include "twin/core/happened_once.h"
 
 namespace twinbench::sim {

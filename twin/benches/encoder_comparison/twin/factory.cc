@@ -3,9 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/encoder_comparison/procedure.h"
-#include "twin/benches/encoder_comparison/procedure/drive.h"
-#include "twin/benches/encoder_comparison/twin/driven.h"
-#include "twin/benches/encoder_comparison/twin/follow.h"
 #include "twin/benches/encoder_comparison/twin/twin.h"
 #include "twin/core/scenario.h"
 

@@ -1,10 +1,9 @@
-#include "twin/benches/encoder_comparison/twin/follow.h"
+#include "twin/benches/encoder_comparison/twin/twin.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "twin/benches/encoder_comparison/settings.h"
-#include "twin/benches/encoder_comparison/twin/twin.h"
 #include "twin/core/units.h"
 #include "twin/model/signals.h"
 #include "twin/sim/pointwise_follow.h"

@@ -208,16 +208,14 @@ void EncoderTwin::Take(Reading& reading) {
 
 nlohmann::json EncoderTwin::Truth() const {
   // At one instant: what does not follow the angle is the same everywhere then and goes with the mean.
-  nlohmann::json json = {{"device", CurveOf([&](double angle_rad) { return DeviceError_rad({}, angle_rad); })},
-                         {"reference", CurveOf([&](double angle_rad) {
-                            AngleMoment moment;
-                            moment.shaft_rad = angle_rad;
-                            return ReferenceError_rad(moment);
-                          })},
-                         {"effects", nlohmann::json::array()},
-                         {"seed", scenario_.seed}};
-  for (const EffectSettings& effect : scenario_.effects) json["effects"].push_back(ToJson(effect));
-  return json;
+  return {{"device", CurveOf([&](double angle_rad) { return DeviceError_rad({}, angle_rad); })},
+          {"reference", CurveOf([&](double angle_rad) {
+             AngleMoment moment;
+             moment.shaft_rad = angle_rad;
+             return ReferenceError_rad(moment);
+           })},
+          {"effects", ToJson(scenario_.effects)},
+          {"seed", scenario_.seed}};
 }
 
 }  // namespace twinbench::sim

@@ -10,6 +10,9 @@
 #include "twin/benches/encoder_comparison/twin/shaft_course.h"
 #include "twin/benches/encoder_comparison/twin/spindle.h"
 #include "twin/core/devices.h"
+#include "twin/core/scenario.h"
+#include "twin/model/follow.h"
+#include "twin/sim/driven_machine.h"
 #include "twin/sim/empirical_signal.h"
 #include "twin/sim/environment.h"
 
@@ -61,5 +64,12 @@ class EncoderTwin : public AngleComparator {
   EmpiricalSignal empirical_;
   std::optional<Environment> room_;  // where its temperature changes
 };
+
+/// The angle comparison's twin on the course of a record; the prediction is the device's angle where the reference
+/// showed what it did [rad], counted on over turns. Points: "shaft" (under both), "device" (of what it shows).
+std::unique_ptr<model::Follow> FollowEncoder(const Scenario& scenario, const std::vector<Reading>& record);
+
+/// The shaft of a comparison at stops and what both devices show, for a machine that is driven.
+std::unique_ptr<DrivenPhysics> MakeShaftPhysics(const Scenario& scenario);
 
 }  // namespace twinbench::sim

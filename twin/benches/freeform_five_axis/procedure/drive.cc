@@ -1,9 +1,8 @@
-#include "twin/benches/freeform_five_axis/procedure/drive.h"
+#include "twin/benches/freeform_five_axis/procedure.h"
 
 #include <fmt/format.h>
 
 #include "twin/benches/freeform_five_axis/columns.h"
-#include "twin/benches/freeform_five_axis/procedure.h"
 #include "twin/core/device_fault.h"
 #include "twin/core/units.h"
 

@@ -1,4 +1,4 @@
-#include "twin/benches/freeform_five_axis/twin/driven.h"
+#include "twin/benches/freeform_five_axis/twin/twin.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 #include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/freeform_five_axis/procedure.h"
 #include "twin/benches/freeform_five_axis/twin/chain.h"
-#include "twin/benches/freeform_five_axis/twin/twin.h"
 #include "twin/core/happened_once.h"
 #include "twin/core/stream.h"
 #include "twin/sim/environment.h"

@@ -1,8 +1,7 @@
-#include "twin/benches/freeform_five_axis/twin/follow.h"
+#include "twin/benches/freeform_five_axis/twin/twin.h"
 
 #include <utility>
 
-#include "twin/benches/freeform_five_axis/twin/twin.h"
 #include "twin/core/time.h"
 #include "twin/sim/pointwise_follow.h"
 

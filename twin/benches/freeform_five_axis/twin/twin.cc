@@ -122,7 +122,7 @@ ProbeSignals FreeformTwin::Show(const Reading& reading, double run_share, Freefo
 
 nlohmann::json FreeformTruth(const Scenario& scenario, const DrawnBench& drawn) {
   const auto unit = [](std::size_t k) { return IsRotation(static_cast<int>(k)) ? units::arcsec : units::um; };
-  nlohmann::json errors, squareness, mountings = nlohmann::json::array(), effects = nlohmann::json::array();
+  nlohmann::json errors, squareness, mountings = nlohmann::json::array();
   for (std::size_t axis = 0; axis < kMachineAxes; ++axis) {
     for (std::size_t k = 0; k < kBodyErrors; ++k) {
       CubicError c = drawn.machine.errors[axis][k];
@@ -140,10 +140,9 @@ nlohmann::json FreeformTruth(const Scenario& scenario, const DrawnBench& drawn) 
           mounting[k] / unit(k);
     mountings.push_back(one);
   }
-  for (const EffectSettings& effect : scenario.effects) effects.push_back(ToJson(effect));
   return {{"machine", {{"errors", errors}, {"squareness_arcsec", squareness}}},
           {"mountings", mountings},
-          {"effects", effects},
+          {"effects", ToJson(scenario.effects)},
           {"seed", scenario.seed}};
 }
 

@@ -7,6 +7,9 @@
 #include "twin/benches/freeform_five_axis/twin/effect.h"
 #include "twin/benches/freeform_five_axis/twin/light.h"
 #include "twin/core/reading.h"
+#include "twin/core/scenario.h"
+#include "twin/model/follow.h"
+#include "twin/sim/driven_machine.h"
 #include "twin/sim/empirical_signal.h"
 
 namespace twinbench::sim {
@@ -45,5 +48,13 @@ class FreeformTwin {
 /// {"machine": {"errors": {"x.tx": {"unit", "coefficients"}, ...}, "squareness_arcsec": {...}}, "mountings": [...],
 /// "effects": [...], "seed": n}
 nlohmann::json FreeformTruth(const Scenario& scenario, const DrawnBench& drawn);
+
+/// Points: every error of the machine ("x.tx" ... "b.rz", "syx" ... "sbz"), how the artefact stands ("mount.tx" ...
+/// "mount.rz"), the spot on the quadrant detector, the height of the surface, and the channels.
+std::unique_ptr<model::Follow> FollowFreeform(const Scenario& scenario, const std::vector<Reading>& record);
+
+/// The five-axis machine with its probe, to be driven. The probe looks at the cell that its plan says, or beside
+/// the plan at the one under its beam.
+std::unique_ptr<DrivenPhysics> MakeFreeformPhysics(const Scenario& scenario);
 
 }  // namespace twinbench::sim

@@ -1,8 +1,6 @@
-#include "twin/benches/hob_transmission/procedure/drive.h"
+#include "twin/benches/hob_transmission/procedure.h"
 
 #include <fmt/format.h>
-
-#include "twin/benches/hob_transmission/procedure.h"
 
 namespace twinbench::procedure {
 namespace {

@@ -1,7 +1,6 @@
 #include "twin/benches/hob_transmission/twin/factory.h"
 
-#include "twin/benches/hob_transmission/procedure/drive.h"
-#include "twin/benches/hob_transmission/twin/follow.h"
+#include "twin/benches/hob_transmission/procedure.h"
 #include "twin/benches/hob_transmission/twin/twin.h"
 #include "twin/sim/simulated_machine.h"
 

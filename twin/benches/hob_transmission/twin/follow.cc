@@ -1,4 +1,4 @@
-#include "twin/benches/hob_transmission/twin/follow.h"
+#include "twin/benches/hob_transmission/twin/twin.h"
 
 #include <algorithm>
 #include <cmath>

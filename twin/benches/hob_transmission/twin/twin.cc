@@ -141,11 +141,10 @@ nlohmann::json HobTwin::Truth() const {
   nlohmann::json json = {{"transmission", nlohmann::json::array()},
                          {"gears_ahead_deg", impl_->world->GearsAhead_rad() / units::deg},
                          {"table_encoder", RingHarmonics(impl_->world->counters())},
-                         {"effects", nlohmann::json::array()},
+                         {"effects", ToJson(impl_->scenario.effects)},
                          {"seed", impl_->scenario.seed}};
   for (const mechanics::AngleHarmonic& h : impl_->world->Transmission())
     json["transmission"].push_back(HarmonicJson(h.order, h.amplitude_rad, h.phase_rad));
-  for (const EffectSettings& effect : impl_->scenario.effects) json["effects"].push_back(ToJson(effect));
   return json;
 }
 

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
-#include "twin/benches/rotary_4dof/twin/follow.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/scenario.h"
 

@@ -1,4 +1,4 @@
-#include "twin/benches/rotary_4dof/twin/follow.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,8 @@
-#include "twin/benches/turntable_autocollimator/procedure/drive.h"
+#include "twin/benches/turntable_autocollimator/procedure.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-
-#include "twin/benches/turntable_autocollimator/procedure.h"
 
 namespace twinbench::procedure {
 namespace {

@@ -1,7 +1,6 @@
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
 
-#include "twin/benches/turntable_autocollimator/procedure/drive.h"
-#include "twin/benches/turntable_autocollimator/twin/follow.h"
+#include "twin/benches/turntable_autocollimator/procedure.h"
 #include "twin/benches/turntable_autocollimator/twin/mirror_path.h"
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
 #include "twin/sim/simulated_machine.h"

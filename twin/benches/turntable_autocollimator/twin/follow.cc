@@ -1,4 +1,4 @@
-#include "twin/benches/turntable_autocollimator/twin/follow.h"
+#include "twin/benches/turntable_autocollimator/twin/twin.h"
 
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/course.h"

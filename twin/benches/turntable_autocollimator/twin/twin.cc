@@ -133,13 +133,11 @@ nlohmann::json TurntableTwin::Truth() const {
   const Scenario& scenario = impl_->scenario;
   const TurntableSettings& own = TurntableOf(scenario);
   const TableMotion& turntable = stand.turntable();
-  nlohmann::json json = {{"turntable", ToJson(own.HasPolygon() ? turntable.Repeatable(FaceAngles(own))
-                                                               : turntable.Repeatable(own.multitooth.teeth))},
-                         {own.HasPolygon() ? "polygon" : "multitooth", ToJson(stand.MultitoothErrors())},
-                         {"effects", nlohmann::json::array()},
-                         {"seed", scenario.seed}};
-  for (const EffectSettings& effect : scenario.effects) json["effects"].push_back(ToJson(effect));
-  return json;
+  return {{"turntable",
+           ToJson(own.HasPolygon() ? turntable.Repeatable(FaceAngles(own)) : turntable.Repeatable(own.multitooth.teeth))},
+          {own.HasPolygon() ? "polygon" : "multitooth", ToJson(stand.MultitoothErrors())},
+          {"effects", ToJson(scenario.effects)},
+          {"seed", scenario.seed}};
 }
 
 }  // namespace twinbench::sim

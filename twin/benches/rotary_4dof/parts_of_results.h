@@ -4,9 +4,17 @@
 
 #include "twin/benches/rotary_4dof/estimators/measure.h"
 #include "twin/benches/rotary_4dof/estimators/separate.h"
+#include "twin/core/reading.h"
+#include "twin/core/scenario.h"
 #include "twin/report/error_motion_json.h"
+#include "twin/report/evaluation.h"
 
+/// What Bench::evaluate has for readings of one kind.
 namespace twinbench::benches::rotary {
+
+/// As Bench::evaluate, of readings of displacement probes and tilt meters: error motions of the target in the terms
+/// of ISO 230-7, and of its artefact what reversal or several probes separate.
+report::Evaluation EvaluateProbes(const Scenario& scenario, const std::vector<Reading>& readings);
 
 /// The error motions of both tables in the terms of ISO 230-7, and what they are not.
 ///
