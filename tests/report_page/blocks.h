@@ -1,5 +1,8 @@
 #pragma once
 
+#include <fstream>
+#include <nlohmann/json.hpp>
+
 #include "twin/report/page/figure.h"
 
 namespace twinbench::report::test {
