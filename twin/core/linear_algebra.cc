@@ -101,6 +101,10 @@ MatrixXd SolveSquare(const MatrixXd& a, const MatrixXd& b) {
   return a.partialPivLu().solve(b);
 }
 
+Eigen::Vector4d SolveFour(const Eigen::Matrix4d& a, const Eigen::Vector4d& b) {
+  return a.partialPivLu().solve(b);
+}
+
 VectorXd SolveSymmetric(const MatrixXd& a, const VectorXd& b) {
   if (!CanBeDecomposed(a)) return NoNumbers(a.cols(), 1);
   return a.ldlt().solve(b);

@@ -48,8 +48,9 @@ Eigen::MatrixXd PseudoInverseOf(const Eigen::MatrixXd& a);
 /// Q^T v of a = Q R. Behind its first k entries lies what the first k columns of `a` leave of v.
 Eigen::VectorXd RotatedByQ(const Eigen::MatrixXd& a, const Eigen::VectorXd& v);
 
-/// x of a x = b for a square, regular matrix.
+/// x of a x = b for a square, regular matrix; and for one of four rows.
 Eigen::MatrixXd SolveSquare(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+Eigen::Vector4d SolveFour(const Eigen::Matrix4d& a, const Eigen::Vector4d& b);
 
 /// x of a x = b, and the inverse of `a`, by L D L^T: a symmetric matrix without negative eigenvalues, of which only the lower half is
 /// read.

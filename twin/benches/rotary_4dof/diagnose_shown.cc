@@ -1,4 +1,3 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -10,6 +9,7 @@
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/factory.h"
 #include "twin/core/distributions.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/rounding.h"
 #include "twin/diagnose/products.h"
 
@@ -29,7 +29,7 @@ Eigen::Vector4d PublishedSpots_m(const Eigen::Vector4d& motion, Eigen::Vector4d 
       const Eigen::Vector4d step_m = kStep_m * Eigen::Vector4d::Unit(c);
       slopes.col(c) = (told(spots_m + step_m) - told(spots_m - step_m)) / (2.0 * kStep_m);
     }
-    spots_m -= slopes.partialPivLu().solve(told(spots_m) - motion);
+    spots_m -= SolveFour(slopes, told(spots_m) - motion);
   }
   return spots_m;
 }

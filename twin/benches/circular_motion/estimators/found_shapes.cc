@@ -1,10 +1,10 @@
 #include "twin/benches/circular_motion/estimators/found_shapes.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -87,8 +87,8 @@ class LeftBeside {
     }
     const VectorXd lengths = slopes.colwise().norm().transpose();
     slopes *= (lengths.array() > 0.0).select(lengths.cwiseInverse(), 0.0).matrix().asDiagonal();
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(slopes);
-    basis_ = qr.householderQ() * MatrixXd::Identity(slopes.rows(), qr.rank());
+    constexpr double kRounding = std::numeric_limits<double>::epsilon();
+    basis_ = OrthonormalBasisOf(slopes, kRounding * static_cast<double>(std::min(slopes.rows(), slopes.cols())));
     left_ -= basis_ * (basis_.transpose() * left_);
   }
 

@@ -1,7 +1,8 @@
 #include "twin/benches/rotary_4dof/estimators/grating_model.h"
 
-#include <Eigen/LU>
 #include <cmath>
+
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench::measure {
 namespace {
@@ -107,7 +108,7 @@ MotionFit SolveMotion(const Vector4& spots_m, const BenchGeometry& geometry) {
     const Matrix3 rotation_LG = MotionRotation(motion);
     const Spots spots = SpotsAt(rotation_LG, motion[3], geometry);
     fit.jacobian = spots.slopes * MotionAxes(motion, rotation_LG);
-    const Vector4 step = fit.jacobian.partialPivLu().solve(spots_m - spots.at_m);
+    const Vector4 step = SolveFour(fit.jacobian, spots_m - spots.at_m);
     motion += step;
     fit.converged = step.cwiseAbs().maxCoeff() < kLastMotionStep;
   }
