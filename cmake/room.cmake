@@ -9,7 +9,7 @@ function(twinbench_headers name)
   target_link_libraries(${name} PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json)
   target_precompile_headers(${name} PRIVATE
     <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <set> <span> <sstream> <string> <variant> <vector>
-    <Eigen/Cholesky> <Eigen/Geometry> <fmt/format.h> <nlohmann/json.hpp> ${HEADERS_HEADERS})
+    <Eigen/Cholesky> <Eigen/Geometry> <fmt/format.h> ${PROJECT_SOURCE_DIR}/cmake/json_without_literals.h ${HEADERS_HEADERS})
 endfunction()
 get_target_property(fmt_definitions fmt::fmt INTERFACE_COMPILE_DEFINITIONS)
 add_compile_definitions(${fmt_definitions})
