@@ -70,7 +70,7 @@ TEST_F(Importing, TakesTheColumnThatTwoFilesHaveInCommonForTheirClock) {
   EXPECT_EQ(TakeFiles({File("first.txt", table), File("second.txt", again)}).readings.back().setup, 1) << "two mountings";
 }
 
-/// A device that is 12 rows late, in lists: only who says how often the rows were read gets a time.
+/// A device that is 12 rows late, in lists: 100 a second until somebody says how often they were read.
 TEST_F(Importing, TakesListsAtAStatedRateOrBesideTheirTimesForMotion) {
   std::string t = "t = [", sent = "set = [", came = "actual = [";
   for (int i = 0; i < 400; ++i) {
@@ -79,7 +79,7 @@ TEST_F(Importing, TakesListsAtAStatedRateOrBesideTheirTimesForMotion) {
     came += fmt::format("{:.4f}, ", 10.0 * std::sin(0.1 * (i - 12)));
   }
   const std::string lists = sent + "]\n" + came + "]\n";
-  EXPECT_THAT(Take(lists).story, AllOf(HasSubstr("taken as stops"), HasSubstr("12 rows later; rows that were read at equal times are motion: --column 'rate_Hz=100'")));
+  EXPECT_THAT(Take(lists).story, AllOf(HasSubstr("taken as motion"), HasSubstr("12 rows later: taken as motion that was read 100 times a second; --column 'rate_Hz=100'")));
   EXPECT_THAT(Take(lists, "", {"rate_Hz=50"}).story, AllOf(HasSubstr("motion that is read while it goes on"), HasSubstr("50 Hz")));
   EXPECT_THAT(Take(t + "]\n" + lists).story, AllOf(HasSubstr("motion that is read while it goes on"), HasSubstr("50 Hz")));
   EXPECT_THAT(MessageOf([&] { Take(lists, "", {"rate_Hz=often"}); }), HasSubstr("a number above 0"));

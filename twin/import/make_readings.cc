@@ -70,8 +70,9 @@ void Maker::Take(const Session& session, const MostReadings& most, Imported& imp
     return Take(Chosen(session, fresh), most, imported);
   }
   if (bench_.compared) {
-    const std::string remark = RequireOneToOne(session, course.reference, one_place, bench_, map_);
-    if (!remark.empty()) tally.remarks.push_back(remark);
+    const HowItFollows follows = RequireOneToOne(session, course.reference, one_place, bench_, map_);
+    if (!follows.said.empty() && !is_at_usual_rate_) tally.remarks.push_back(follows.said);
+    if (follows.is_later && !session.has_clock && map_.course.kind == "auto") return TakeAtUsualRate(session, most, imported);
   }
   const bool may_be_pushed =
       (course.stop_and_go || (one_place && session.has_clock)) && !session.value.contains("direction");
@@ -94,6 +95,14 @@ void Maker::Take(const Session& session, const MostReadings& most, Imported& imp
     }
   }
   EndSetUp();
+}
+
+/// At rest nothing comes later.
+void Maker::TakeAtUsualRate(Session session, const MostReadings& most, Imported& imported) {
+  session.has_clock = is_at_usual_rate_ = true;
+  for (double& t_s : session.time_s) t_s /= kUsualRate_Hz;  // which were rows
+  Take(session, most, imported);
+  is_at_usual_rate_ = false;
 }
 
 void Maker::EndSetUp() {

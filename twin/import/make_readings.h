@@ -51,6 +51,7 @@ class Maker {
   std::string CourseColumn(const Session& session) const;
   bool IsOnePlace(const Session& session) const;
   bool TakePushed(const Session& session, Course course, Imported& imported);
+  void TakeAtUsualRate(Session session, const MostReadings& most, Imported& imported);
   void EndSetUp();
   void Count(const Session& session, const Course& course, const Blocks& cut);
   void TakeStops(const Session& session, const Course& course, const Blocks& cut, Imported& imported);
@@ -60,7 +61,7 @@ class Maker {
 
   const BenchFormat& bench_;
   const Map& map_;
-  bool linear_;
+  bool linear_, is_at_usual_rate_ = false;
   int setup_ = 0, first_pass_ = 0, last_pass_ = -1, position_ = 0;
 };
 

@@ -70,7 +70,7 @@ std::string LagText(const std::string& name, const std::string& reference, const
   return fmt::format("{} follows {} about {} rows{} later{}", name, reference, later.rows_later,
                      session.has_clock ? LaterText(step_s, later_s) : "",
                      GainText(later.gain)) +
-         (session.has_clock ? "" : "; rows that were read at equal times are motion: --column 'rate_Hz=100' says how often");
+         (session.has_clock ? "" : fmt::format(": taken as motion that was read {0:g} times a second; --column 'rate_Hz={0:g}' says how often", kUsualRate_Hz));
 }
 
 [[noreturn]] void RefuseGain(const std::string& name, const std::string& reference, double gain, const Map& map) {
@@ -125,23 +125,23 @@ Alignment AlignmentOf(const Session& session, const std::vector<double>& referen
   return {};
 }
 
-std::string RequireOneToOne(const Session& session, const std::vector<double>& reference, bool one_place, const BenchFormat& bench,
+HowItFollows RequireOneToOne(const Session& session, const std::vector<double>& reference, bool one_place, const BenchFormat& bench,
                             const Map& map) {
   const std::string &name = bench.compared->shown, &by = bench.compared->reference;
   const std::vector<double>& shown = session.value.at(name);
   RequireLife(name, NameOf(map, name), shown);
-  if (one_place) return "";
+  if (one_place) return {};
   RequireMotion(by, NameOf(map, by), reference);
   const Following now = FollowingOf(reference, shown);
-  if (std::abs(now.gain - 1.0) <= kLikeOne && now.correlation > kFollows) return "";
+  if (std::abs(now.gain - 1.0) <= kLikeOne && now.correlation > kFollows) return {};
   const Following later = FollowingLater(reference, shown);
-  if (FollowsLater(now, later)) return LagText(name, by, session, later);
+  if (FollowsLater(now, later)) return {LagText(name, by, session, later), true};
   if (std::abs(now.correlation) < kFollows)
     throw InputError(NameOf(map, name), fmt::format("{} does not follow {} (correlation {:.2f}, and at no lag more than {:.2f})", name, by, now.correlation,
                                                     std::max(now.correlation, later.correlation)),
                      "columns of the same axis; of an error use " + SumFor(name));
   if (!IsOwnGain(now)) RefuseGain(name, by, now.gain, map);
-  return fmt::format("{} follows {}{}", name, by, GainText(now.gain));
+  return {fmt::format("{} follows {}{}", name, by, GainText(now.gain))};
 }
 
 }  // namespace twinbench::imports
