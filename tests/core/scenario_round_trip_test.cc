@@ -237,6 +237,8 @@ void MakeWholeTeethAndLines(Scenario& s) {
   if (s.bench == kEncoderBench) {
     EncoderProcedureSettings& p = EncoderOf(s).encoder_procedure;
     p.read_s = 0.5 * p.stop_interval_s / p.readings_per_stop;  // they have to fit into a stop
+    p.turns = std::min(p.turns, 0.5);                          // and all of them into memory
+    p.stops = std::min(p.stops, 360);
   }
   if (s.bench == kHobBench) HobOf(s).table_encoder.lines = 5 * HobOf(s).hob_procedure.samples_per_turn;
   // Bodies and the closed form of what they do exclude each other; tests/own_scenario has every key of either.

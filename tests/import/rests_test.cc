@@ -241,7 +241,7 @@ double Triangle(int row) {
 TEST_F(Importing, TakesAServoThatLagsAndSaysByHowMuch) {
   const Wave late = [](int i) { return Triangle(i - 90); };
   EXPECT_THAT(Take(Beside("time [s];goal [deg];position [deg]", 2400, Triangle, late)).story, HasSubstr("about 90 rows (1.8 s) later\n"));
-  EXPECT_THAT(Take(Beside("sample;goal [deg];position [deg]", 2400, Triangle, late)).story, HasSubstr("about 90 rows later; rows"));
+  EXPECT_THAT(Take(Beside("sample;goal [deg];position [deg]", 2400, Triangle, late)).story, HasSubstr("about 90 rows later: taken as motion"));
   const Wave coarse = [](int i) { return 20.0 * std::round(Triangle(i - 90) / 20.0); };
   EXPECT_THAT(Take(Beside("time [s];goal [deg];position [deg]", 2400, Triangle, coarse)).story, HasSubstr(" later\n"));
   EXPECT_THAT(Take(Beside("time [s];goal [deg];position [deg]", 2400, Triangle, [](int i) { return Triangle(i - 3); })).story,
