@@ -242,7 +242,7 @@ void AddSettling(const Context& context, Candidates& named) {
 /// between its ways, what friction does is what play does, which any device may have: the readings at rest have to say so.
 void AddFollowingErrors(const SignalContext& c, Candidates& named) {
   constexpr double kOwn = 0.3, kShare = 0.02;  // of its size beside place and speed; of the readings
-  constexpr double kOfDrives = 0.1;            // of what any device may have
+  constexpr double kOfDrives = 0.03;           // of what any device may have
   Eigen::MatrixXd others(c.Readings(), 3);
   others << Eigen::VectorXd::Ones(c.Readings()), c.reference_rad, c.velocity_rad_s;
   const Eigen::VectorXd& a = c.acceleration_rad_s2;
