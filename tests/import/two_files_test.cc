@@ -7,7 +7,7 @@
 namespace twinbench::imports {
 namespace {
 
-using testing::AllOf, testing::HasSubstr;
+using testing::AllOf, testing::HasSubstr, testing::Not;
 
 /// 40 rows of `columns` angles; each column another course, `off` further.
 std::string Matrix(int columns, double off) {
@@ -80,6 +80,7 @@ TEST_F(Importing, TakesListsAtAStatedRateOrBesideTheirTimesForMotion) {
   }
   const std::string lists = sent + "]\n" + came + "]\n";
   EXPECT_THAT(Take(lists).story, AllOf(HasSubstr("taken as motion"), HasSubstr("12 rows later: taken as motion that was read 100 times a second; --column 'rate_Hz=100'")));
+  EXPECT_THAT(Take(lists, "[course]\nkind = \"stops\"\n").story, AllOf(HasSubstr("12 rows later"), Not(HasSubstr("taken as motion"))));
   EXPECT_THAT(Take(lists, "", {"rate_Hz=50"}).story, AllOf(HasSubstr("motion that is read while it goes on"), HasSubstr("50 Hz")));
   EXPECT_THAT(Take(t + "]\n" + lists).story, AllOf(HasSubstr("motion that is read while it goes on"), HasSubstr("50 Hz")));
   EXPECT_THAT(MessageOf([&] { Take(lists, "", {"rate_Hz=often"}); }), HasSubstr("a number above 0"));

@@ -26,18 +26,6 @@ std::string ListOf(const std::vector<std::string>& axes) {
   return list;
 }
 
-}  // namespace
-
-std::size_t ChosenOf(const std::vector<std::string>& axes, const Map& map, Recording& recording) {
-  const auto number = static_cast<std::size_t>(std::max(1, map.course.axis_number));
-  if (number > axes.size())
-    throw InputError("--axis-number", fmt::format("axis {} of {} axes ({})", number, axes.size(), ListOf(axes)), fmt::format("1 to {}", axes.size()));
-  recording.remarks.push_back(fmt::format("{} axes are in the file ({}): {} is taken; another one by --axis-number N, or --column", axes.size(), ListOf(axes), number));
-  return number - 1;
-}
-
-namespace {
-
 // Rows of several axes below each other.
 
 /// A column that says whose row it is: a few values, each of them again and again.
@@ -147,6 +135,14 @@ bool TakePair(Map& map, std::vector<Recording>& recordings) {
 }
 
 }  // namespace
+
+std::size_t ChosenOf(const std::vector<std::string>& axes, const Map& map, Recording& recording) {
+  const auto number = static_cast<std::size_t>(std::max(1, map.course.axis_number));
+  if (number > axes.size())
+    throw InputError("--axis-number", fmt::format("axis {} of {} axes ({})", number, axes.size(), ListOf(axes)), fmt::format("1 to {}", axes.size()));
+  recording.remarks.push_back(fmt::format("{} axes are in the file ({}): {} is taken; another one by --axis-number N, or --column", axes.size(), ListOf(axes), number));
+  return number - 1;
+}
 
 void TakeAxis(Map& map, std::vector<Recording>& recordings) {
   const bool is_open = map.columns.empty() && map.bench.empty() && map.sought.empty();

@@ -71,8 +71,8 @@ void Maker::Take(const Session& session, const MostReadings& most, Imported& imp
   }
   if (bench_.compared) {
     const HowItFollows follows = RequireOneToOne(session, course.reference, one_place, bench_, map_);
+    if (follows.is_later && !session.has_clock && map_.course.kind == "auto") return TakeAtUsualRate(session, follows.said, most, imported);
     if (!follows.said.empty() && !is_at_usual_rate_) tally.remarks.push_back(follows.said);
-    if (follows.is_later && !session.has_clock && map_.course.kind == "auto") return TakeAtUsualRate(session, most, imported);
   }
   const bool may_be_pushed =
       (course.stop_and_go || (one_place && session.has_clock)) && !session.value.contains("direction");
@@ -97,8 +97,10 @@ void Maker::Take(const Session& session, const MostReadings& most, Imported& imp
   EndSetUp();
 }
 
-/// At rest nothing comes later.
-void Maker::TakeAtUsualRate(Session session, const MostReadings& most, Imported& imported) {
+/// At rest nothing comes later: rows without a clock are motion then, which is seldom read by hand.
+void Maker::TakeAtUsualRate(Session session, const std::string& how_it_follows, const MostReadings& most, Imported& imported) {
+  constexpr double kUsualRate_Hz = 100.0;
+  tally.remarks.push_back(fmt::format("{0}: taken as motion that was read {1:g} times a second; --column 'rate_Hz={1:g}' says how often", how_it_follows, kUsualRate_Hz));
   session.has_clock = is_at_usual_rate_ = true;
   for (double& t_s : session.time_s) t_s /= kUsualRate_Hz;  // which were rows
   Take(session, most, imported);

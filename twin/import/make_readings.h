@@ -51,7 +51,7 @@ class Maker {
   std::string CourseColumn(const Session& session) const;
   bool IsOnePlace(const Session& session) const;
   bool TakePushed(const Session& session, Course course, Imported& imported);
-  void TakeAtUsualRate(Session session, const MostReadings& most, Imported& imported);
+  void TakeAtUsualRate(Session session, const std::string& how_it_follows, const MostReadings& most, Imported& imported);
   void EndSetUp();
   void Count(const Session& session, const Course& course, const Blocks& cut);
   void TakeStops(const Session& session, const Course& course, const Blocks& cut, Imported& imported);

@@ -68,9 +68,7 @@ std::string LaterText(double step_s, double later_s) {
 std::string LagText(const std::string& name, const std::string& reference, const Session& session, const Following& later) {
   const double step_s = MedianOf(StepsOf(session.time_s)), later_s = static_cast<double>(later.rows_later) * step_s;
   return fmt::format("{} follows {} about {} rows{} later{}", name, reference, later.rows_later,
-                     session.has_clock ? LaterText(step_s, later_s) : "",
-                     GainText(later.gain)) +
-         (session.has_clock ? "" : fmt::format(": taken as motion that was read {0:g} times a second; --column 'rate_Hz={0:g}' says how often", kUsualRate_Hz));
+                     session.has_clock ? LaterText(step_s, later_s) : "", GainText(later.gain));
 }
 
 [[noreturn]] void RefuseGain(const std::string& name, const std::string& reference, double gain, const Map& map) {

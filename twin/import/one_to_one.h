@@ -22,9 +22,6 @@ struct Alignment {
 Alignment AlignmentOf(const Session& session, const std::vector<double>& reference, const BenchFormat& bench,
                       const Map& map);
 
-/// Of rows without a clock that have to be motion: what moves is seldom read by hand.
-inline constexpr double kUsualRate_Hz = 100.0;
-
 struct HowItFollows {
   std::string said;  // what a reader has to know of it: later, or not as far; or nothing
   bool is_later = false;

@@ -5,8 +5,6 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-/// Readings in a mean: in fewer the noise hides the steps, over more the shaft turns.
-constexpr Eigen::Index kInMean = 16;
 constexpr double kVeryStrongly = 6.0;  // log Bayes factor; Kass and Raftery, Bayes factors (1995)
 
 }  // namespace

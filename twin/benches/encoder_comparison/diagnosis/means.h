@@ -5,6 +5,9 @@
 
 namespace twinbench::diagnose::encoder {
 
+/// Readings in a mean whose steps are looked at: in fewer the noise hides the steps, over more the shaft turns.
+inline constexpr Eigen::Index kInMean = 16;
+
 /// Means of so many readings each, which noise hardly moves; no mean goes over a new mounting.
 struct Means {
   std::vector<double> value;

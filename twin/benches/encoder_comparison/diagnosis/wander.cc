@@ -316,11 +316,11 @@ void TellWalk(Walk& walk, DiagnosisRun& result) {
 }  // namespace
 
 bool IsNothingButWalk(const LinearRun& run) {
-  constexpr Eigen::Index kTogether = 16, kFewestMeans = 64;
+  constexpr Eigen::Index kFewestMeans = 64;
   const Walk walk{run.residual, run.schedule.setup, run.Rows() / 16};
-  if (run.Channels() != 1 || run.Rows() < kTogether * kFewestMeans || !IsWalk(walk, run.sigma.minCoeff()))
+  if (run.Channels() != 1 || run.Rows() < kInMean * kFewestMeans || !IsWalk(walk, run.sigma.minCoeff()))
     return false;
-  const std::vector<double> steps = MeansOf(walk.left, walk.setup, kTogether).Steps();
+  const std::vector<double> steps = MeansOf(walk.left, walk.setup, kInMean).Steps();
   const Eigen::Index count = std::ssize(steps);
   if (count < kFewestMeans / 2) return false;  // of several heads no readings in a row are of one
   const Eigen::ArrayXd phase_rad = units::turn / static_cast<double>(count) *
