@@ -112,7 +112,8 @@ Record PositioningTest(double noise_deg, unsigned seed) {
 
 /// What lags behind the temperature of the room by a first order, exact for one that goes straight from reading to
 /// reading.
-Record FollowsTheRoom(double lag_s, unsigned seed) {
+/// @param growth_K  Of the scale; 0: it is the zero that follows.
+Record FollowsTheRoom(double lag_s, double growth_K, unsigned seed) {
   double follower_K = 0.0, last_K = 0.0;
   const auto room_K = [](double t_s) { return 1.5 * std::sin(2.0 * units::kPi * t_s / 3600.0) + 1e-4 * t_s; };
   Record record = Listed({0.0, 0.9, 400, 1, 20.0, "sweep"}, 0.001, seed, [&](const Place& at) {
@@ -121,7 +122,7 @@ Record FollowsTheRoom(double lag_s, unsigned seed) {
       follower_K = room_K(at.t_s) - behind_K + (follower_K - last_K + behind_K) * std::exp(-20.0 / lag_s);
     }
     last_K = room_K(at.t_s);
-    return 0.01 * follower_K + Sum({{1, 0.02, 0.0}}, at.deg);
+    return (growth_K != 0.0 ? growth_K * at.deg : 0.01) * follower_K + Sum({{1, 0.02, 0.0}}, at.deg);
   });
   for (Reading& r : record.readings) r.temperature_degC = 20.0 + room_K(20.0 * r.reading);
   return record;
@@ -148,10 +149,15 @@ const Row kPositioning[] = {
       Says(Not(HasSubstr("lost counts"))), Says(HasSubstr("error of its own at each of 9 targets")), kSilentAgain},
      {1, 2, 3}},
     {"AZeroThatFollowsTheTemperatureIsNoFunctionOfTime",
-     [](unsigned seed) { return FollowsTheRoom(900.0, seed); },
+     [](unsigned seed) { return FollowsTheRoom(900.0, 0.0, seed); },
      {Found("zero_temperature", "coefficient", 0.01), Found("zero_temperature", "lag", 900.0),
       NotNamed({"drift"}, 0.0), kSilentAgain},
      {6}},
+    {"AScaleThatGrowsWithTheTemperatureIsNeitherAZeroNorADrift",
+     [](unsigned seed) { return FollowsTheRoom(300.0, 80e-6, seed); },
+     {Found("scale_temperature", "growth", 80.0), Found("scale_temperature", "lag", 300.0),
+      NotNamed({"drift", "zero_temperature", "scale"}, 0.0), kSilentAgain},
+     {6, 7}},
     OfCourse("ASlipIsOneWhereItIsSuddenAndSmall", {0.0, 2.0, 600, 1, 0.5, "sweep"}, 0.004,
              [](const Place& at) { return at.stop < 350 ? 0.0 : 0.006; },
              {Named("slip", 0.5), Size("slip", "step", 0.006, 0.0015)}, {10, 11, 12}),

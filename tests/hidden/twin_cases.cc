@@ -97,7 +97,7 @@ std::vector<Design> DesignsFor(const std::string& effect, const std::string& ben
   if (bench == kFreeformBench) return {Design::kFreeform};
   if (effect == "settling") return {};
   if (effect == "acceleration_error" || effect == "friction") return {};  // of a servo that rests between its ways
-  if (effect == "zero_temperature") return {Design::kStopsInWarmRoom};
+  if (effect == "zero_temperature" || effect == "scale_temperature") return {Design::kStopsInWarmRoom};
   if (effect == "latency" || effect == "clock_rate") return {Design::kSweep};
   if (NeedsAllKnown(effect)) return {Design::kStopsAllKnown, Design::kSweepAllKnown};
   return {Design::kStops, Design::kSweep};

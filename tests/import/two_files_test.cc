@@ -86,5 +86,17 @@ TEST_F(Importing, TakesListsAtAStatedRateOrBesideTheirTimesForMotion) {
   EXPECT_THAT(MessageOf([&] { Take(lists, "", {"rate_Hz=often"}); }), HasSubstr("a number above 0"));
 }
 
+/// One row late on a smooth profile is behind by its speed; behind by the same at any speed is play, which stops have too.
+TEST_F(Importing, TakesRowsWithoutAClockForMotionWhereTheDeviceIsBehindByItsSpeed) {
+  const auto table_of = [](double rows, double play) {
+    std::string table = "set,actual\n";
+    for (int i = 0; i < 400; ++i)
+      table += fmt::format("{:.4f},{:.3f}\n", 10.0 * std::sin(0.1 * i), 10.0 * std::sin(0.1 * (i - rows)) - std::copysign(0.5 * play, std::cos(0.1 * i)));
+    return table;
+  };
+  EXPECT_THAT(Take(table_of(0.8, 0.3)).story, AllOf(HasSubstr("by its speed, about 0.8 rows: taken as motion"), HasSubstr("while it goes on")));
+  EXPECT_THAT(Take(table_of(0.0, 1.2)).story, HasSubstr("taken as stops"));
+}
+
 }  // namespace
 }  // namespace twinbench::imports

@@ -41,7 +41,8 @@ std::string WithUncertainty(const ParameterEstimate& p) {
   if (!std::isfinite(u) || u <= 0.0) return fmt::format("{:.3g}{}", value, unit);
   const int decimals = static_cast<int>(1.0 - std::floor(std::log10(u)));
   if (decimals > 9) return fmt::format("{:.4g} ± {:.2g}{}", value, u, unit);
-  return fmt::format("{:.{}f} ± {:.{}f}{}", value, std::max(decimals, 0), u, std::max(decimals, 0), unit);
+  const double shown = std::abs(value) < 0.5 * std::pow(10.0, -decimals) ? 0.0 : value;  // no minus before nothing
+  return fmt::format("{:.{}f} ± {:.{}f}{}", shown, std::max(decimals, 0), u, std::max(decimals, 0), unit);
 }
 
 std::string NameAndSize(const ParameterEstimate& p) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "twin/core/errors.h"
+#include "twin/import/by_speed.h"
 #include "twin/import/common.h"
 #include "twin/import/follows.h"
 #include "twin/import/said.h"
@@ -71,6 +72,14 @@ std::string LagText(const std::string& name, const std::string& reference, const
                      session.has_clock ? LaterText(step_s, later_s) : "", GainText(later.gain));
 }
 
+/// Less than that is what stops short by a part of its last step.
+HowItFollows ByItsSpeed(const std::string& name, const std::string& by, const std::vector<double>& reference, const std::vector<double>& shown) {
+  constexpr double kLeastRows = 0.3;
+  const double rows = RowsBehindBySpeed(reference, shown);
+  if (!(rows > kLeastRows)) return {};
+  return {fmt::format("{} is behind {} by its speed, about {:.2g} rows", name, by, rows), true};
+}
+
 [[noreturn]] void RefuseGain(const std::string& name, const std::string& reference, double gain, const Map& map) {
   const std::string meaning = MeaningOfGain(gain);
   throw InputError(
@@ -131,7 +140,7 @@ HowItFollows RequireOneToOne(const Session& session, const std::vector<double>& 
   if (one_place) return {};
   RequireMotion(by, NameOf(map, by), reference);
   const Following now = FollowingOf(reference, shown);
-  if (std::abs(now.gain - 1.0) <= kLikeOne && now.correlation > kFollows) return {};
+  if (std::abs(now.gain - 1.0) <= kLikeOne && now.correlation > kFollows) return session.has_clock ? HowItFollows{} : ByItsSpeed(name, by, reference, shown);
   const Following later = FollowingLater(reference, shown);
   if (FollowsLater(now, later)) return {LagText(name, by, session, later), true};
   if (std::abs(now.correlation) < kFollows)

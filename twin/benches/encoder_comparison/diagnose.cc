@@ -18,6 +18,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/benches/encoder_comparison/estimators/coast_passes.h"
 #include "twin/benches/encoder_comparison/twin/factory.h"
+#include "twin/core/units.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/part_of_readings.h"
@@ -30,9 +31,9 @@ constexpr std::size_t kEnough = 2500;  // readings: what has many causes takes t
 /// Sizes of a linear axis are told as lengths; what a cause's wave or way is called stays.
 void TellLengths(const AxisUnit& unit, diagnose::Diagnosis& diagnosis) {
   const auto tell = [&unit](diagnose::ParameterEstimate& p) {
-    if (p.unit != "deg" || p.name == "phase" || p.name == "zero") return;
-    p.unit = unit.name;
-    p.to_SI = unit.to_SI;
+    if (!p.unit.starts_with("deg") || p.name == "phase" || p.name == "zero") return;
+    p.unit.replace(0, 3, unit.name);
+    p.to_SI *= unit.to_SI / units::deg;
   };
   for (diagnose::Cause& cause : diagnosis.causes) std::ranges::for_each(cause.parameters, tell);
   for (diagnose::Detectable& seen : diagnosis.detectable) tell(seen.smallest);

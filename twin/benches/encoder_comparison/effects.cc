@@ -23,6 +23,10 @@ EffectParameter Approach() {
                    "1: a measuring position is reached in its direction over half the way from its neighbour; 0: straight");
 }
 
+EffectParameter BehindTemperature() {
+  return Parameter("lag", "s", 0.0, 0.0, 1e5, "behind the temperature");
+}
+
 // Defaults are sizes that are plausible before checking; the ranges stand beside the entries.
 std::vector<EffectEntry> MountingAndShapeEffects() {
   return {
@@ -122,8 +126,12 @@ std::vector<EffectEntry> TimeAndReadingEffects() {
       {"zero_temperature",
        "zero of the device that follows the temperature",
        {},
-       {Signed("coefficient", "deg_per_K", 0.002, 10.0, "of the zero"),
-        Parameter("lag", "s", 0.0, 0.0, 1e5, "behind the temperature")}},
+       {Signed("coefficient", "deg_per_K", 0.002, 10.0, "of the zero"), BehindTemperature()}},
+      // steel 11.5, glass 8, aluminium 23 um/m/K; a potentiometer 100 and more
+      {"scale_temperature",
+       "device whose scale grows with the temperature: a screw, a linear scale, a potentiometer",
+       {},
+       {Signed("growth", "um_m_K", 10.0, 1e5, "of what it shows, against the reference's"), BehindTemperature()}},
       // one line of the scale, or a coupling that gave way
       {"slip",
        "sudden step of the device's zero",

@@ -296,14 +296,17 @@ void AddWarmUp(const Context& context, Candidates& named) {
   };
 }
 
-/// A zero that follows the temperature, or one that lags behind it.
+/// A zero or a scale that follows the temperature, or one that lags behind it.
 void AddTemperature(const Context& context, Candidates& named) {
   if (context->above_K.size() == 0 || Range(context->above_K) == 0.0) return;
-  const std::string effect = "zero_temperature";
-  named.AddOver(Shown(effect), {"coefficient"}, {named.catalogue().ShapeOf(effect, "lag", TemperatureLags_s())},
-                [context](const Eigen::VectorXd& lag_s) {
-                  return Eigen::MatrixXd(model::Lagged(context->since_start_s, context->above_K, lag_s[0]));
-                });
+  const auto add = [&](const std::string& effect, const std::string& parameter, const Eigen::VectorXd& of) {
+    named.AddOver(Shown(effect), {parameter}, {named.catalogue().ShapeOf(effect, "lag", TemperatureLags_s())},
+                  [context, of](const Eigen::VectorXd& lag_s) {
+                    return Eigen::MatrixXd(of.cwiseProduct(model::Lagged(context->since_start_s, context->above_K, lag_s[0])));
+                  });
+  };
+  add("zero_temperature", "coefficient", Eigen::VectorXd::Ones(context->Readings()));
+  add("scale_temperature", "growth", context->reference_rad);
 }
 
 /// Faults of the signals know what strength they have.

@@ -77,18 +77,22 @@ class ZeroDrift : public AngleEffect {
   double rate_rad_s_, curvature_, warm_up_s_;
 };
 
-/// The device's zero follows the temperature of the room, or one that lags behind it.
-class ZeroTemperature : public AngleEffect {
+/// The device's zero or its scale follows the temperature of the room, or one that lags behind it.
+class FollowsTemperature : public AngleEffect {
  public:
-  explicit ZeroTemperature(const EffectSettings& e)
-      : rad_per_K_(Parameter(e, "coefficient")), followed_(Parameter(e, "lag")) {}
+  explicit FollowsTemperature(const EffectSettings& e) : of_scale_(e.name == "scale_temperature"),
+        per_K_(Parameter(e, of_scale_ ? "growth" : "coefficient")), followed_(Parameter(e, "lag")) {}
   void Advance(const AngleMoment& moment) override {
     above_K_ = followed_.Next(ToSeconds(moment.now), moment.above_K);
   }
-  double DeviceError_rad(const AngleMoment&, double) const override { return rad_per_K_ * above_K_; }
+  double ShaftError_rad(const AngleMoment& moment) const override {
+    return of_scale_ ? per_K_ * above_K_ * moment.read_rad : 0.0;
+  }
+  double DeviceError_rad(const AngleMoment&, double) const override { return of_scale_ ? 0.0 : per_K_ * above_K_; }
 
  private:
-  double rad_per_K_;
+  bool of_scale_;
+  double per_K_;
   model::FirstOrderLag followed_;
   double above_K_ = 0.0;
 };
@@ -165,7 +169,8 @@ AngleMakers ReadingEffects() {
       {"quadrature_error", Made<AngleEffect, SignalFault>},
       {"signal_clipping", Made<AngleEffect, SignalFault>},
       {"drift", Made<AngleEffect, ZeroDrift>},
-      {"zero_temperature", Made<AngleEffect, ZeroTemperature>},
+      {"zero_temperature", Made<AngleEffect, FollowsTemperature>},
+      {"scale_temperature", Made<AngleEffect, FollowsTemperature>},
       {"slip", Made<AngleEffect, ZeroSlip>},
       {"signal", Made<AngleEffect, AngleSignal>},
       {"reference_fault", Made<AngleEffect, ReferenceFault>},
