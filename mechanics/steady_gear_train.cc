@@ -35,12 +35,12 @@ Motion SteadyGearTrain::Wheel(const Motion& hob_motor) const {
   return Along(law_.Wheel(nominal.rad), nominal);
 }
 
-double SteadyGearTrain::Table_rad(double spindle_rad, double hob_speed_rad_s, int direction) const {
+double SteadyGearTrain::Table_rad(double spindle_rad, double hob_speed_rad_s, double side) const {
   constexpr int kIterations = 4;  // each leaves a thousandth: errors are smooth over their own size
   double motor_rad = spindle_rad;
   for (int k = 0; k < kIterations; ++k) motor_rad += spindle_rad - law_.Spindle(motor_rad).value_rad;
   const Motion wheel = Wheel({motor_rad, hob_speed_rad_s, 0.0, 0.0});
-  return wheel.rad - direction * half_play_rad_ - viscous_s_ * wheel.rad_s;
+  return wheel.rad - side * half_play_rad_ - viscous_s_ * wheel.rad_s;
 }
 
 }  // namespace twinbench::mechanics

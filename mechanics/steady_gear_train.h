@@ -6,7 +6,7 @@ namespace twinbench::mechanics {
 
 /// The gear train without inertia, for motions that are given: exact ratio, errors of the gears, lag of the servos,
 /// backlash and wind-up as one play between worm wheel and table. Where the play has its path, the kinematic gear
-/// train keeps it; here the wheel drags the table, as at constant speed.
+/// train keeps it; here somebody else says where in it the table is.
 class SteadyGearTrain {
  public:
   explicit SteadyGearTrain(const GearTrainParameters& parameters);
@@ -23,8 +23,8 @@ class SteadyGearTrain {
   double viscous_s() const { return viscous_s_; }
 
   /// Table with the spindle at an angle and the hob's motor at constant speed.
-  /// @param direction  In which the wheel drags the table, +1 or -1.
-  double Table_rad(double spindle_rad, double hob_speed_rad_s, int direction) const;
+  /// @param side  Of the play at which the wheel drags the table, 1 or -1 by the direction; in between it does not.
+  double Table_rad(double spindle_rad, double hob_speed_rad_s, double side) const;
 
  private:
   GearLaw law_;

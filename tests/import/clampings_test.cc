@@ -130,7 +130,7 @@ TEST_F(ClampingTable, ReadBothWaysShowsItsHysteresis) {
           text += fmt::format("{},{:.4f},{},{}\n", 36 * place, Shown_arcsec(place, place + kTurned[static_cast<std::size_t>(c)], 0) + 0.5 * hysteresis_arcsec * way + 0.03 * noise.Normal(), c + 1, way);
         }
     const Imported taken = Take(text);
-    const diagnose::Diagnosis found = DiagnosedTurntable(taken);
+    const diagnose::Diagnosis found = Diagnosed(taken);
     EXPECT_EQ(found.verdict, diagnose::Verdict::kNamed) << hysteresis_arcsec;
     ASSERT_EQ(found.causes.size(), 1U) << hysteresis_arcsec;
     EXPECT_EQ(found.causes[0].effect, "backlash");

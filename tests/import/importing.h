@@ -6,8 +6,8 @@
 
 #include "tests/core/input_error.h"
 #include "twin/benches/evaluated.h"
-#include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/core/units.h"
+#include "twin/benches/registry.h"
 #include "twin/import/import.h"
 
 namespace twinbench::imports {
@@ -45,8 +45,8 @@ inline Scenario Made(const Imported& taken) {
 inline report::Evaluation Evaluated(const Imported& taken) {
   return EvaluationOf(Made(taken), taken.readings, Estimator::kRigorous);
 }
-inline diagnose::Diagnosis DiagnosedTurntable(const Imported& taken) {
-  return benches::turntable::Diagnose(taken.readings, Made(taken), {}).diagnosis;
+inline diagnose::Diagnosis Diagnosed(const Imported& taken) {
+  return diagnose::Diagnose(taken.readings, Made(taken), {}).diagnosis;
 }
 
 /// The largest measured - reference, whole turns and the mean aside.

@@ -62,7 +62,7 @@ TEST_F(AutocollimatorSweep, IsDiagnosedInTheSenseThatItHas) {
       text += fmt::format("{},{:.4f}\n", angle_arcsec, sense * (angle_arcsec + 0.3 * std::cos(units::turn * angle_arcsec / 40.0) + 0.02 * noise.Normal()));
     }
     const Imported taken = Take(text);
-    const diagnose::Diagnosis found = DiagnosedTurntable(taken);
+    const diagnose::Diagnosis found = Diagnosed(taken);
     ASSERT_FALSE(found.causes.empty()) << sense;
     EXPECT_EQ(found.causes[0].effect, "autocollimator_periodic") << sense;
     EXPECT_EQ(std::ranges::count_if(found.notes, [](const std::string& note) { return note.find("counts against") != std::string::npos; }), sense < 0.0 ? 1 : 0);
@@ -80,7 +80,7 @@ TEST_F(AutocollimatorSweep, HasTheLongestOfThePeriodsThatLookAlike) {
         text += fmt::format("{},{:.4f},{:.4f}\n", angle_arcsec, scale * angle_arcsec + 0.3 * std::sin(units::turn * angle_arcsec / period_arcsec) + 0.03 * noise.Normal(), 0.03 * noise.Normal());
       }
     const Imported taken = Take(text);
-    const diagnose::Diagnosis found = DiagnosedTurntable(taken);
+    const diagnose::Diagnosis found = Diagnosed(taken);
     SCOPED_TRACE(fmt::format("{} {}", scale, period_arcsec));
     const auto ripple = std::ranges::find(found.causes, "autocollimator_periodic", &diagnose::Cause::effect);
     ASSERT_NE(ripple, found.causes.end());
@@ -101,7 +101,7 @@ TEST_F(AutocollimatorSweep, OfUnevenStepsHasAShortPeriod) {
     text += fmt::format("{:.3f},{:.4f}\n", angle_arcsec, angle_arcsec + 0.3 * std::sin(units::turn * angle_arcsec / 1.71) + 0.03 * noise.Normal());
   }
   const Imported taken = Take(text);
-  const diagnose::Diagnosis found = DiagnosedTurntable(taken);
+  const diagnose::Diagnosis found = Diagnosed(taken);
   ASSERT_FALSE(found.causes.empty());
   const auto& period = *std::ranges::find(found.causes[0].parameters, "period", &diagnose::ParameterEstimate::name);
   EXPECT_NEAR(period.value / units::arcsec, 1.71, 0.001);

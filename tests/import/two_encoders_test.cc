@@ -120,6 +120,27 @@ TEST_F(TwoEncoders, HaveTheRatioThatALineStates) {
   Expect(Take("# gear ratio: 60\nmotor_deg,load_deg\n" + Log(train, "{1:.7f},{2:.7f}\n")), train, 396);
 }
 
+/// Swung to and fro the output turns slowest where it stands in the gap, for many rows, and its noise goes to and fro itself.
+TEST_F(TwoEncoders, ShowThePlayThatIsCrossedSlowly) {
+  constexpr int kSwung = 2400;
+  constexpr double kGap_deg = 0.06;
+  Stream noise(5, "counts");
+  std::string text = "time_s,motor_deg,load_deg\n";
+  double dragged_deg = -0.5 * kGap_deg;
+  for (int k = 0; k < kSwung; ++k) {
+    const double wheel_deg = 180.0 * std::sin(units::turn * k / kSwung);
+    dragged_deg = std::clamp(dragged_deg, wheel_deg - 0.5 * kGap_deg, wheel_deg + 0.5 * kGap_deg);
+    text += fmt::format("{:.3f},{:.4f},{:.5f}\n", 0.025 * k, 80.0 * wheel_deg, dragged_deg + 0.003 * noise.Normal());
+  }
+  const Imported taken = Take(text);
+  EXPECT_EQ(taken.readings.back().pass, 2);
+  const diagnose::Diagnosis found = Diagnosed(taken);
+  ASSERT_EQ(found.causes.size(), 1U);
+  EXPECT_EQ(found.causes.front().effect, "backlash");
+  EXPECT_NEAR(found.causes.front().parameters.front().value / units::deg, kGap_deg, 0.001);
+  EXPECT_TRUE(found.unknown.signature.empty()) << found.unknown.signature;
+}
+
 TEST_F(TwoEncoders, OfARatioOfOneAreAComparison) {
   const Train train{1, 1, 60.0};
   const Imported taken = Take("time_s,input_deg,output_deg\n" + Log(train, kTimed));

@@ -1,6 +1,7 @@
 #include "twin/diagnose/about_first_cause.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "twin/core/units.h"
@@ -131,8 +132,7 @@ std::vector<const Term*> BesideTheFirst(const Searched& searched, const TwinComp
   return beside;
 }
 
-}  // namespace
-
+/// Whether asking again with the first cause in the twin may tell more.
 bool MayBeCurved(const Searched& searched, const std::vector<Reading>& readings, const TwinComparison& comparison) {
   if (searched.found().terms.empty()) return false;
   const Family& first = searched.FamilyOf(searched.found().terms.front());
@@ -141,6 +141,7 @@ bool MayBeCurved(const Searched& searched, const std::vector<Reading>& readings,
   return searched.LeavesStructure() || (comparison.bends && IsOffItsTangent(searched, readings, comparison));
 }
 
+/// Null if other things can be searched for there.
 std::unique_ptr<Searched> AboutFirstCause(const Searched& before, const std::vector<Reading>& readings,
                                           const DiagnoseOptions& options, const TwinComparison& comparison) {
   const std::vector<Term>& terms = before.found().terms;
@@ -162,6 +163,55 @@ std::unique_ptr<Searched> AboutFirstCause(const Searched& before, const std::vec
   how.null = &before.analysis.null;
   after->analysis = Analyse(after->compared.run, after->candidates.families, how);
   return after;
+}
+
+/// The cause of the catalogue that alone explains nearly as much as the structure that leads.
+std::optional<Term> NamedBehindStructure(const Searched& searched, const TwinComparison& comparison) {
+  constexpr double kNearly = 0.8;
+  if (searched.found().terms.empty() || searched.FamilyOf(searched.found().terms.front()).kind == Kind::kNamed) return {};
+  const Evidence& alone = searched.found().alone;
+  const auto explained = [&](int family) { return alone.explained(family, 0); };
+  std::optional<Term> best;
+  double most = kNearly * explained(searched.found().terms.front().family);
+  for (int f = 0; f < static_cast<int>(std::ssize(searched.candidates.families)); ++f) {
+    const Family& family = searched.candidates.families[static_cast<std::size_t>(f)];
+    if (family.kind != Kind::kNamed || explained(f) < most || (comparison.may_bend && !comparison.may_bend(family.effect))) continue;
+    const int g = alone.grid_point(f, 0);
+    const Projected data = Project(*searched.analysis.projector, {}, searched.analysis.noise.Whiten(searched.compared.run, Eigen::MatrixXd(searched.compared.run.residual)));
+    Term term;
+    term.family = f;
+    term.grid_point = g;
+    term.shape = family.ShapeAt(g);
+    term.columns = family.ColumnsAt(g);
+    term.amplitudes = searched.analysis.scanner->FitEach(f, g, g, data, {}).front().amplitudes;
+    if (!CanBeTried(EffectOf(family, term, comparison.format->effects), comparison.format->effects)) continue;
+    most = explained(f);
+    best = term;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::unique_ptr<Searched> SearchedAboutFirst(Searched& before, const std::vector<Reading>& readings, const DiagnoseOptions& options,
+                                             const TwinComparison& comparison) {
+  std::vector<Term>& terms = before.analysis.found.terms;
+  if (MayBeCurved(before, readings, comparison)) {
+    auto again = AboutFirstCause(before, readings, options, comparison);
+    return again && !again->found().terms.empty() && again->found().terms.size() <= terms.size() ? std::move(again) : nullptr;
+  }
+  const std::optional<Term> named = NamedBehindStructure(before, comparison);
+  if (!named) return nullptr;
+  const std::vector<Term> structure = std::exchange(terms, {*named});
+  auto again = AboutFirstCause(before, readings, options, comparison);
+  terms = structure;
+  if (!again || again->found().terms.size() > structure.size()) return nullptr;
+  const Family& behind = before.FamilyOf(*named);
+  const bool stays = std::ranges::any_of(again->found().terms, [&](const Term& term) {
+    const Family& family = again->FamilyOf(term);
+    return family.effect == behind.effect && family.where == behind.where;
+  });
+  return stays ? std::move(again) : nullptr;
 }
 
 }  // namespace twinbench::diagnose

@@ -162,11 +162,7 @@ std::vector<Cause> FindScatter(const DiagnoseOptions& options, const TwinCompari
 DiagnosisRun ConcludeOf(std::unique_ptr<Searched> searched, const std::vector<Reading>& readings,
                         const DiagnoseOptions& options, const TwinComparison& comparison,
                         std::vector<Cause> first) {
-  if (MayBeCurved(*searched, readings, comparison)) {
-    auto again = AboutFirstCause(*searched, readings, options, comparison);
-    const auto terms = [](const Searched& s) { return s.found().terms.size(); };
-    if (again && terms(*again) > 0 && terms(*again) <= terms(*searched)) searched = std::move(again);
-  }
+  if (auto again = SearchedAboutFirst(*searched, readings, options, comparison)) searched = std::move(again);
   std::vector<Detectable> detectable;
   std::ranges::move(FindScatter(options, comparison, *searched, detectable), std::back_inserter(first));
   const Compared& c = searched->compared;

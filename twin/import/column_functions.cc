@@ -76,6 +76,24 @@ std::vector<double> Span(std::vector<double> x, const std::string&) {
 }
 
 /// Of the steps before and behind a row that one counts which is more like the others: the other one may be a way back.
+/// Where it hardly moves, noise goes to and fro: a way of one sense that is no longer than that belongs to the one before it.
+void LeaveNoiseOut(const std::vector<double>& steps, std::vector<double>& sense) {
+  constexpr double kOfNoise = 8.0;
+  std::vector<double> bends;
+  for (std::size_t i = 1; i < steps.size(); ++i) bends.push_back(std::abs(steps[i] - steps[i - 1]));
+  if (bends.empty()) return;
+  const double noise = 1.48 / std::sqrt(6.0) * MedianOf(std::move(bends));  // of a second difference
+  double held = 0.0;  // 0: none before
+  for (std::size_t begin = 0, end = 0; begin < sense.size(); begin = end) {
+    double way = 0.0;
+    for (end = begin; end < sense.size() && sense[end] == sense[begin]; ++end) way += end > 0 ? steps[end - 1] : 0.0;
+    if (held != 0.0 && std::abs(way) < kOfNoise * noise)
+      std::fill(sense.begin() + static_cast<std::ptrdiff_t>(begin), sense.begin() + static_cast<std::ptrdiff_t>(end), held);
+    else
+      held = sense[begin];
+  }
+}
+
 std::vector<double> Sense(std::vector<double> x, const std::string&) {
   std::vector<double> steps, sizes;
   for (std::size_t i = 1; i < x.size(); ++i) {
@@ -88,6 +106,7 @@ std::vector<double> Sense(std::vector<double> x, const std::string&) {
     const double before = steps[i == 0 ? 0 : i - 1], behind = steps[std::min(i, steps.size() - 1)];
     sense[i] = std::copysign(1.0, std::abs(std::abs(behind) - usual) < std::abs(std::abs(before) - usual) ? behind : before);
   }
+  LeaveNoiseOut(steps, sense);
   return sense;
 }
 

@@ -21,7 +21,7 @@ struct HobStop {
   double hob_shown_rad = kNaN;  // as recorded, but for what effects add
   double zero_rad = 0.0;        // of the table, where the hob's encoder shows zero
   double hob_speed_rad_s = 0.0;
-  int direction = 1;    // in which the wheel drags the table
+  double side = 1.0;    // of the play at which the wheel drags the table
   CounterSample added;  // by effects
 };
 
@@ -32,8 +32,9 @@ struct HobCourse {
 
 class CourseMaker {
  public:
-  CourseMaker(const std::vector<Reading>& record, HobPath& path)
-      : record_(record), path_(path), procedure_(HobOf(path.actual()).hob_procedure) {}
+  /// @param half_play_rad  Of the table.
+  CourseMaker(const std::vector<Reading>& record, HobPath& path, double half_play_rad)
+      : record_(record), path_(path), procedure_(HobOf(path.actual()).hob_procedure), half_play_rad_(half_play_rad) {}
 
   HobCourse Make() {
     FindZeros();
@@ -69,12 +70,11 @@ class CourseMaker {
     const Reading& r = record_[i];
     HobStop stop;
     const double velocity_rad_s = Velocity_rad_s(i);
-    if (velocity_rad_s != 0.0) direction_ = velocity_rad_s > 0.0 ? 1 : -1;
-    if (velocity_rad_s == 0.0 && r.direction != 0) direction_ = r.direction;  // it came to rest this way
-    stop.direction = direction_;
     stop.hob_speed_rad_s = velocity_rad_s / Ratio();
     if (zero_rad_.contains(r.setup)) stop.zero_rad = zero_rad_.at(r.setup);
     if (i > 0) TurnRound(i - 1, i);
+    Drive(i);
+    stop.side = side_;
     const double table_rad = Table_rad(r);
     if (std::isfinite(table_rad)) path_.Travel(table_rad);
     stop.added = {r.time, 0.0, 0.0, velocity_rad_s, 0.0};
@@ -97,14 +97,38 @@ class CourseMaker {
   /// next one it comes in over a ramp. Way and time between the samples tell how far that was.
   void TurnRound(std::size_t last, std::size_t first) {
     const Reading &a = record_[last], &b = record_[first];
-    const double v_a = Velocity_rad_s(last), v_b = Velocity_rad_s(first), ramp_s = procedure_.ramp_s;
+    const double v_a = Velocity_rad_s(last), v_b = Velocity_rad_s(first);
     if (a.pass == b.pass || !(v_a * v_b < 0.0)) return;
     const double waited_s = procedure_.rest_s + (a.setup != b.setup ? procedure_.remount_s : 0.0);
-    const double steady_s = ToSeconds(b.time - a.time) - 2.0 * ramp_s - waited_s;
+    const double moved_s = ToSeconds(b.time - a.time) - waited_s, ramp_s = std::min(procedure_.ramp_s, std::max(0.0, 0.5 * moved_s));
+    const double steady_s = moved_s - 2.0 * ramp_s;
     const double way_rad = Table_rad(b) - Table_rad(a) - 0.5 * ramp_s * (v_a + v_b);
     const double on_s = std::clamp((way_rad - v_b * steady_s) / (v_a - v_b), 0.0, std::max(0.0, steady_s));
     const double turned_rad = Table_rad(a) + v_a * (on_s + 0.5 * ramp_s);
-    if (std::isfinite(turned_rad)) path_.Travel(turned_rad);
+    if (!std::isfinite(turned_rad)) return;
+    path_.Travel(turned_rad);
+    if (a.setup == b.setup) Cross(turned_rad - Table_rad(a));
+    driven_rad_ = Ratio() * a.reference_rad + turned_rad - Table_rad(a);
+  }
+
+  /// From the sample before, or from where it turned round; where a mounting begins the wheel drags already.
+  void Drive(std::size_t i) {
+    const Reading& r = record_[i];
+    const double at_rad = Ratio() * r.reference_rad;
+    const bool is_new = i == 0 || r.setup != record_[i - 1].setup;
+    if (is_new) {
+      const double velocity_rad_s = Velocity_rad_s(i);
+      const double goes = r.direction != 0 ? r.direction : velocity_rad_s;
+      if (goes != 0.0) side_ = std::copysign(1.0, goes);
+    } else {
+      Cross(at_rad - driven_rad_);
+    }
+    if (std::isfinite(at_rad)) driven_rad_ = at_rad;
+  }
+
+  void Cross(double way_rad) {
+    if (!std::isfinite(way_rad) || way_rad == 0.0) return;
+    side_ = half_play_rad_ > 0.0 ? std::clamp(side_ + way_rad / half_play_rad_, -1.0, 1.0) : std::copysign(1.0, way_rad);
   }
 
   void NoteUnfixed() {
@@ -115,16 +139,17 @@ class CourseMaker {
   const std::vector<Reading>& record_;
   HobPath& path_;
   const HobProcedureSettings& procedure_;
+  double half_play_rad_;
+  double side_ = 1.0, driven_rad_ = 0.0;  // of the play, and where the wheel was
   std::map<int, double> zero_rad_;
-  int direction_ = 1;
   HobCourse course_;
 };
 
 /// The course of a record. The hob's angle is what each sample is known by: with it the table's follows.
 ///
 /// @param path  Its effects are led along the course, out to where the table turned round behind each pass.
-HobCourse FollowCourse(const std::vector<Reading>& record, HobPath& path) {
-  return CourseMaker(record, path).Make();
+HobCourse FollowCourse(const std::vector<Reading>& record, HobPath& path, double half_play_rad) {
+  return CourseMaker(record, path, half_play_rad).Make();
 }
 
 using units::arcsec, units::um;
@@ -181,7 +206,7 @@ class HobFollow : public PointwiseFollow<HobExtra> {
         path_(scenario()),
         train_(path_.train()),
         encoders_(path_.actual(), path_.HobSignals()),
-        course_(FollowCourse(record(), path_)) {
+        course_(FollowCourse(record(), path_, train_.half_play_rad())) {
     for (const Reading& r : record()) {
       if (std::isfinite(r.head_rad)) rings_.try_emplace(r.head_rad, encoders_.TableRing(r.head_rad));
     }
@@ -210,7 +235,7 @@ class HobFollow : public PointwiseFollow<HobExtra> {
     const double hob_rad = encoders_.Hob_rad(hob_shown_rad) + stop.zero_rad / ratio;
     const double velocity_rad_s = ratio * stop.hob_speed_rad_s;
     const double table_rad =
-        train_.Table_rad(hob_rad, stop.hob_speed_rad_s, stop.direction) + extra.transmission_rad;
+        train_.Table_rad(hob_rad, stop.hob_speed_rad_s, stop.side) + extra.transmission_rad;
     const double scale_rad = rings_.at(r.head_rad).Scale_rad(table_rad);
     const double table_shown_rad =
         encoders_.TableShown_rad(scale_rad, r.head_rad) + stop.added.table_encoder_rad + extra.table_encoder_rad;
