@@ -110,7 +110,7 @@ std::vector<EffectEntry> MotionEffects() {
        "device that counts too much or too little per turn",
        {},
        {Signed("ratio", "1", 1e-5, 1.0, "measured = reference * (1 + ratio)"),
-        Signed("curvature", "1", 0.0, 100.0, "share of a quadratic part: by how much the ratio grows in a turn")}},
+        Signed("curvature", "1", 0.0, 1e5, "share of a quadratic part: by how much the ratio grows in a turn")}},
   };
 }
 

@@ -300,6 +300,10 @@ void AddWarmUp(const Context& context, Candidates& named) {
 void AddTemperature(const Context& context, Candidates& named) {
   if (context->above_K.size() == 0 || Range(context->above_K) == 0.0) return;
   const auto add = [&](const std::string& effect, const std::string& parameter, const Eigen::VectorXd& of) {
+    if (!context->has_clock) {
+      named.Add(Shown(effect), {parameter}, of.cwiseProduct(context->above_K));
+      return;
+    }
     named.AddOver(Shown(effect), {parameter}, {named.catalogue().ShapeOf(effect, "lag", TemperatureLags_s())},
                   [context, of](const Eigen::VectorXd& lag_s) {
                     return Eigen::MatrixXd(of.cwiseProduct(model::Lagged(context->since_start_s, context->above_K, lag_s[0])));

@@ -107,7 +107,7 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
     std::erase_if(families, [](const Family& family) { return family.effect == "transition" || family.effect == "reversal" || family.effect == "pass"; });
   // Without a clock nothing has a frequency or a time constant.
   if (!c.has_clock)
-    std::erase_if(families, [](const Family& family) { return family.effect == "tone" || family.effect == "restart"; });
+    std::erase_if(families, [](const Family& family) { return family.effect == "tone" || family.effect == "restart" || family.effect == "temperature rate"; });
   // Nor has anything a course in time that goes with the angle.
   if (!c.has_clock && unknown::TimeFollowsAngle(design))
     std::erase_if(families, [](const Family& family) { return family.effect == "wander"; });
