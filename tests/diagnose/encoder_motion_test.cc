@@ -82,7 +82,22 @@ const Row kMotion[] = {
      },
      {Named("latency"), Named("scale"), NotNamed({"hysteresis", "backlash"}),
       Size("latency", "delay", 0.025, 0.02 * 0.025), Size("scale", "ratio", -0.21, 0.02)},
-     {84}}};
+     {84}},
+    // An arm that sags with the cosine of its angle, about the level: hardly any of it is a scale, all is bend, which takes nothing
+    // from the friction beside it.
+    {"TheBendOfAScaleThatIsNoneElseTakesNothingFromAHysteresis",
+     [](unsigned seed) {
+       const Swing arm{120.0, 20.0, -50.0};
+       double last_deg = arm.At(0.0), settled = -1.0;
+       return Swung(arm, 0.02, 60.0, 0.05, 0.02, seed, [&](double t_s) {
+         const double at_deg = arm.At(t_s), way_deg = at_deg - last_deg;
+         settled += (std::copysign(1.0, way_deg) - settled) * (1.0 - std::exp(-std::abs(way_deg) / 2.4));
+         last_deg = at_deg;
+         return at_deg - 0.208 * settled + 0.83 * std::cos((at_deg - 2.0) * units::deg);
+       });
+     },
+     {Found("hysteresis", "lag", 0.208), Found("hysteresis", "settles_over", 2.4), NotNamed({"backlash"})},
+     {85, 86}}};
 INSTANTIATE_TEST_SUITE_P(Motion, EncoderAnswer, testing::ValuesIn(kMotion), NameOfRow);
 
 // Counters that lose counts, written down as they count.
