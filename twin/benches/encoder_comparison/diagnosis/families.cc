@@ -127,6 +127,8 @@ std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::s
       TimeSeriesOf(encoder.run.schedule, std::vector<int>(encoder.context.reading.size(), 0), 1);
   std::vector<Family> families = NamedFamilies(context, series, plausible_rad);
   std::erase_if(families, [&](const Family& family) { return Has(excluded, family.effect); });
+  if (Has(excluded, kGradualPlay))
+    std::erase_if(families, [](const Family& f) { return f.effect == "backlash" && std::ranges::find(f.shapes, "crossed_over", &Shape::name) != f.shapes.end(); });
   if (IsNoClock(encoder))
     std::erase_if(families, [](const Family& family) { return family.effect == "clock_rate"; });
   // One mounting cannot tell a fault of the device from the same order of the reference.

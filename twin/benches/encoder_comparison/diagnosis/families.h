@@ -20,9 +20,12 @@ namespace twinbench::diagnose::encoder {
 ///
 /// Prior sizes: a trace of 0.01 deg rms, or three times the noise if that is more.
 ///
-/// @param excluded  Effects taken out of the catalogue. The unknown ones are the same whatever is excluded,
+/// @param excluded  Effects taken out of the catalogue, or `kGradualPlay`. The unknown ones are the same whatever is excluded,
 /// but for "harmonic": whole orders that all have a name.
 std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::string>& excluded = {});
+
+/// A backlash that is crossed over another way than its width.
+constexpr const char* kGradualPlay = "gradual backlash";
 
 /// The closest usual distance of neighbouring readings of any pass; 0 if all are at rest.
 double FinestSpacing_rad(const SignalContext& context);

@@ -62,15 +62,19 @@ bool HasCrossedTooSoon(const LargeCauses& large) {
   });
 }
 
-/// A hysteresis that does not end within the way that the shaft goes is a scale.
-bool SettlesBeyondTravel(const LargeCauses& large) {
-  constexpr double kOfTravel = 0.7;
-  const double longest_rad = kOfTravel * RangeOfSetUp_rad(large.first->encoder.context);
+/// Whether a hysteresis, or that and play which is crossed gradually, takes more than that part of the way that the shaft goes.
+bool LoopTakes(double part, bool also_play, const LargeCauses& large) {
+  const double longest_rad = part * RangeOfSetUp_rad(large.first->encoder.context);
   const Searched& last = large.Last();
+  const auto is_long = [&](const std::string& effect, const auto& way_of) {
+    return (effect == "hysteresis" && way_of("settles_over") > longest_rad) ||
+           (also_play && effect == "backlash" && way_of("crossed_over") > longest_rad);
+  };
   return std::ranges::any_of(large.causes, [&](const LargeCause& cause) {
-    return cause.effect.name == "hysteresis" && cause.effect.parameters.at("settles_over") > longest_rad;
+    return is_long(cause.effect.name, [&](const char* way) { return cause.effect.parameters.at(way); });
   }) || std::ranges::any_of(last.analysis.found.terms, [&](const Term& term) {
-    return last.families[static_cast<std::size_t>(term.family)].effect == "hysteresis" && term.shape[0] > longest_rad;
+    const Family& family = last.families[static_cast<std::size_t>(term.family)];
+    return is_long(family.effect, [&](const char* way) { return family.shapes.front().name == way ? term.shape[0] : 0.0; });
   });
 }
 
@@ -78,10 +82,12 @@ bool SettlesBeyondTravel(const LargeCauses& large) {
 LargeCauses OrWithoutLoops(LargeCauses found, const std::vector<Reading>& readings, const Scenario& scenario,
                            DiagnoseOptions options, const model::FollowMaker& follow) {
   constexpr double kNearly = 1.02, kRoughly = 1.5;
-  const bool is_endless = SettlesBeyondTravel(found);
+  constexpr double kOfTravel = 0.7;  // a hysteresis that does not end within it is a scale
+  constexpr double kLong = 0.1;      // over such a way a loop of stops may be play and a curve
+  const bool is_endless = LoopTakes(kOfTravel, false, found);
   if (!found.first->encoder.context.Moves()) {
-    if (!is_endless) return found;
-    options.excluded.emplace_back("hysteresis");
+    if (LoopsIn(found) < 2 && !LoopTakes(kLong, true, found)) return found;
+    options.excluded.insert(options.excluded.end(), {"hysteresis", kGradualPlay});
   } else if (LoopsIn(found) == 0) {
     return found;
   } else {
