@@ -19,8 +19,8 @@ void AddBehindReversals(Collector& collect, const Eigen::VectorXd& held) {
   using units::deg;
   const Design& d = collect.design();
   if (d.travel_rad.size() == 0) return;
-  // What decays over more than the way behind a reversal is a line.
-  const double longest_rad = std::min(360.0 * deg, d.travel_rad.maxCoeff()), shortest_rad = std::min(2.0 * deg, 0.1 * longest_rad);
+  constexpr double kOfWay = 0.3;  // behind a reversal; what decays over more is a line and an offset, like a scale and play together
+  const double longest_rad = std::min(360.0 * deg, kOfWay * d.travel_rad.maxCoeff()), shortest_rad = std::min(2.0 * deg, 0.1 * longest_rad);
   if (!(longest_rad > 0.0)) return;
   const Shape decay{"decays_over", "deg", deg, 0.25 * shortest_rad, 2.0 * longest_rad, Ratios(shortest_rad, longest_rad, 14)};
   const auto left = [held, travel_rad = d.travel_rad](const Eigen::VectorXd& way_rad) -> Eigen::VectorXd {
