@@ -161,6 +161,13 @@ const Row kPositioning[] = {
     OfCourse("ASlipIsOneWhereItIsSuddenAndSmall", {0.0, 2.0, 600, 1, 0.5, "sweep"}, 0.004,
              [](const Place& at) { return at.stop < 350 ? 0.0 : 0.006; },
              {Named("slip", 0.5), Size("slip", "step", 0.006, 0.0015)}, {10, 11, 12}),
+    OfCourse("ABumpIsNoTwoSlips", {0.0, 2.4, 124, 1, 0.5, "stops"}, 0.15,
+             [](const Place& at) { return 1e-4 * at.deg * (300.0 - at.deg) + 0.9 * std::exp(-std::pow((at.deg - 140.0) / 8.0, 2)); },
+             {Named("scale"), NotNamed({"slip"}, 0.0), Says(HasSubstr("bump from reading 5"))}, {13, 14}),
+    // Behind a reversal a loop that takes half of the axis is like a line and a step of the direction.
+    OfCourse("PlayBesideAScaleThatBendsIsNoLoopOverHalfTheAxis", {0.0, 55.5, 10, 10, 0.5, "stops"}, 0.0005,
+             [](const Place& at) { return -0.0038 * at.direction - 4.42e-5 * at.deg + 5.56e-8 * at.deg * at.deg; },
+             {Named("scale"), Size("backlash", "width", 0.0076, 0.0003), NotNamed({"hysteresis"}, 0.0)}, {1, 2, 3, 4, 5, 6, 7, 8}),
     {"TargetsInAnyOrderShowAScale",
      [](unsigned seed) { return InAnyOrder(0.012, seed); },
      {Found("scale", "ratio", 0.012, 1e-3), kSilentAgain},

@@ -48,10 +48,18 @@ Count CountOf(const std::vector<Step>& steps) {
   return {products / squares, 1.0 / std::sqrt(squares)};
 }
 
+/// One that is taken back soon: of the angle as well as of the time, if it is passed once.
+bool IsBump(const std::vector<Step>& steps, int readings) {
+  constexpr double kSoon = 0.15;
+  return steps.size() == 2 && steps[0].size * steps[1].size < 0.0 &&
+         std::abs(steps[0].at_reading - steps[1].at_reading) < kSoon * readings;
+}
+
 /// In counts of the smallest. @return false if they are not: two at least have to be equal, and each has to be
-/// known well enough for a whole number to mean something.
-bool AreCounts(std::vector<Step>& steps) {
-  constexpr double kSharp = 0.1, kRounding = 0.01;  // of a count
+/// known well enough for a whole number to mean something, which of a bump is less.
+bool AreCounts(std::vector<Step>& steps, bool is_bump) {
+  const double sharp = is_bump ? 0.3 : 0.1;
+  constexpr double kRounding = 0.01;  // of a count
   constexpr int kMost = 8;
   if (steps.size() < 2) return false;
   const auto size_of = [](const Step& s) { return std::abs(s.size); };
@@ -61,7 +69,7 @@ bool AreCounts(std::vector<Step>& steps) {
   const Count count = CountOf(steps);
   return std::ranges::all_of(steps, [&](const Step& s) {
     const double apart = std::abs(s.size - s.counts * count.size);
-    return std::abs(s.counts) <= kMost && s.u < kSharp * count.size &&
+    return std::abs(s.counts) <= kMost && s.u < sharp * count.size &&
            apart < tuning::kHeadline * s.u + kRounding * count.size;
   });
 }
@@ -73,6 +81,17 @@ std::string Words(const std::vector<Step>& steps, const Count& count, const Line
       "lost counts: {} steps of one size at readings {}, function of time, on angle, amplitude {:.3g} "
       "± {:.1g} {}",
       steps.size(), at, count.size / run.to_SI, count.u / run.to_SI, run.unit);
+}
+
+std::string WordsOfBump(const std::vector<Step>& steps, const Count& count, const LinearRun& run) {
+  const std::vector<int>& numbers = run.schedule.reading;
+  const auto at = [&](int reading) {
+    const auto row = std::ranges::lower_bound(numbers, reading) - numbers.begin();
+    return run.schedule.reference_rad[std::min<Eigen::Index>(row, run.Rows() - 1)] / run.to_SI;
+  };
+  const int first = steps[0].at_reading, last = steps[1].at_reading - 1;
+  return fmt::format("bump from reading {} to {}, which is from {:.4g} to {:.4g} {}, function of angle or time, on angle, amplitude {:.3g} ± {:.1g} {}",
+                     first, last, at(first), at(last), run.unit, steps[0].counts * count.size / run.to_SI, count.u / run.to_SI, run.unit);
 }
 
 bool IsSlip(const Accepted& accepted) {
@@ -105,7 +124,7 @@ Accepted Together(const std::vector<Accepted>& accepted, const std::vector<Step>
 void TellEqualSteps(DiagnosisRun& result) {
   Diagnosis& d = result.diagnosis;
   std::vector<Step> steps = StepsAmong(d.causes);
-  if (std::ranges::count_if(result.accepted, IsSlip) != std::ssize(steps) || !AreCounts(steps)) return;
+  if (std::ranges::count_if(result.accepted, IsSlip) != std::ssize(steps) || !AreCounts(steps, IsBump(steps, result.run.Rows()))) return;
   std::ranges::sort(steps, {}, &Step::at_reading);
   const Count count = CountOf(steps);
   Accepted together = Together(result.accepted, steps, count, result.run);
@@ -120,7 +139,7 @@ void TellEqualSteps(DiagnosisRun& result) {
   if (is_most || d.causes.empty()) d.verdict = Verdict::kUnknown;
   d.unknown.probability = tuning::kListed;
   d.unknown.signature =
-      Words(steps, count, result.run) + (d.unknown.signature.empty() ? "" : " | " + d.unknown.signature);
+      (IsBump(steps, result.run.Rows()) ? WordsOfBump : Words)(steps, count, result.run) + (d.unknown.signature.empty() ? "" : " | " + d.unknown.signature);
 }
 
 }  // namespace twinbench::diagnose::encoder
