@@ -15,15 +15,15 @@ namespace {
 /// Whole orders that no unknown takes up.
 void AddHarmonics(Collector& collect, const Angle& angle) {
   if (angle.first_unfree < 1 || angle.last_order < angle.first_unfree) return;
-  const int first = angle.first_unfree, count = angle.last_order - first + 1;
-  collect.AddWaves(angle.harmonics, {angle.rad, static_cast<double>(first), 1.0, NumbersTo(count)},
-                   [first, name = angle.name](int g) {
-                     return fmt::format("harmonic of order {} synchronous with {}, same in both directions", first + g,
-                                        name);
-                   });
+  std::vector<int> orders = angle.orders;
+  for (int k = angle.first_unfree; angle.orders.empty() && k <= angle.last_order; ++k) orders.push_back(k);
+  const auto order_of = [orders](int g) { return orders[static_cast<std::size_t>(g)]; };
+  collect.AddWaves(angle.harmonics, {angle.rad, 0.0, 1.0, orders}, [order_of, name = angle.name](int g) {
+    return fmt::format("harmonic of order {} synchronous with {}, same in both directions", order_of(g), name);
+  });
   if (!angle.by.empty())
-    collect.Are([first, by = angle.by](const Eigen::VectorXd&, int g) {
-      return WaveOf(SignalOf("harmonic", by, {{"order", first + g}}));
+    collect.Are([order_of, by = angle.by](const Eigen::VectorXd&, int g) {
+      return WaveOf(SignalOf("harmonic", by, {{"order", order_of(g)}}));
     });
 }
 

@@ -31,6 +31,7 @@ struct Angle {
   std::string by;                   // name of the angle in a signal of the twin; empty: it has none
   bool is_turned_by_motion = true;  // false: direction and speed are of another angle
   int first_by_label = 1;           // the first order that is more than a piece of a curve: one that may differ from pass to pass
+  std::vector<int> orders = {};     // that are tried, ascending; empty: all from `first_unfree` to `last_order`
 };
 
 /// All that generic shapes depend on. Signals have one entry a sample; what a bench has not is empty.

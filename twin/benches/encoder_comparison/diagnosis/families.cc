@@ -105,16 +105,28 @@ double OrdersApart(const SignalContext& context) {
   return std::max(1.0, kOfPeriod * units::turn / RangeOfSetUp_rad(context));
 }
 
+namespace {
+
+constexpr int kMostTeeth = 720;  // teeth of a worm wheel, poles of a motor
+
+}  // namespace
+
+std::vector<int> WholeOrders(const SignalContext& context, int first) {
+  const int last = LargestOrder(context), step = std::max(1, static_cast<int>(0.5 * OrdersApart(context)));
+  std::vector<int> orders;
+  for (int k = std::max(first, LeastOrder(context)); k <= last; k += k < kMostTeeth ? 1 : step) orders.push_back(k);
+  return orders;
+}
+
 int LargestOrder(const SignalContext& context) {
-  // Teeth of a worm wheel, poles of a motor; of a part of a turn as many that it tells apart, which reach as much
-  // farther.
-  constexpr double kMost = 720.0, kLeastPart = 0.05;
+  // Of a part of a turn as many that it tells apart, which reach as much farther.
+  constexpr double kLeastPart = 0.05;
   const double range_rad = context.reference_rad.maxCoeff() - context.reference_rad.minCoeff();
   const double part = std::clamp(range_rad / units::turn, kLeastPart, 1.0);
   constexpr double kDimmed =
       6.4;  // times as wide a step has the Nyquist order that means over it lower by a hundredth
   const double step_rad = (context.has_means ? kDimmed : 1.0) * FinestSpacing_rad(context);
-  const int most = static_cast<int>(kMost / part), by_spacing = model::HighestOrder(step_rad, most);
+  const int most = static_cast<int>(kMostTeeth / part), by_spacing = model::HighestOrder(step_rad, most);
   // On the move the reference's own steps would look like such an order.
   const bool has_more = part == 1.0 && !context.Moves() && by_spacing > 0 && by_spacing < most;
   return has_more ? LargestToldApart(context.reference_rad, by_spacing, most) : by_spacing;

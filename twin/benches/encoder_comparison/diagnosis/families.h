@@ -44,4 +44,8 @@ double OrdersApart(const SignalContext& context);
 /// lower by no more than a hundredth.
 int LargestOrder(const SignalContext& context);
 
+/// Whole orders from `first` on that the run can show, ascending. Of those that are more than a wheel or a motor has, over a part of
+/// a turn that does not tell neighbours apart, every few.
+std::vector<int> WholeOrders(const SignalContext& context, int first);
+
 }  // namespace twinbench::diagnose::encoder

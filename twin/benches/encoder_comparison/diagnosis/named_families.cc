@@ -15,12 +15,6 @@ namespace {
 
 using model::Wave;
 
-std::vector<double> WholeOrders(const SignalContext& c, int first, int last) {
-  std::vector<double> orders;
-  for (int k = std::max(first, LeastOrder(c)); k <= last; ++k) orders.push_back(k);
-  return orders;
-}
-
 /// How a cause shows: in the device's angle, or with the other sign in the reference's.
 Showing Shown(const std::string& effect, double sign = 1.0) {
   return {effect, "", Eigen::MatrixXd::Constant(1, 1, sign)};
@@ -28,12 +22,10 @@ Showing Shown(const std::string& effect, double sign = 1.0) {
 
 /// Waves of `orders`, each `factor` times a turn, by an angle.
 void AddOrders(Candidates& named, const Showing& showing, const Eigen::VectorXd& angle_rad,
-               const std::vector<double>& orders, const std::string& order, double factor = 1.0) {
-  const auto count = static_cast<int>(std::ssize(orders));
-  if (count == 0) return;
-  const WaveSeries waves{factor * angle_rad, orders.front(), count > 1 ? orders[1] - orders[0] : 1.0,
-                         NumbersTo(count)};
-  named.AddOrders(showing, BaseOf(waves, 1, {}), order, orders);
+               const std::vector<int>& orders, const std::string& order, double factor = 1.0) {
+  if (orders.empty()) return;
+  const WaveSeries waves{factor * angle_rad, 0.0, 1.0, orders};
+  named.AddOrders(showing, BaseOf(waves, 1, {}), order, {orders.begin(), orders.end()});
 }
 
 /// True if the device was turned on the shaft between set-ups: only then is its angle not the reference's.
@@ -43,18 +35,17 @@ bool WasTurned(const SignalContext& c) {
 }
 
 void AddPeriodic(const SignalContext& c, Candidates& named) {
-  const int last = LargestOrder(c);
   const int least = LeastOrder(c);
-  if (least <= 1) AddOrders(named, Shown("eccentricity"), c.device_rad, {1.0}, "");
-  if (least <= 2) AddOrders(named, Shown("ellipticity"), c.device_rad, {2.0}, "");
-  AddOrders(named, Shown("periodic"), c.device_rad, WholeOrders(c, 3, last), "order");
+  if (least <= 1) AddOrders(named, Shown("eccentricity"), c.device_rad, {1}, "");
+  if (least <= 2) AddOrders(named, Shown("ellipticity"), c.device_rad, {2}, "");
+  AddOrders(named, Shown("periodic"), c.device_rad, WholeOrders(c, 3), "order");
   if (c.device.teeth > 0)
-    AddOrders(named, Shown("gear_mesh"), c.device_rad, {static_cast<double>(c.device.teeth)}, "teeth");
+    AddOrders(named, Shown("gear_mesh"), c.device_rad, {c.device.teeth}, "teeth");
   if (c.device.lines > 0)
-    AddOrders(named, Shown("interpolation"), c.device_rad, std::vector{1.0, 2.0, 3.0, 4.0}, "order",
+    AddOrders(named, Shown("interpolation"), c.device_rad, std::vector{1, 2, 3, 4}, "order",
               c.device.lines);
   if (WasTurned(c))
-    AddOrders(named, Shown("reference_fault", -1.0), c.reference_rad, WholeOrders(c, 1, last), "order");
+    AddOrders(named, Shown("reference_fault", -1.0), c.reference_rad, WholeOrders(c, 1), "order");
 }
 
 /// Twice per period, half the fault; its phase says which fault it is, if the zero of the signals is known. If it

@@ -80,7 +80,8 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   design.course = encoder.run.schedule;
   design.channels = encoder.run.channels;
   design.places = {{"angle", "angle", Eigen::MatrixXd::Ones(1, 1)}};
-  design.angles = {{"reference angle", c.device_rad, LargestOrder(c), LeastOrder(c), "harmonic", "device", true, LeastOrder(c)}};
+  design.angles = {{"reference angle", c.device_rad, LargestOrder(c), LeastOrder(c), "harmonic", "device", true, LeastOrder(c),
+                    WholeOrders(c, LeastOrder(c))}};
   design.continued_rad = c.device_rad;
   design.moved = Eigen::VectorXd::Ones(c.Readings());
   design.senses = Senses(c);
