@@ -54,6 +54,13 @@ TEST(Folds, OfASinglePassAreBlocksOfTime) {
   EXPECT_NE(folds.of_reading[5], folds.of_reading[6]);
 }
 
+TEST(Folds, OfManyPassesLeaveOutSeveralAtATime) {
+  const std::vector<int> passes(47, 1);
+  const Folds folds = MakeFolds(MakeRing({4, {0}, passes, 0}).schedule);
+  EXPECT_EQ(folds.count, 20);
+  EXPECT_EQ(folds.of_reading.front(), folds.of_reading[20 * 4]);
+}
+
 TEST(MeasureGain, WithoutCausesIsNothing) {
   const LinearRun run = RingWith(1, 0.0, Direction);
   const Gain gain = GainOf(run, {});

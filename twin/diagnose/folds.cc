@@ -12,6 +12,7 @@ namespace twinbench::diagnose {
 namespace {
 
 constexpr int kBlockReadings = 6;
+constexpr int kMostFolds = 20;  // more passes are left out several at a time
 constexpr int kTimeFolds = 4;  // of a run without repeated passes
 constexpr int kShortSweep = kTimeFolds * kBlockReadings;
 
@@ -74,9 +75,9 @@ Folds MakeFolds(const Schedule& s) {
     if (s.phase[At(i)] != Phase::kFullCircle) continue;
     const std::vector<int>& known = passes.at(s.setup[At(i)]);
     if (known.size() < 2) continue;
-    const auto place = std::find(known.begin(), known.end(), s.pass[At(i)]) - known.begin();
-    folds.of_reading[At(i)] = static_cast<int>(place);
-    folds.count = std::max(folds.count, static_cast<int>(place) + 1);
+    const int place = static_cast<int>(std::find(known.begin(), known.end(), s.pass[At(i)]) - known.begin()) % kMostFolds;
+    folds.of_reading[At(i)] = place;
+    folds.count = std::max(folds.count, place + 1);
   }
   if (folds.count == 0) folds.count = kTimeFolds;
   AddFoldsOfTime(s, folds);
