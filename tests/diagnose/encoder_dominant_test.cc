@@ -105,6 +105,22 @@ const Row kDominant[] = {
              },
              {Order(72, 0.1 / std::sqrt(2.0), 0.003), Says(HasSubstr("direction times order 72")), kSilentAgain},
              {5}),
+    // A dish that follows a satellite over its highest point: the azimuth is commanded 5 deg/s at most, for a moment, and reaches 4.7.
+    {"ALimitThatIsReachedForAMomentIsASpeedLimit",
+     [](unsigned seed) {
+       constexpr double kEvery_s = 0.2, kMost_deg_s = 4.7;
+       Noise noise_deg(0.0005, seed);
+       Record record;
+       double at_deg = kNaN;
+       for (int k = 0; k < 2000; ++k) {
+         const double asked_deg = 60.0 * std::atan((kEvery_s * k - 200.0) / 12.0);
+         at_deg = std::isnan(at_deg) ? asked_deg : at_deg + std::min(asked_deg - at_deg, kMost_deg_s * kEvery_s);
+         record.Add(kEvery_s * k, asked_deg, at_deg + noise_deg(), 1, 0);
+       }
+       return record;
+     },
+     {Is(Verdict::kUnknown), Says(StartsWith("speed limit of 4.7")), HasCauses(0)},
+     {3}},
     {"AServoIsLateAndErrsByItsAcceleration",  // measured(t) = r - tau v - kappa a of r = R / 2 (1 - cos w t)
      [](unsigned seed) {
        const double w = 2.0 * units::kPi / kLateSwing.period_s;

@@ -94,8 +94,10 @@ std::vector<double> PassedAgain(Passing passing, const Eigen::VectorXd& device_r
 std::vector<Family> LostCountFamilies(const SignalContext& context, const unknown::Design& design) {
   const Eigen::VectorXd device_rad = context.device_rad;
   unknown::Collector collect(std::make_shared<const unknown::Design>(design));
+  const bool has_turn = device_rad.maxCoeff() - device_rad.minCoeff() > units::turn;
   for (const Passing passing :
        {Passing::kLostForwards, Passing::kLostBackwards, Passing::kComesBack, Passing::kCatchesUp}) {
+    if (passing == Passing::kCatchesUp && !has_turn) continue;  // of less than a turn nobody knows whether it is whole
     const std::vector<double> spots_rad = PassedAgain(passing, device_rad, Spots_rad(device_rad));
     const auto spot_rad = [spots_rad](int g) { return spots_rad[static_cast<std::size_t>(g)]; };
     collect.Add(

@@ -117,12 +117,12 @@ Fit BestFrom(const Commanded& all, std::vector<Fit> starts) {
   return std::ranges::min(starts);
 }
 
-/// Shares of the greatest speed that was commanded.
+/// Shares of the greatest speed that was commanded: a limit may be reached for a moment, just below it.
 std::vector<double> SpeedsOf(const Commanded& all) {
   double most = 0.0;
   for (Eigen::Index i = 1; i < all.Readings(); ++i)
     most = std::max(most, std::abs(all.command_rad[i] - all.command_rad[i - 1]) / (all.time_s[i] - all.time_s[i - 1]));
-  std::vector<double> speeds;
+  std::vector<double> speeds = {0.98 * most, 0.95 * most, 0.9 * most, 0.85 * most};
   for (double share = 1.0; share > 0.05; share *= 0.8) speeds.push_back(share * most);
   return speeds;
 }
@@ -147,7 +147,8 @@ std::vector<Reading> Beside(std::vector<Reading> used, const Eigen::VectorXd& de
 std::optional<SpeedLimit> SpeedLimitOf(const std::vector<Reading>& readings, const Scenario& scenario,
                                        const model::FollowMaker& follow) {
   constexpr Eigen::Index kFewest = 50;
-  constexpr double kOfDelay = 0.1, kOfError = 0.05, kLimited = 0.05;  // of what each leaves; of the readings
+  constexpr double kOfDelay = 0.1, kOfError = 0.05, kLimited = 0.01;  // of what each leaves; of the readings
+  constexpr int kFewestLimited = 12;
   constexpr double kWorthMoving = 0.7;  // between the speeds that are tried first much is left of a limit, too
   if (!HasClock(readings)) return {};
   SpeedLimit found{BuildRun(readings, scenario, follow), {}, {}};
@@ -161,7 +162,7 @@ std::optional<SpeedLimit> SpeedLimitOf(const std::vector<Reading>& readings, con
   int steps = 0;
   const Eigen::VectorXd allowed_rad = all.Followed(limited, steps);
   const double left = Commanded::Variance(all.device_rad - allowed_rad);
-  if (steps < kLimited * static_cast<double>(all.Readings())) return {};
+  if (steps < std::max<double>(kFewestLimited, kLimited * static_cast<double>(all.Readings()))) return {};
   if (left > kOfError * Commanded::Variance(run.residual)) return {};
   if (left > kOfDelay * BestFrom(all, delays).first) return {};
   found.allowed = Beside(found.asked.used, allowed_rad);
