@@ -174,5 +174,24 @@ TEST(EncoderExactness, WhatIsComputedHasNoCause) {
   EXPECT_THAT(answer.run.diagnosis.notes, testing::Contains(HasSubstr("computed")));
 }
 
+/// A degree of this axis is a millimetre.
+TEST(EncoderExactness, OfALinearAxisIsToldInLengths) {
+  constexpr double kRate_mm_h = 0.6;
+  Noise noise_mm(0.002, 5);
+  Record record;
+  for (int k = 0; k < 400; ++k) {
+    const double t_s = 5.0 * k, at_mm = 1.8 * (k < 200 ? k : 399 - k);
+    record.Add(t_s, at_mm, at_mm + 0.05 * std::cos(9.0 * at_mm * units::deg) + kRate_mm_h * t_s / 3600.0 + noise_mm(), k < 200 ? 1 : -1, k < 200 ? 0 : 1);
+  }
+  Scenario believed = record.Believed();
+  EncoderOf(believed).device.turn_m = 0.36;
+  const Diagnosis found = Diagnosed(record, believed).diagnosis;
+  const auto drift = std::ranges::find(found.causes, "drift", &Cause::effect);
+  ASSERT_NE(drift, found.causes.end());
+  EXPECT_EQ(drift->parameters.front().unit, "mm_per_h");
+  EXPECT_NEAR(drift->parameters.front().value / drift->parameters.front().to_SI, kRate_mm_h, 0.02);
+  EXPECT_THAT(found.notes, testing::Contains(HasSubstr("a period of 40 mm")));
+}
+
 }  // namespace
 }  // namespace twinbench::diagnose::encoder

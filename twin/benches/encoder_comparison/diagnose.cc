@@ -28,8 +28,9 @@ namespace {
 
 constexpr std::size_t kEnough = 2500;  // readings: what has many causes takes ten seconds
 
-/// Sizes of a linear axis are told as lengths; what a cause's wave or way is called stays.
-void TellLengths(const AxisUnit& unit, diagnose::Diagnosis& diagnosis) {
+/// Sizes of a linear axis are told as lengths; what a cause's wave or way is called stays, and a wave's period is a note.
+/// @param turn_m  The way that counts as a turn.
+void TellLengths(const AxisUnit& unit, double turn_m, diagnose::Diagnosis& diagnosis) {
   const auto tell = [&unit](diagnose::ParameterEstimate& p) {
     if (!p.unit.starts_with("deg") || p.name == "phase" || p.name == "zero") return;
     p.unit.replace(0, 3, unit.name);
@@ -37,6 +38,10 @@ void TellLengths(const AxisUnit& unit, diagnose::Diagnosis& diagnosis) {
   };
   for (diagnose::Cause& cause : diagnosis.causes) std::ranges::for_each(cause.parameters, tell);
   for (diagnose::Detectable& seen : diagnosis.detectable) tell(seen.smallest);
+  for (const diagnose::Cause& cause : diagnosis.causes)
+    for (const diagnose::ParameterEstimate& p : cause.parameters)
+      if (p.name == "order")
+        diagnosis.notes.push_back(fmt::format("{} of order {:.6g}: a period of {:.4g} mm", cause.effect, p.value, turn_m / p.value / units::mm));
 }
 
 /// Times of lines as the comparison of angles that they come to.
@@ -114,7 +119,7 @@ diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario
   result.diagnosis.harmonics =
       diagnose::encoder::HarmonicTable(large.first->encoder, {searched.encoder.run.sigma, {}});
   const DeviceSettings& device = EncoderOf(scenario).device;
-  if (device.turn_m > 0.0) TellLengths(CoarseUnit(device), result.diagnosis);
+  if (device.turn_m > 0.0) TellLengths(CoarseUnit(device), device.turn_m, result.diagnosis);
   return result;
 }
 
