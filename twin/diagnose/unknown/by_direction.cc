@@ -19,8 +19,10 @@ void AddBehindReversals(Collector& collect, const Eigen::VectorXd& held) {
   using units::deg;
   const Design& d = collect.design();
   if (d.travel_rad.size() == 0) return;
-  constexpr double kOfWay = 0.3;  // behind a reversal; what decays over more is a line and an offset, like a scale and play together
-  const double longest_rad = std::min(360.0 * deg, kOfWay * d.travel_rad.maxCoeff()), shortest_rad = std::min(2.0 * deg, 0.1 * longest_rad);
+  // What decays over more than the way behind a reversal is a line; of places at rest, which all passes go to, over less already a
+  // line and an offset, like a scale and play together.
+  const bool is_at_rest = d.velocity.size() == 0 || d.velocity.isZero();
+  const double longest_rad = std::min(360.0 * deg, (is_at_rest ? 0.3 : 1.0) * d.travel_rad.maxCoeff()), shortest_rad = std::min(2.0 * deg, 0.1 * longest_rad);
   if (!(longest_rad > 0.0)) return;
   const Shape decay{"decays_over", "deg", deg, 0.25 * shortest_rad, 2.0 * longest_rad, Ratios(shortest_rad, longest_rad, 14)};
   const auto left = [held, travel_rad = d.travel_rad](const Eigen::VectorXd& way_rad) -> Eigen::VectorXd {
