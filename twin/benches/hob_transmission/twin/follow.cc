@@ -100,23 +100,30 @@ class CourseMaker {
     const double v_a = Velocity_rad_s(last), v_b = Velocity_rad_s(first);
     if (a.pass == b.pass || !(v_a * v_b < 0.0)) return;
     const double waited_s = procedure_.rest_s + (a.setup != b.setup ? procedure_.remount_s : 0.0);
-    const double moved_s = ToSeconds(b.time - a.time) - waited_s, ramp_s = std::min(procedure_.ramp_s, std::max(0.0, 0.5 * moved_s));
+    const double moved_s = ToSeconds(b.time - a.time) - waited_s;
+    // A log that is read all the way has no ramps beyond it; where no time is known it may have.
+    const double ramp_s = moved_s > 0.0 ? std::min(procedure_.ramp_s, 0.5 * moved_s) : procedure_.ramp_s;
     const double steady_s = moved_s - 2.0 * ramp_s;
     const double way_rad = Table_rad(b) - Table_rad(a) - 0.5 * ramp_s * (v_a + v_b);
     const double on_s = std::clamp((way_rad - v_b * steady_s) / (v_a - v_b), 0.0, std::max(0.0, steady_s));
     const double turned_rad = Table_rad(a) + v_a * (on_s + 0.5 * ramp_s);
-    if (!std::isfinite(turned_rad)) return;
-    path_.Travel(turned_rad);
-    if (a.setup == b.setup) Cross(turned_rad - Table_rad(a));
-    driven_rad_ = Ratio() * a.reference_rad + turned_rad - Table_rad(a);
+    if (std::isfinite(turned_rad)) path_.Travel(turned_rad);
   }
 
-  /// From the sample before, or from where it turned round; where a mounting begins the wheel drags already.
+  /// Whether it was read all the way from the sample before, at the usual distance in time.
+  bool IsContinued(std::size_t i) const {
+    constexpr double kUsual = 3.0;
+    if (i == 0 || record_[i].setup != record_[i - 1].setup) return false;
+    if (record_[i].pass == record_[i - 1].pass) return true;
+    const double step_s = ToSeconds(record_[i].time - record_[i - 1].time);
+    return i > 1 && step_s > 0.0 && step_s < kUsual * ToSeconds(record_[i - 1].time - record_[i - 2].time);
+  }
+
+  /// From the sample before; where a pass begins that was not read all the way to it the wheel drags already.
   void Drive(std::size_t i) {
     const Reading& r = record_[i];
     const double at_rad = Ratio() * r.reference_rad;
-    const bool is_new = i == 0 || r.setup != record_[i - 1].setup;
-    if (is_new) {
+    if (!IsContinued(i)) {
       const double velocity_rad_s = Velocity_rad_s(i);
       const double goes = r.direction != 0 ? r.direction : velocity_rad_s;
       if (goes != 0.0) side_ = std::copysign(1.0, goes);
