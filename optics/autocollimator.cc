@@ -86,16 +86,9 @@ AutocollimatorOptics::AutocollimatorOptics(const AutocollimatorParameters& param
   outgoing_ = CollimatedBeam(parameters_);
 }
 
-void AutocollimatorOptics::AddFixture(const TriangleMesh& mesh, const Eigen::Isometry3d& X_LF) {
-  scene_.AddMesh(mesh, parameters_.X_LA.inverse() * X_LF);
-  has_fixture_ = true;
-}
-
 void AutocollimatorOptics::Intersect(const RayBatch& rays) {
   if (parameters_.fidelity == Fidelity::kTraced) {
     scene_.Intersect(rays, hits_);
-  } else if (has_fixture_) {
-    scene_.IntersectHybrid(rays, hits_);
   } else {
     scene_.IntersectAnalytic(rays, hits_);
   }
@@ -121,7 +114,7 @@ AutocollimatorImage AutocollimatorOptics::ReadCamera() const {
 AutocollimatorImage AutocollimatorOptics::Look(const Eigen::Isometry3d& X_LM) {
   Require(IsPose(X_LM), "X_LM must be a right-handed rotation and a finite translation");
   scene_.SetSurfacePose(kMirror, parameters_.X_LA.inverse() * X_LM * X_MS_);
-  if (parameters_.fidelity == Fidelity::kTraced || has_fixture_) scene_.Commit();
+  if (parameters_.fidelity == Fidelity::kTraced) scene_.Commit();
   Intersect(outgoing_);
   ReflectFrom(MakeFrame(scene_.surfaces()[kMirror]), kMirror, outgoing_, hits_, returning_);
   Intersect(returning_);

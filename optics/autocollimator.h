@@ -49,10 +49,6 @@ class AutocollimatorOptics {
   /// @throws std::invalid_argument naming what is missing or out of range.
   AutocollimatorOptics(const AutocollimatorParameters& parameters, const Surface& mirror);
 
-  /// Something opaque in the way of the beam, fixed in L.
-  /// @throws std::invalid_argument from Validate(mesh).
-  void AddFixture(const TriangleMesh& mesh, const Eigen::Isometry3d& X_LF);
-
   /// What the camera shows of the mirror at X_LM, which should be within 1 m (see Scene).
   ///
   /// Status kOutOfRange beyond half_field_rad, kNoLight if too little light comes back. Readings: x of a normal
@@ -63,7 +59,7 @@ class AutocollimatorOptics {
   /// @throws std::invalid_argument if X_LM is not a pose.
   ///
   /// Not included: diffraction, the size of the reticle's image (it is off the camera as a whole or not at all),
-  /// light that goes to and fro more than once. Edges of the mirror and of fixtures cut in steps of single rays.
+  /// light that goes to and fro more than once. Edges of the mirror cut in steps of single rays.
   /// Not for several threads at once: the mirror moves in a scene of its own.
   /// Reference: Guo et al. (2014) eq. 1 and Delta_1 = 8 h dL rho / H^2 (flatness and beam walk).
   AutocollimatorImage Look(const Eigen::Isometry3d& X_LM);
@@ -75,7 +71,6 @@ class AutocollimatorOptics {
   AutocollimatorParameters parameters_;
   Eigen::Isometry3d X_MS_;
   Scene scene_;  // in frame A
-  bool has_fixture_ = false;
   RayBatch outgoing_;
   RayBatch returning_;
   HitBatch hits_;

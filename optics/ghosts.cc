@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "optics/kernels.h"
 #include "optics/rotary_scenes.h"
 
 namespace twinbench::optics {
@@ -49,7 +50,7 @@ class Tracer {
   void Follow(const Light& light) {
     if (!(light.power_W > floor_W_) || light.reflections > options_.max_reflections) return;
     if (bench_.scenes) return waiting_.push_back(light);
-    const NearestHit nearest = Nearest(surfaces_, light.ray, kOffSurface_m);
+    const NearestHit nearest = Nearest(frames_, light.ray, kOffSurface_m);
     if (nearest.index == kNothing) return;
     if (bench_.blocked) {
       const Surface& met = surfaces_[static_cast<std::size_t>(nearest.index)];
@@ -88,6 +89,7 @@ class Tracer {
 
   void Add(const Surface& surface, Element element) {
     surfaces_.push_back(surface);
+    frames_.push_back(MakeFrame(surface));
     elements_.push_back(element);
   }
 
@@ -163,6 +165,7 @@ class Tracer {
   const GhostOptions& options_;
   double floor_W_;
   std::vector<Surface> surfaces_;
+  std::vector<Frame> frames_;  // of the surfaces
   std::vector<Element> elements_;
   std::vector<Light> waiting_;
   std::vector<Deposit> deposits_;

@@ -1,8 +1,6 @@
 #include "optics/grating.h"
 
 #include <algorithm>
-#include <complex>
-#include <numbers>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -84,25 +82,6 @@ double EfficiencyOf(const Grating& grating, double wavelength_m, const Eigen::Ve
   const int i = order - budget.bracket.a->lowest_order;
   if (i < 0 || i >= static_cast<int>(budget.bracket.a->share.size()) || !budget.Propagates(order)) return 0.0;
   return budget.Scale(grating.reflectance) * budget.bracket.Share(static_cast<std::size_t>(i));
-}
-
-OrderEfficiencies SinusoidalEfficiencies(double phase_amplitude_rad, int max_order) {
-  OrderEfficiencies orders{.lowest_order = -max_order, .share = {}};
-  for (int m = -max_order; m <= max_order; ++m) {
-    orders.share.push_back(std::pow(std::cyl_bessel_j(std::abs(m), phase_amplitude_rad), 2));
-  }
-  return orders;
-}
-
-OrderEfficiencies LamellarEfficiencies(double phase_rad, double land_fraction, int max_order) {
-  OrderEfficiencies orders{.lowest_order = -max_order, .share = {}};
-  const std::complex<double> step = std::polar(1.0, phase_rad) - 1.0;
-  for (int m = -max_order; m <= max_order; ++m) {
-    const double angle = std::numbers::pi * m;
-    const double fourier = m == 0 ? land_fraction : std::sin(angle * land_fraction) / angle;
-    orders.share.push_back(std::norm((m == 0 ? 1.0 : 0.0) + step * fourier));
-  }
-  return orders;
 }
 
 void Validate(const Grating& grating) {

@@ -14,7 +14,6 @@
 namespace twinbench::optics {
 
 enum class OrderStatus { kOk, kEvanescent };
-enum class Side { kReflected, kTransmitted };
 
 struct OrderDirection {
   Eigen::Vector3d direction = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -29,17 +28,13 @@ struct OrderDirection {
 ///                stands for grooves that are denser by it.
 /// @param order_lambda_rho  m * wavelength (in the medium around) * groove density, dimensionless.
 /// @return kEvanescent with NaN if the order does not propagate.
-///
-/// A plane-parallel substrate shifts a transmitted order but does not turn it, so its index does not appear.
 inline OrderDirection Diffract(const Eigen::Vector3d& d, const Eigen::Vector3d& normal,
-                               const Eigen::Vector3d& across, double order_lambda_rho,
-                               Side side = Side::kReflected) {
+                               const Eigen::Vector3d& across, double order_lambda_rho) {
   const double toward = d.dot(normal);
   const Eigen::Vector3d k = d - toward * normal + order_lambda_rho * across;
   const double q = 1.0 - k.squaredNorm();
   if (!(q > 0.0)) return {};
-  const bool along_normal = (toward < 0.0) == (side == Side::kReflected);
-  return {k + (along_normal ? std::sqrt(q) : -std::sqrt(q)) * normal, OrderStatus::kOk};
+  return {k + (toward < 0.0 ? std::sqrt(q) : -std::sqrt(q)) * normal, OrderStatus::kOk};
 }
 
 /// Power of each order as a share of the incident power.
@@ -79,12 +74,6 @@ OrderEfficiencies EfficienciesAt(const Grating& grating, double wavelength_m, co
 
 /// The share of one order, EfficienciesAt(...).Of(order), without a temporary: the hot path.
 double EfficiencyOf(const Grating& grating, double wavelength_m, const Eigen::Vector3d& d_G, int order);
-
-/// Scalar efficiencies J_m(a)^2 of a sinusoidal phase grating, phase amplitude a [rad], orders -max..max.
-OrderEfficiencies SinusoidalEfficiencies(double phase_amplitude_rad, int max_order);
-
-/// Scalar efficiencies of a lamellar grating: phase step [rad], land fraction 0..1, orders -max..max.
-OrderEfficiencies LamellarEfficiencies(double phase_rad, double land_fraction, int max_order);
 
 /// @throws std::invalid_argument naming the field that is missing or out of range.
 void Validate(const Grating& grating);

@@ -180,35 +180,4 @@ std::uint32_t SettlePlanes(const Targets& targets, const RayBatch& rays, std::si
   return unsettled;
 }
 
-[[gnu::target_clones("avx512f", "avx2", "default")]] void TraceSequenceArrays(const Frame& grating, double shift,
-                                                                              const Frame& plane, ConstRays r,
-                                                                              std::size_t n, double* __restrict u,
-                                                                              double* __restrict v) {
-  const Frame g = grating, p = plane;
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < n; ++i) {
-    double t, x, y;
-    MeetPlane(g, r.ox[i], r.oy[i], r.oz[i], r.dx[i], r.dy[i], r.dz[i], t, x, y);
-    const double toward = r.dx[i] * g.zx + r.dy[i] * g.zy + r.dz[i] * g.zz;
-    const double kx = r.dx[i] - toward * g.zx + shift * g.xx;
-    const double ky = r.dy[i] - toward * g.zy + shift * g.xy;
-    const double kz = r.dz[i] - toward * g.zz + shift * g.xz;
-    const double q = 1.0 - (kx * kx + ky * ky + kz * kz);
-    const bool inside = InAperture(g, x, y);
-    const bool good = inside & (t > 0.0) & (q > 0.0) & (toward < 0.0);
-    const double out = std::sqrt(q > 0.0 ? q : 0.0);
-    double t2, u2, v2;
-    MeetPlane(p, r.ox[i] + t * r.dx[i], r.oy[i] + t * r.dy[i], r.oz[i] + t * r.dz[i], kx + out * g.zx,
-              ky + out * g.zy, kz + out * g.zz, t2, u2, v2);
-    const bool arrives = good & (t2 > 0.0);
-    u[i] = arrives ? u2 : nan;
-    v[i] = arrives ? v2 : nan;
-  }
-}
-
-void TraceSequence(const Frame& grating, double order_lambda_rho, const Frame& plane, const RayBatch& rays,
-                   double* u_m, double* v_m) {
-  TraceSequenceArrays(grating, order_lambda_rho, plane, From(rays, 0), rays.size(), u_m, v_m);
-}
-
 }  // namespace twinbench::optics

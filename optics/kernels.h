@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "optics/surface.h"
 
@@ -103,6 +104,9 @@ inline ConstRays From(const RayBatch& rays, std::size_t begin) {
   return hit;
 }
 
+/// The surface met first beyond t_min; of equal distances the lower index. One ray, a few surfaces.
+NearestHit Nearest(std::span<const Frame> frames, const Ray& ray, double t_min_m);
+
 /// Sixteen rays at most are traced together.
 inline constexpr int kMaxPacket = 16;
 
@@ -159,12 +163,5 @@ bool Compare(Answers answers, float blur_m, std::size_t begin, std::size_t n, Hi
 /// Takes surface `id` into the running nearest hit of `n` rays; of equal distances the lower id wins.
 void TakeNearest(const Frame& frame, int id, const RayBatch& rays, std::size_t begin, std::size_t n, double t_min,
                  HitBatch& hits);
-
-/// One order of a plane grating on to a plane, for all rays; u, v are NaN where the ray misses the grating's
-/// aperture or the order is evanescent. The fixed sequence laser -> grating -> detector plane.
-///
-/// @param order_lambda_rho  m * wavelength * groove density; grooves along the frame's y, orders along +x.
-void TraceSequence(const Frame& grating, double order_lambda_rho, const Frame& plane, const RayBatch& rays,
-                   double* u_m, double* v_m);
 
 }  // namespace twinbench::optics

@@ -346,17 +346,6 @@ void Scene::IntersectAnalytic(const RayBatch& rays, HitBatch& hits) const {
   }
 }
 
-void Scene::IntersectHybrid(const RayBatch& rays, HitBatch& hits) const {
-  if (!impl_->committed) throw std::logic_error("Scene::IntersectHybrid before Commit");
-  hits.Reset(rays.size());
-  impl_->TakeSurfaces(rays, hits);
-  if (impl_->meshes.empty()) return;
-  const auto width = static_cast<std::size_t>(packet_width());
-  for (std::size_t begin = 0; begin < rays.size(); begin += width) {
-    impl_->Shadow(rays, begin, std::min(width, rays.size() - begin), hits);
-  }
-}
-
 bool Scene::Occluded(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const {
   RayBatch ray;
   ray.Add({from_m, (to_m - from_m).normalized()});

@@ -54,10 +54,6 @@ class Scene {
   /// about ten surfaces without meshes; otherwise the yardstick that Intersect is tested with.
   void IntersectAnalytic(const RayBatch& rays, HitBatch& hits) const;
 
-  /// Surfaces as in IntersectAnalytic, meshes by Embree shadow rays (t_m of kFixture is NaN): best for few
-  /// surfaces.
-  void IntersectHybrid(const RayBatch& rays, HitBatch& hits) const;
-
   /// Does a mesh stand between two points?
   bool Occluded(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const;
 

@@ -110,10 +110,10 @@ SurfaceHit Meet(const Surface& surface, const Ray& ray, double t_min_m) {
   return Meet(MakeFrame(surface), ray, t_min_m);
 }
 
-NearestHit Nearest(std::span<const Surface> surfaces, const Ray& ray, double t_min_m) {
+NearestHit Nearest(std::span<const Frame> frames, const Ray& ray, double t_min_m) {
   NearestHit nearest;
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const SurfaceHit hit = Meet(surfaces[i], ray, t_min_m);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const SurfaceHit hit = Meet(frames[i], ray, t_min_m);
     if (hit.t_m < nearest.hit.t_m) nearest = {static_cast<int>(i), hit};
   }
   return nearest;

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <limits>
 #include <optional>
-#include <span>
 
 #include "optics/ray.h"
 
@@ -50,9 +49,6 @@ struct NearestHit {
   int index = kNothing;  // of the surface; kNothing, or kFixture for a mesh
   SurfaceHit hit;
 };
-
-/// The surface met first beyond t_min; of equal distances the lower index. One ray, a few surfaces.
-NearestHit Nearest(std::span<const Surface> surfaces, const Ray& ray, double t_min_m);
 
 /// @throws std::invalid_argument naming what is wrong: a size that is not positive, a pose that is not a rotation,
 /// an
