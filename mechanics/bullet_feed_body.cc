@@ -18,7 +18,7 @@ double HighestFrequency(const FeedDriveParameters& p) {
   return std::sqrt(p.Stiffness_N_m() * (1.0 / p.mass_kg + 1.0 / p.ScrewMass_kg()) + bristles_N_m / p.mass_kg);
 }
 
-/// The leapfrog's limit is 2/omega; see SubSteps of the stack.
+/// The leapfrog's limit is 2/omega.
 int SubSteps(const FeedDriveParameters& p) {
   const double longest_s = std::min(p.step_s, 1.35 / HighestFrequency(p));
   return static_cast<int>(std::ceil(p.servo_period_s / longest_s - 1e-9));

@@ -65,7 +65,7 @@ double HighestFrequency(const GearTrainParameters& p) {
                    bristles_Nm_rad / p.table_inertia_kg_m2);
 }
 
-/// The leapfrog's limit is 2/omega; see SubSteps of the stack.
+/// The leapfrog's limit is 2/omega.
 int SubSteps(const GearTrainParameters& p) {
   const double longest_s = std::min(p.step_s, 1.35 / HighestFrequency(p));
   return static_cast<int>(std::ceil(p.servo_period_s / longest_s - 1e-9));

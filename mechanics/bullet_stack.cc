@@ -165,14 +165,7 @@ Matrix12 StackDynamics::InverseMass(const Vector12& q) {
   return 0.5 * (inverse + inverse.transpose());
 }
 
-void StackDynamics::Step(Integrator integrator, double h, const Eigen::Vector2d& torque_Nm, Vector12& q,
-                         Vector12& qd) {
-  if (integrator != Integrator::kRungeKutta4) {
-    q += 0.5 * h * qd;
-    qd += h * Accelerate(q, qd, torque_Nm);
-    q += 0.5 * h * qd;
-    return;
-  }
+void StackDynamics::Step(double h, const Eigen::Vector2d& torque_Nm, Vector12& q, Vector12& qd) {
   const Vector12 a1 = Accelerate(q, qd, torque_Nm);
   const Vector12 v2 = qd + 0.5 * h * a1;
   const Vector12 a2 = Accelerate(q + 0.5 * h * qd, v2, torque_Nm);

@@ -40,22 +40,9 @@ void FeedDrive::Begin(const CircleMotion& motion) {
   loop_.set_left_rad(at_[kIntegral]);
 }
 
-void FeedDrive::BeginAtRest(const CircleMotion& motion) {
-  tick_ = 0;
-  Command(motion);
-  const double m = motion.At(axis_, 0.0).m;
-  at_ << m, 0.0, m, 0.0, 0.0;
-  bristles_.set_bend(0.0);
-  loop_.set_left_rad(0.0);
-}
-
 void FeedDrive::Command(const CircleMotion& motion) {
   motion_ = motion;
   if (motion.IsSteady() && motion.rate_rad_s() != 0.0) calm_.SetRate(motion.rate_rad_s());
-}
-
-void FeedDrive::Displace(double slide_m) {
-  at_[kSlide] += slide_m;
 }
 
 void FeedDrive::Step(double until_s) {

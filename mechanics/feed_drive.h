@@ -39,8 +39,6 @@ class FeedDrive {
   /// Sets time to zero and the drive as if it had long followed a motion at constant rate, in mid-travel: its
   /// bristles slip. Not beside a reversal.
   void Begin(const CircleMotion& motion);
-  /// At rest at a coordinate, bristles relaxed.
-  void BeginAtRest(const CircleMotion& motion);
 
   /// From now on.
   void Command(const CircleMotion& motion);
@@ -54,8 +52,6 @@ class FeedDrive {
   const FeedDriveParameters& parameters() const { return p_; }
   /// Whether many periods may be taken at once; true in a new drive.
   void set_leaps(bool leaps) { leaps_ = leaps; }
-  /// Displaces the slide against the nut, at rest, as a blow would: for tests of what rings.
-  void Displace(double slide_m);
 
  private:
   void Tick();

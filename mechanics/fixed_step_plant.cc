@@ -37,7 +37,7 @@ class FixedStepPlant : public DrivenPlant {
     const double h = for_s / sub_steps_;
     for (int i = 0; i < sub_steps_; ++i) {
       const Eigen::Vector2d all = torque + FrictionTorques(h, bodies);
-      dynamics_.Step(parameters().integrator, h, all, bodies.q, bodies.qd);
+      dynamics_.Step(h, all, bodies.q, bodies.qd);
     }
   }
 

@@ -61,18 +61,6 @@ double MeetingAzimuth_rad(const Eigen::Vector2d& from_m, const Eigen::Vector2d& 
 
 }  // namespace
 
-Ring TurnedOnShaft(Ring ring, double by_rad) {
-  const Eigen::Rotation2Dd turn(by_rad);
-  // The order of the two small turns about x and y does not turn along: take the ring's attitude as a whole.
-  const Eigen::Matrix3d attitude = About(by_rad, Eigen::Vector3d::UnitZ()) * RotorToRing(ring).transpose();
-  ring.tilt_rad = {std::atan2(-attitude(1, 2), attitude(2, 2)), std::asin(attitude(0, 2))};
-  ring.mounting_rad += by_rad;  // first guess; what the tilts leave of it follows
-  const Eigen::Matrix3d left = RotorToRing(ring) * attitude;
-  ring.mounting_rad += std::atan2(left(1, 0), left(0, 0));
-  ring.eccentricity_m = turn * ring.eccentricity_m;
-  return ring;
-}
-
 RingEncoder::RingEncoder(const Ring& ring, const ReadingHead& head)
     : ring_((CheckRing(ring), ring)), head_((CheckHead(head, ring), head)), to_ring_(RotorToRing(ring)) {}
 

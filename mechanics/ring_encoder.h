@@ -22,11 +22,10 @@
 /// turned by alpha). Three ways to another alpha:
 ///
 ///   the head goes round by alpha and the ring stays on the shaft: psi(th - alpha);
-///   the ring goes round by -alpha on the shaft (TurnedOnShaft) and the head stays: the same;
+///   the ring goes round by -alpha on the shaft and the head stays: the same;
 ///   both go round by the same angle: nothing changes, as only their difference counts. A re-mounting that turns
 ///   ring and head together is therefore one of the first two for what the turn leaves behind on the shaft
-///   (eccentricity of the seat) and none for what it takes along (graduation): change mounting_rad alone, or use
-///   TurnedOnShaft, accordingly.
+///   (eccentricity of the seat) and none for what it takes along (graduation).
 namespace twinbench::mechanics {
 
 struct Ring {
@@ -39,9 +38,6 @@ struct Ring {
   double ellipticity_azimuth_rad = 0.0;                      // of the long axis from the mark, counter-clockwise
   std::vector<AngleHarmonic> graduation = {};                // what the lines show too much, in the scale's angle
 };
-
-/// The same ring taken off and put on again, turned counter-clockwise with all its errors.
-Ring TurnedOnShaft(Ring ring, double by_rad);
 
 struct ReadingHead {
   double azimuth_rad = 0.0;   // in F

@@ -139,8 +139,7 @@ double LowestFrequency(StackDynamics& dynamics) {
 
 int SubSteps(StackDynamics& dynamics) {
   const StackParameters& p = dynamics.parameters();
-  const double reach = p.integrator == Integrator::kRungeKutta4 ? 2.0 : 1.35;
-  const double longest_s = std::min(p.step_s, reach / HighestFrequency(dynamics));
+  const double longest_s = std::min(p.step_s, 2.0 / HighestFrequency(dynamics));
   return static_cast<int>(std::ceil(p.servo_period_s / longest_s - 1e-9));
 }
 

@@ -78,9 +78,9 @@ struct Payload {
   double inertia_kg_m2 = 1e-3;  // about each axis through its centre; used only with a mass
 };
 
-/// kAdaptive: strides of servo periods as AdaptiveStack finds them long enough. The others: fixed sub-steps, which
-/// StackDynamics::Step takes too.
-enum class Integrator { kAdaptive, kLeapfrog, kRungeKutta4 };
+/// kAdaptive: strides of servo periods as AdaptiveStack finds them long enough. Else fixed sub-steps by
+/// StackDynamics::Step.
+enum class Integrator { kAdaptive, kRungeKutta4 };
 
 /// Defaults: a plausible 200 mm air-bearing stack (assumed, not data of a real table).
 struct StackParameters {
@@ -133,8 +133,8 @@ class StackDynamics {
   /// Inverse of the mass matrix at q.
   Matrix12 InverseMass(const Vector12& q);
 
-  /// One step of `step_s` with constant torques, by leapfrog or Runge and Kutta.
-  void Step(Integrator integrator, double step_s, const Eigen::Vector2d& torque_Nm, Vector12& q, Vector12& qd);
+  /// One step of `step_s` with constant torques, by Runge and Kutta.
+  void Step(double step_s, const Eigen::Vector2d& torque_Nm, Vector12& q, Vector12& qd);
 
   /// Poses of the rotors as Bullet sees them, for the test that compares them with Chain.
   Pose BulletRotorPose(const Vector12& q, int table);
@@ -162,7 +162,7 @@ double HighestFrequency(StackDynamics& dynamics);
 double LowestFrequency(StackDynamics& dynamics);
 
 /// Number of equal sub-steps of a servo period: each at most step_s and short enough for the stiffest mode
-/// (1.35/omega for the leapfrog, whose limit is 2/omega; 2/omega for RK4, whose limit is 2.8/omega).
+/// (2/omega; the limit of Runge and Kutta is 2.8/omega).
 int SubSteps(StackDynamics& dynamics);
 
 }  // namespace twinbench::mechanics

@@ -164,55 +164,6 @@ TEST(FeedDrive, StaysBehindByTheWindUpOfItsScrew) {
   EXPECT_GT(up_m - down_m, p.LostMotion_m());
 }
 
-/// A slide that is let go against its screw, with a control that hardly holds it.
-FeedDriveParameters Ringing() {
-  FeedDriveParameters p = FreeDrive();
-  p.damping_ratio = 0.0;
-  p.velocity_gain_1_s = 0.1;
-  p.position_gain_1_s = 0.01;
-  p.integral_time_s = 100.0;
-  return p;
-}
-
-/// Mean frequency and ratio of the last swing's energy to the first's.
-std::pair<double, double> Swing(Fidelity fidelity, const FeedDriveParameters& p) {
-  FeedDrive drive(fidelity, p, CircleAxis::kX);
-  drive.BeginAtRest({kCircle_m, 0.0, 0.0, 0.0});
-  drive.Displace(1.0 * kUm);
-  double before_m = 0.0, first_s = 0.0, last_s = 0.0, first_m = 0.0, last_m = 0.0;
-  int rises = 0;
-  while (drive.time_s() < 1.0) {
-    drive.Step(1.0);
-    const double twist_m = drive.State().slide_m - drive.State().nut_m;
-    if (before_m < 0.0 && twist_m >= 0.0) {
-      last_s = drive.time_s() - p.servo_period_s * twist_m / (twist_m - before_m);
-      if (rises++ == 0) first_s = last_s;
-    }
-    double& peak_m = drive.time_s() < 0.2 ? first_m : last_m;
-    if (drive.time_s() < 0.2 || drive.time_s() > 0.8) peak_m = std::max(peak_m, twist_m);
-    before_m = twist_m;
-  }
-  return {(rises - 1) / (last_s - first_s), std::pow(last_m / first_m, 2)};
-}
-
-TEST(FeedDrive, SlideSwingsOnItsScrewAtTheFrequencyOfTheLinearModelAndKeepsItsEnergy) {
-  FeedDriveParameters p = Ringing();
-  p.servo_period_s = 1e-4;
-  const double reduced_kg = p.mass_kg * p.ScrewMass_kg() / p.MovedMass_kg();
-  const double omega = std::sqrt(p.Stiffness_N_m() / reduced_kg), expected_Hz = omega / (2.0 * kPi);
-  const auto [by_formula_Hz, formula_energy] = Swing(Fidelity::kLinear, p);
-  const auto [by_bullet_Hz, bullet_energy] = Swing(Fidelity::kBullet, p);
-  // Crossings are interpolated to some 1e-5 of a period at both ends of 123 of them.
-  EXPECT_NEAR(by_formula_Hz / expected_Hz, 1.0, 5e-6);
-  const double leapfrog = std::pow(omega * p.servo_period_s, 2) / 24.0;  // too fast
-  EXPECT_NEAR(by_bullet_Hz / expected_Hz, 1.0 + leapfrog, 5e-6);
-  EXPECT_GT(leapfrog, 1e-4);
-  // The speed controller brakes with its band's share of the masses: exp(-2 x 0.05/s x 0.6 s) or less is lost. 80
-  // samples a period meet the peak to 1e-3.
-  EXPECT_NEAR(formula_energy, 0.97, 0.03);
-  EXPECT_NEAR(bullet_energy, formula_energy, 3e-3);
-}
-
 TEST(FeedDrive, TakesManyPeriodsAtOnceAndEndsWhereSingleOnesDo) {
   for (const double feed_m_s : {kSlow_m_s, kFast_m_s}) {
     FeedDriveParameters p = RubbingDrive();

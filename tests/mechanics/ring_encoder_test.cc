@@ -118,20 +118,6 @@ TEST(RingEncoder, GraduationIsAnErrorInTheScalesOwnAngle) {
     EXPECT_NEAR(Error_rad(encoder, th), 5.0 * kArcsec * std::cos(3.0 * (th - 1.1) + 0.4), kRounding_rad);
 }
 
-TEST(RingEncoder, RingThatGoesRoundBackwardsDoesTheSameAndBothTogetherNothing) {
-  const Ring ring = BadRing();
-  const ReadingHead head = {0.3, 0.004, 1e-4};
-  const double by = 1.3;
-  const RingEncoder before(ring, head), back(TurnedOnShaft(ring, -by), head);
-  const RingEncoder both(TurnedOnShaft(ring, by), {0.3 + by, 0.004, 1e-4});
-  for (double th = 0.0; th < 6.3; th += 0.41) {
-    EXPECT_NEAR(back.Scale_rad(th), before.Scale_rad(th - by), kRounding_rad);
-    EXPECT_NEAR(both.Scale_rad(th), before.Scale_rad(th), kRounding_rad);
-    // Of a tilted ring the mark's azimuth and so the error's constant are certain to tilt^2 / 2 only.
-    EXPECT_NEAR(Error_rad(back, th), Error_rad(before, th - by), 0.5 * (9e-6 + 4e-6));
-  }
-}
-
 TEST(RingEncoder, StaysContinuousOverManyTurns) {
   const RingEncoder encoder(BadRing(), {0.3, 0.004, 1e-4});
   for (double th = -40.0; th < 40.0; th += 0.01) {

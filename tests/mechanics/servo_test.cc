@@ -156,7 +156,7 @@ TEST(AdaptiveStack, RestsWhereTheMotionWouldHaveLedTo) {
   const StackParameters p = CrookedStack();
   const auto asked_late = MakePlant(Fidelity::kBullet, p);
   StackParameters fine_p = p;
-  fine_p.integrator = Integrator::kLeapfrog;
+  fine_p.integrator = Integrator::kRungeKutta4;
   const auto fine = MakePlant(Fidelity::kBullet, fine_p);
   for (Plant* plant : {asked_late.get(), fine.get()}) {
     plant->StartMove(Axis::kTarget, kTenDegrees, 0.3);

@@ -106,7 +106,7 @@ TEST(StackDynamics, KeepsItsEnergyWithoutDamping) {
   StackParameters p = OffCentreStack();
   p.damping_ratio = 0.0;
   StackDynamics dynamics(p);
-  const auto drift = [&](Integrator integrator, double step_s, double duration_s) {
+  const auto drift = [&](double step_s, double duration_s) {
     Vector12 q = StaticDeflection(p, 0.0, 0.0);
     Vector12 qd = Vector12::Zero();
     const double least = dynamics.Energy(q, qd);
@@ -118,21 +118,15 @@ TEST(StackDynamics, KeepsItsEnergyWithoutDamping) {
     const double start = dynamics.Energy(q, qd);
     double worst = 0.0;
     for (int i = 0; i * step_s < duration_s; ++i) {
-      dynamics.Step(integrator, step_s, {0.0, 0.0}, q, qd);
+      dynamics.Step(step_s, {0.0, 0.0}, q, qd);
       if (i % 7 == 0) worst = std::max(worst, std::abs(dynamics.Energy(q, qd) - start) / vibration);
     }
     return worst;
   };
-  const double coarse = drift(Integrator::kLeapfrog, 200e-6, 0.1);
-  const double fine = drift(Integrator::kLeapfrog, 100e-6, 0.1);
-  EXPECT_LT(coarse, 0.08);         // ripple (omega h)^2/4 of modes up to 450 Hz
-  EXPECT_LT(fine, 0.35 * coarse);  // a quarter for a second-order method
-  // A ripple and no drift: ten times as long, no more of it, but for chance meetings of its six frequencies.
-  EXPECT_LT(drift(Integrator::kLeapfrog, 200e-6, 1.0), 1.5 * coarse);
   // RK4 loses (omega h)^6/72 a step: halving the step gains 32.
-  const double runge_kutta = drift(Integrator::kRungeKutta4, 100e-6, 0.1);
+  const double runge_kutta = drift(100e-6, 0.1);
   EXPECT_LT(runge_kutta, 0.02);
-  EXPECT_LT(drift(Integrator::kRungeKutta4, 50e-6, 0.1), runge_kutta / 16.0);
+  EXPECT_LT(drift(50e-6, 0.1), runge_kutta / 16.0);
 }
 
 TEST(StackDynamics, DampingOnlyTakesEnergy) {
@@ -146,7 +140,7 @@ TEST(StackDynamics, DampingOnlyTakesEnergy) {
   double before = dynamics.Energy(q, qd) - least;
   ASSERT_GT(before, 0.0);
   for (int i = 0; i < 20; ++i) {
-    for (int k = 0; k < 40; ++k) dynamics.Step(Integrator::kRungeKutta4, 250e-6, {0.0, 0.0}, q, qd);
+    for (int k = 0; k < 40; ++k) dynamics.Step(250e-6, {0.0, 0.0}, q, qd);
     const double after = dynamics.Energy(q, qd) - least;
     // The slowest mode, 150 Hz at about 3 %, loses 1 - exp(-2 x 0.03 x 942 x 0.01) = 40 % in 10 ms. Below 1e-11 J
     // the difference of energies is rounding and the rotors' slow swing about their axes.
@@ -169,15 +163,16 @@ TEST(StackDynamics, SubStepsDivideThePeriodAndHoldTheStiffestMode) {
   StackParameters p;
   StackDynamics dynamics(p);
   EXPECT_GT(HighestFrequency(dynamics), 2.0 * kPi * 400.0);  // modes of an air-bearing stack
-  EXPECT_LT(HighestFrequency(dynamics), 1.35 / 250e-6);      // so that 250 us suffices
+  EXPECT_LT(HighestFrequency(dynamics), 2.0 / 250e-6);       // so that 250 us suffices
   EXPECT_EQ(SubSteps(dynamics), 2);
   for (TableParameters& table : p.table) {
-    table.axial_stiffness_N_m *= 8.0;
-    table.radial_stiffness_N_m *= 8.0;
-    table.tilt_stiffness_Nm_rad *= 8.0;
+    table.axial_stiffness_N_m *= 16.0;
+    table.radial_stiffness_N_m *= 16.0;
+    table.tilt_stiffness_Nm_rad *= 16.0;
   }
   StackDynamics stiff(p);
-  EXPECT_GE(SubSteps(stiff), 5);  // sqrt(8) times as many, 250 us being near the limit
+  EXPECT_GT(SubSteps(stiff), 2);
+  EXPECT_GE(SubSteps(stiff), 0.5 * p.servo_period_s * HighestFrequency(stiff));
 }
 
 TEST(StackParameters, RefusesBodiesWithoutMassAndSpringsWithoutStiffness) {
