@@ -60,31 +60,13 @@ TEST(TableErrors, HaveUnitsInTheirColumnsAndZerosForAbsentOnes) {
   EXPECT_EQ(errors[Component::kEy], (std::vector<double>{0.0, 0.0}));
 }
 
-TEST(TableErrors, AreReadBackToTheSameBits) {
-  test::Noise normal(1.0, 2);
-  TableErrors errors;
-  for (int i = 0; i < 100; ++i) {
-    errors.position_rad.push_back(normal());
-    for (auto& column : errors.value) column.push_back(1e-5 * normal());
-  }
-  const TemporaryFolder folder;
-  WriteTableErrors(errors, folder.File("t.csv"));
-  const TableErrors read = ReadTableErrors(folder.File("t.csv"));
-  EXPECT_EQ(read.position_rad, errors.position_rad);
-  EXPECT_EQ(read.value, errors.value);
-}
-
-TEST(TableErrors, NameLineAndFaultOfABadFileAndAreNotWrittenWithColumnsOfUnequalLengthOrWhereTheDiskRefuses) {
+TEST(TableErrors, NameLineAndFaultOfABadFile) {
   const TemporaryFolder folder;
   ExpectRefused(folder.File("t.csv"),
                 [&](const auto& text) { return MessageOf([&] { ReadTableErrors(folder.Write("t.csv", text)); }); },
                 {{1, "ex_arcsec\n1\n"}, {2, "#\nposition_deg,ex_urad\n1,2\n"},
                  {3, "position_deg,dx_um\n1,2\n2,abc\n"}, {2, "position_deg,dx_um\n1,nan\n"},
                  {2, "position_deg,dx_um\n1,\n"}, {1, "position_deg,dx_um\n"}});
-  TableErrors errors;
-  EXPECT_THROW(WriteTableErrors(errors, "/no/such/folder/t.csv"), BenchError);
-  errors.position_rad = {0.0};
-  EXPECT_THROW(WriteTableErrors(errors, "unused.csv"), std::logic_error);
 }
 
 TEST(SampledCurve, IsStraightBetweenPlacesAndLevelBeyondTheEndsAndReadFromItsColumnsInSIUnits) {

@@ -79,10 +79,6 @@ StatedUncertainty ReadOne(const TomlValue& value, const ScenarioKey& key) {
 
 }  // namespace
 
-double HalfWidth(const StatedUncertainty& stated) {
-  return stated.u * ShapeOf(stated.distribution).half_widths;
-}
-
 bool TakesUncertainty(const ScenarioKey& key) {
   return std::holds_alternative<double*>(key.field) || std::holds_alternative<std::span<double>>(key.field) ||
          std::holds_alternative<std::vector<double>*>(key.field);

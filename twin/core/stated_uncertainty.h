@@ -17,7 +17,4 @@ struct StatedUncertainty {
   double dof = std::numeric_limits<double>::infinity();  // behind u
 };
 
-/// Half the width of a distribution with this standard uncertainty; infinite for the normal one.
-double HalfWidth(const StatedUncertainty& stated);
-
 }  // namespace twinbench

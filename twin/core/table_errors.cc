@@ -45,11 +45,6 @@ void CheckColumns(const CsvTable& table) {
   if (table.rows.empty()) throw InputError(table.WhereHeader(), "no rows follow the header", "one row a position");
 }
 
-void RequireEqualLengths(const TableErrors& errors) {
-  for (const auto& column : errors.value)
-    Require(column.size() == errors.position_rad.size(), "table errors need one value a position");
-}
-
 }  // namespace
 
 ErrorColumn ColumnOf(Component component) {
@@ -72,21 +67,6 @@ TableErrors ReadTableErrors(const std::string& path) {
     errors[component] = ReadColumn(table, ColumnOf(component));
   }
   return errors;
-}
-
-void WriteTableErrors(const TableErrors& errors, const std::string& path) {
-  RequireEqualLengths(errors);
-  std::ostringstream out;
-  out << HeaderLine() << '\n';
-  for (std::size_t i = 0; i < errors.position_rad.size(); ++i) {
-    out << PrintInUnit(errors.position_rad[i], PositionColumn().to_SI);
-    for (int c = 0; c < kComponents; ++c) {
-      const auto component = static_cast<Component>(c);
-      out << ',' << PrintInUnit(errors[component][i], ColumnOf(component).to_SI);
-    }
-    out << '\n';
-  }
-  WriteFileAtOnce(path, out.str());
 }
 
 }  // namespace twinbench

@@ -42,8 +42,4 @@ ErrorColumn PositionColumn();  // "position_deg"
 ///         a file without rows.
 TableErrors ReadTableErrors(const std::string& path);
 
-/// Writes the same format with all six columns and as many digits as the same bits need.
-/// @throws BenchError if the file cannot be written.
-void WriteTableErrors(const TableErrors& errors, const std::string& path);
-
 }  // namespace twinbench

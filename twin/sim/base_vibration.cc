@@ -66,14 +66,6 @@ BaseVibration::BaseVibration(const std::vector<VibrationBand>& bands, std::uint6
   }
 }
 
-Eigen::Vector3d BaseVibration::Acceleration_m_s2(Time time) const {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Line& line : lines_) {
-    sum += (line.acceleration_m_s2 * Unit(2.0 * units::kPi * line.frequency_Hz * ToSeconds(time))).real();
-  }
-  return sum;
-}
-
 ShakenStack::ShakenStack(const mechanics::StackParameters& parameters, const BaseVibration& vibration)
     : parameters_(parameters) {
   for (const BaseVibration::Line& line : vibration.lines()) {

@@ -36,8 +36,6 @@ class BaseVibration {
   BaseVibration(const std::vector<VibrationBand>& bands, std::uint64_t seed);
 
   const std::vector<Line>& lines() const { return lines_; }
-  /// Of the base, along x, y, z of the laboratory.
-  Eigen::Vector3d Acceleration_m_s2(Time time) const;
 
  private:
   std::vector<Line> lines_;

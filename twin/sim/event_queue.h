@@ -60,16 +60,6 @@ class EventQueue {
   /// @throws std::logic_error if `until` has passed.
   void RunUntil(Time until);
 
-  /// Runs events as long as `condition()` holds, asked before each.
-  /// @return true when it no longer holds, false if the queue ran empty before.
-  template <typename Condition>
-  bool RunWhile(Condition condition) {
-    while (condition()) {
-      if (!RunOne()) return false;
-    }
-    return true;
-  }
-
  private:
   struct Entry {
     Time when;
