@@ -73,6 +73,12 @@ std::vector<EffectSettings> DrawnConstants(const Scenario& scenario, std::uint64
 
 }  // namespace
 
+bool MayBeBlamed(const Isolability& foretold, std::size_t present, std::size_t blamed, double times) {
+  return std::ranges::any_of(foretold.confusable, [&](const diagnose::Confusable& pair) {
+    return pair.present == present && pair.blamed == blamed && times < pair.surely_told_from;
+  });
+}
+
 Isolability ForetoldOf(hidden::Design design) {
   const Scenario believed = hidden::Believed(design);
   tools::Patience without_end;

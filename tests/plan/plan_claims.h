@@ -24,6 +24,10 @@ struct TieCase {
 TieCase DiagnoseHidden(const hidden::Placement& at, std::uint64_t seed, double rho, const hidden::SignatureScale& scale,
                        const diagnose::Isolability& foretold);
 
+/// Whether `blamed` may be taken for `present` in whatever shape, of so many times the smallest size that is found in
+/// that shape.
+bool MayBeBlamed(const diagnose::Isolability& foretold, std::size_t present, std::size_t blamed, double times);
+
 /// Isolability of what is believed of a design, on the quickest twin.
 diagnose::Isolability ForetoldOf(hidden::Design design);
 

@@ -125,7 +125,7 @@ TEST(IsolabilityOf, NamesWhatNoReadingTellsApartAndNothingThatOneDoes) {
   };
   EXPECT_TRUE(together(wavelength, pitch));
   EXPECT_FALSE(together(wavelength, gain));
-  EXPECT_TRUE(MayBeBlamed(isolability, wavelength, pitch, 100.0));
+  EXPECT_TRUE(plan::MayBeBlamed(isolability, wavelength, pitch, 100.0));
 }
 
 TEST(IsolabilityOf, SizesAreThoseOfADiagnosis) {
@@ -159,10 +159,10 @@ TEST(IsolabilityOf, IsThatOfTheRunThatTellsLeast) {
   one.confusable = {{0, 1, 2.0, 4.0}};
   other.confusable = {{1, 2, 8.0, 16.0}, {2, 0, 2.0, 2.0}};  // drift as creep, creep as scale
   KeepSurelyTold(other, one);
-  EXPECT_TRUE(MayBeBlamed(one, 0, 1, 15.0));
-  EXPECT_FALSE(MayBeBlamed(one, 0, 1, 17.0));
-  EXPECT_TRUE(MayBeBlamed(one, 1, 2, 1.5));
-  EXPECT_FALSE(MayBeBlamed(one, 2, 1, 1.5));
+  EXPECT_TRUE(plan::MayBeBlamed(one, 0, 1, 15.0));
+  EXPECT_FALSE(plan::MayBeBlamed(one, 0, 1, 17.0));
+  EXPECT_TRUE(plan::MayBeBlamed(one, 1, 2, 1.5));
+  EXPECT_FALSE(plan::MayBeBlamed(one, 2, 1, 1.5));
   EXPECT_EQ(one.confusable.front().told_from, 2.0);
 }
 

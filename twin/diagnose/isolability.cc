@@ -287,12 +287,6 @@ EffectSettings AsEffect(const ShownCause& cause, const std::string& bench) {
   return effect;
 }
 
-bool MayBeBlamed(const Isolability& isolability, std::size_t present, std::size_t blamed, double times) {
-  return std::ranges::any_of(isolability.confusable, [&](const Confusable& pair) {
-    return pair.present == present && pair.blamed == blamed && times < pair.surely_told_from;
-  });
-}
-
 std::vector<std::vector<std::size_t>> NeverTold(const Isolability& isolability) {
   std::vector<std::size_t> set_of(isolability.causes.size());
   for (std::size_t k = 0; k < set_of.size(); ++k) set_of[k] = k;

@@ -54,10 +54,6 @@ Isolability IsolabilityOf(const LinearRun& run, const Analysis& analysis);
 /// room's temperature), tell it apart too: `surely_told_from` becomes the largest of all.
 void KeepSurelyTold(const Isolability& other, Isolability& isolability);
 
-/// Whether `blamed` may be taken for `present` in whatever shape, of so many times the smallest size that is found in
-/// that shape.
-bool MayBeBlamed(const Isolability& isolability, std::size_t present, std::size_t blamed, double times);
-
 /// Causes that no plausible size tells apart: sets of two or more in which each may be taken for another,
 /// neighbours of neighbours too.
 std::vector<std::vector<std::size_t>> NeverTold(const Isolability& isolability);

@@ -30,7 +30,6 @@ class Deflation {
   Eigen::MatrixXd Along(const Eigen::MatrixXd& projected) const { return dual_.transpose() * projected; }
   /// Coefficients of the causes in projected data, and their covariance for unit noise.
   Eigen::MatrixXd Amplitudes(const Eigen::MatrixXd& projected) const { return solve_ * projected; }
-  const Eigen::MatrixXd& Covariance() const { return covariance_; }
   int Rank() const { return static_cast<int>(basis_.cols()); }
 
  private:

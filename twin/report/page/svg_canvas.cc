@@ -65,16 +65,6 @@ void SvgCanvas::Text(double x, double y, const std::string& text, const std::str
                       upright ? fmt::format(" transform=\"rotate(-90 {:.1f} {:.1f})\"", x, y) : "", ForHtml(text));
 }
 
-void SvgCanvas::Clip(double x, double y, double width, double height) {
-  ++clips_;
-  svg_ += fmt::format("<clipPath id=\"c{0}\"><rect x=\"{1:.1f}\" y=\"{2:.1f}\" width=\"{3:.1f}\" height=\"{4:.1f}\"/></clipPath><g clip-path=\"url(#c{0})\">\n",
-                      clips_, x, y, width, height);
-}
-
-void SvgCanvas::Unclip() {
-  svg_ += "</g>\n";
-}
-
 std::string SvgCanvas::Text() const {
   return svg_ + "</svg>\n";
 }

@@ -30,15 +30,11 @@ class SvgCanvas {
   /// @param anchor  "start", "middle" or "end".
   void Text(double x, double y, const std::string& text, const std::string& anchor = "start", double size_px = 12.0,
             bool bold = false, bool upright = false);
-  /// What follows is cut at a rectangle, until Unclip.
-  void Clip(double x, double y, double width, double height);
-  void Unclip();
 
   std::string Text() const;
 
  private:
   std::string svg_;
-  int clips_ = 0;
 };
 
 }  // namespace twinbench::report

@@ -72,11 +72,4 @@ Pose X_SF(const MountSettings& mount, const BodyError& error) {
   return Erring(Moved({mount.x_m, mount.y_m, mount.z_m}).rotate(Rz(mount.yaw_rad)), error);
 }
 
-Vector3 VolumetricError_m(const MachineSettings& machine, const MachineCommand& at) {
-  const auto tip = [&](const MachineErrors& errors) -> Vector3 {
-    return X_MS(at, errors).inverse() * X_MT(at, errors, machine.pivot_m).translation();
-  };
-  return tip(ErrorsAt(machine, at)) - tip({});
-}
-
 }  // namespace twinbench::sim

@@ -36,7 +36,4 @@ Pose X_MS(const MachineCommand& at, const MachineErrors& errors);
 /// Artefact on the X slide.
 Pose X_SF(const MountSettings& mount, const BodyError& error);
 
-/// The tip in the X slide's frame, actual minus ideal [m].
-Vector3 VolumetricError_m(const MachineSettings& machine, const MachineCommand& at);
-
 }  // namespace twinbench::sim
