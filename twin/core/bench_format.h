@@ -57,12 +57,12 @@ struct BenchFormat {
   void (*add_keys)(std::vector<ScenarioKey>&, Scenario&) = nullptr;  // those of its own tables
   /// See scenario_together.h; null: any keys fit each other.
   void (*check_together)(const ScenarioText&, const Scenario&) = nullptr;
-  std::optional<TableNames> tables;    // whose errors a file may give; nothing: it has no such tables
+  std::optional<TableNames> tables = {};  // whose errors a file may give; nothing: it has no such tables
   bool has_fixtures = false;           // things may stand in its light: [[fixture]]
   std::vector<ReadingColumn> columns;  // of readings.csv, in the order of writing
   void (*into_frame)(std::vector<Reading>&) = nullptr;  // signs and origin that a file leaves open; null: they are fixed
   std::vector<DesiredColumn> desired;
-  std::optional<ComparedColumns> compared;
+  std::optional<ComparedColumns> compared = {};
   /// The largest size that a converter can give in a column [SI]; 0 where none is known. Null: of no column.
   double (*range_of)(const Scenario&, const std::string& column) = nullptr;
   std::string (*smallest_addition)(int setups) = nullptr;  // what would give a run of that many some redundancy

@@ -30,23 +30,10 @@ plausible::Plan PlanOf(const Scenario& s, const std::vector<Reading>&) {
 }  // namespace
 
 const Bench& Whole() {
-  static const Bench bench = [] {
-    Bench b;
-    b.format = &Format();
-    b.make_twin = MakeTwin;
-    b.has_controllers = true;
-    b.make_devices = MakeDevices;
-    b.drive = procedure::DriveCircles;
-    b.follow = FollowRecord;
-    b.planned_readings = PlannedReadings;
-    b.plan = PlanOf;
-    b.evaluate = Evaluate;
-    b.score = ScoreRun;
-    b.next_runs = NextRunsOf;
-    b.diagnose = Diagnose;
-    b.linear_run = Linear;
-    return b;
-  }();
+  static const Bench bench = {
+      .format = &Format(), .make_twin = MakeTwin, .follow = FollowRecord, .planned_readings = PlannedReadings,
+      .plan = PlanOf, .has_controllers = true, .make_devices = MakeDevices, .drive = procedure::DriveCircles,
+      .evaluate = Evaluate, .score = ScoreRun, .next_runs = NextRunsOf, .diagnose = Diagnose, .linear_run = Linear};
   return bench;
 }
 

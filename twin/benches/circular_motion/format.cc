@@ -5,23 +5,14 @@
 namespace twinbench::benches::circular {
 
 const BenchFormat& Format() {
-  static const BenchFormat format = [] {
-    BenchFormat f;
-    f.name = kCircularBench;
-    f.title = "circles of a machine tool under a ball bar with an encoder, and on a grid plate";
-    f.add_keys = AddKeys;
-    f.check_together = CheckTogether;
-    f.columns = Columns();
-    f.into_frame = AboutItsCentre;
-    // Of the bar and its encoder, or of the two axes of the grid: the deviation from the commanded point.
-    f.channels = f.points = {"radial", "tangential"};
-    f.angles = {"commanded"};
-    f.signal = SignalKind::kPosition;
-    f.desired = Desired();
-    f.smallest_addition = Addition;
-    f.effects = Effects();
-    return f;
-  }();
+  // Of the bar and its encoder, or of the two axes of the grid: the deviation from the commanded point.
+  static const BenchFormat format = {
+      .name = kCircularBench,
+      .title = "circles of a machine tool under a ball bar with an encoder, and on a grid plate",
+      .add_keys = AddKeys, .check_together = CheckTogether, .columns = Columns(), .into_frame = AboutItsCentre,
+      .desired = Desired(), .smallest_addition = Addition, .effects = Effects(),
+      .channels = {"radial", "tangential"}, .points = {"radial", "tangential"}, .angles = {"commanded"},
+      .signal = SignalKind::kPosition};
   return format;
 }
 

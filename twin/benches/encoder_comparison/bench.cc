@@ -51,25 +51,11 @@ plausible::Plan PlanOf(const Scenario& s, const std::vector<Reading>& readings) 
 }  // namespace
 
 const Bench& Whole() {
-  static const Bench bench = [] {
-    Bench b;
-    b.format = &Format();
-    b.make_twin = MakeTwin;
-    b.has_controllers = true;
-    b.make_devices = MakeDevices;
-    b.drive = procedure::DriveComparison;
-    b.follow = FollowRecord;
-    b.planned_readings = PlannedReadings;
-    b.plan = PlanOf;
-    b.evaluate = Evaluate;
-    b.index_errors = IndexErrorsOf;
-    b.score = ScoreRun;
-    b.next_runs = NextRunsOf;
-    b.shift_design = ShiftsOf;
-    b.diagnose = Diagnose;
-    b.linear_run = Linear;
-    return b;
-  }();
+  static const Bench bench = {
+      .format = &Format(), .make_twin = MakeTwin, .follow = FollowRecord, .planned_readings = PlannedReadings,
+      .plan = PlanOf, .has_controllers = true, .make_devices = MakeDevices, .drive = procedure::DriveComparison,
+      .evaluate = Evaluate, .score = ScoreRun, .index_errors = IndexErrorsOf, .shift_design = ShiftsOf,
+      .next_runs = NextRunsOf, .diagnose = Diagnose, .linear_run = Linear};
   return bench;
 }
 

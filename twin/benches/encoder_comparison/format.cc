@@ -5,22 +5,11 @@
 namespace twinbench::benches::encoder {
 
 const BenchFormat& Format() {
-  static const BenchFormat format = [] {
-    BenchFormat f;
-    f.name = kEncoderBench;
-    f.title = "an angle device under test against a reference";
-    f.add_keys = AddKeys;
-    f.check_together = CheckTogether;
-    f.columns = Columns();
-    f.channels = {"angle"};
-    f.points = {"angle"};
-    f.angles = {"device", "reference"};
-    f.desired = Desired();
-    f.compared = Compared();
-    f.smallest_addition = Addition;
-    f.effects = Effects();
-    return f;
-  }();
+  static const BenchFormat format = {
+      .name = kEncoderBench, .title = "an angle device under test against a reference", .add_keys = AddKeys,
+      .check_together = CheckTogether, .columns = Columns(), .desired = Desired(), .compared = Compared(),
+      .smallest_addition = Addition, .effects = Effects(), .channels = {"angle"}, .points = {"angle"},
+      .angles = {"device", "reference"}};
   return format;
 }
 

@@ -42,23 +42,10 @@ std::unique_ptr<model::Follow> FollowProbe(const Scenario& scenario, const std::
 }  // namespace
 
 const Bench& Whole() {
-  static const Bench bench = [] {
-    Bench b;
-    b.format = &Format();
-    b.make_twin = MakeProbeTwin;
-    b.has_controllers = true;
-    b.make_devices = MakeProbeDevices;
-    b.drive = procedure::DriveFreeform;
-    b.follow = FollowProbe;
-    b.planned_readings = PlannedReadings;
-    b.plan = PlanOf;
-    b.evaluate = Evaluate;
-    b.score = ScoreRun;
-    b.next_runs = NextRunsOf;
-    b.diagnose = Diagnose;
-    b.linear_run = Linear;
-    return b;
-  }();
+  static const Bench bench = {
+      .format = &Format(), .make_twin = MakeProbeTwin, .follow = FollowProbe, .planned_readings = PlannedReadings,
+      .plan = PlanOf, .has_controllers = true, .make_devices = MakeProbeDevices, .drive = procedure::DriveFreeform,
+      .evaluate = Evaluate, .score = ScoreRun, .next_runs = NextRunsOf, .diagnose = Diagnose, .linear_run = Linear};
   return bench;
 }
 

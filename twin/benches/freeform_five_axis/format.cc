@@ -27,22 +27,11 @@ double RangeOf(const Scenario& s, const std::string& column) {
 }  // namespace
 
 const BenchFormat& Format() {
-  static const BenchFormat format = [] {
-    BenchFormat f;
-    f.name = kFreeformBench;
-    f.title = "a five-axis machine's probe against an array of paraboloids";
-    f.add_keys = AddKeys;
-    f.columns = Columns();
-    f.channels = {"qpd_x", "qpd_y", "ccd"};
-    f.points = {"qpd_x", "qpd_y", "ccd"};
-    f.angles = {"a", "b"};
-    f.desired = Desired();
-    f.range_of = RangeOf;
-    f.smallest_addition = Addition;
-    f.effects = Effects();
-    f.signal = SignalKind::kOwn;
-    return f;
-  }();
+  static const BenchFormat format = {
+      .name = kFreeformBench, .title = "a five-axis machine's probe against an array of paraboloids",
+      .add_keys = AddKeys, .columns = Columns(), .desired = Desired(), .range_of = RangeOf,
+      .smallest_addition = Addition, .effects = Effects(), .channels = {"qpd_x", "qpd_y", "ccd"},
+      .points = {"qpd_x", "qpd_y", "ccd"}, .angles = {"a", "b"}, .signal = SignalKind::kOwn};
   return format;
 }
 

@@ -32,25 +32,11 @@ plausible::Plan PlanOf(const Scenario& s, const std::vector<Reading>&) {
 }  // namespace
 
 const Bench& Whole() {
-  static const Bench bench = [] {
-    Bench b;
-    b.format = &Format();
-    b.make_twin = MakeTwin;
-    b.has_controllers = true;
-    b.make_devices = MakeDevices;
-    b.drive = procedure::DriveHob;
-    b.follow = FollowRecord;
-    b.planned_readings = PlannedReadings;
-    b.plan = PlanOf;
-    b.evaluate = Evaluate;
-    b.index_errors = separate::hob::HobIndexErrors;
-    b.score = ScoreRun;
-    b.next_runs = NextRunsOf;
-    b.shift_design = ShiftsOf;
-    b.diagnose = Diagnose;
-    b.linear_run = Linear;
-    return b;
-  }();
+  static const Bench bench = {
+      .format = &Format(), .make_twin = MakeTwin, .follow = FollowRecord, .planned_readings = PlannedReadings,
+      .plan = PlanOf, .has_controllers = true, .make_devices = MakeDevices, .drive = procedure::DriveHob,
+      .evaluate = Evaluate, .score = ScoreRun, .index_errors = separate::hob::HobIndexErrors,
+      .shift_design = ShiftsOf, .next_runs = NextRunsOf, .diagnose = Diagnose, .linear_run = Linear};
   return bench;
 }
 

@@ -5,21 +5,11 @@
 namespace twinbench::benches::hob {
 
 const BenchFormat& Format() {
-  static const BenchFormat format = [] {
-    BenchFormat f;
-    f.name = kHobBench;
-    f.title = "transmission error of a hobbing machine by two ring encoders";
-    f.add_keys = AddKeys;
-    f.check_together = CheckTogether;
-    f.columns = Columns();
-    f.channels = {"transmission"};
-    f.points = {"transmission", "interferometer"};
-    f.angles = {"table"};
-    f.desired = Desired();
-    f.smallest_addition = Addition;
-    f.effects = Effects();
-    return f;
-  }();
+  static const BenchFormat format = {
+      .name = kHobBench, .title = "transmission error of a hobbing machine by two ring encoders",
+      .add_keys = AddKeys, .check_together = CheckTogether, .columns = Columns(), .desired = Desired(),
+      .smallest_addition = Addition, .effects = Effects(), .channels = {"transmission"},
+      .points = {"transmission", "interferometer"}, .angles = {"table"}};
   return format;
 }
 

@@ -41,26 +41,11 @@ plan::ShiftDesign ShiftsOf(const Scenario& s) {
 }  // namespace
 
 const Bench& Whole() {
-  static const Bench bench = [] {
-    Bench b;
-    b.format = &Format();
-    b.make_twin = MakeTwin;
-    b.follow = FollowRecord;
-    b.planned_readings = PlannedReadings;
-    b.plan = PlanOf;
-    b.is_pictured = true;
-    b.has_controllers = true;
-    b.evaluate = Evaluate;
-    b.index_errors = IndexErrorsOf;
-    b.score = ScoreRun;
-    b.contributions = Contributions;
-    b.shift_design = ShiftsOf;
-    b.next_runs = NextRunsOf;
-    b.diagnose = Diagnose;
-    b.linear_run = Linear;
-    b.change_of_tables = ChangeOfTables;
-    return b;
-  }();
+  static const Bench bench = {
+      .format = &Format(), .make_twin = MakeTwin, .follow = FollowRecord, .planned_readings = PlannedReadings,
+      .plan = PlanOf, .is_pictured = true, .has_controllers = true, .evaluate = Evaluate, .score = ScoreRun,
+      .index_errors = IndexErrorsOf, .contributions = Contributions, .shift_design = ShiftsOf,
+      .next_runs = NextRunsOf, .diagnose = Diagnose, .linear_run = Linear, .change_of_tables = ChangeOfTables};
   return bench;
 }
 

@@ -19,25 +19,13 @@ double RangeOf(const Scenario& s, const std::string& column) {
 }  // namespace
 
 const BenchFormat& Format() {
-  static const BenchFormat format = [] {
-    BenchFormat f;
-    f.name = kRotaryBench;
-    f.title = "errors of two stacked rotary tables by a grating and two PSDs";
-    f.add_keys = AddKeys;
-    f.check_together = CheckTogether;
-    f.tables = TableNames{"target", "reference", TableOf};
-    f.has_fixtures = true;
-    f.columns = Columns();
-    f.channels = {kChannelNames.begin(), kChannelNames.end()};
-    f.points = {kChannelNames.begin(), kChannelNames.end()};
-    f.angles = {"target", "reference"};
-    f.signal = SignalKind::kPosition;
-    f.desired = Desired();
-    f.range_of = RangeOf;
-    f.smallest_addition = Addition;
-    f.effects = Effects();
-    return f;
-  }();
+  static const BenchFormat format = {
+      .name = kRotaryBench, .title = "errors of two stacked rotary tables by a grating and two PSDs",
+      .add_keys = AddKeys, .check_together = CheckTogether, .tables = TableNames{"target", "reference", TableOf},
+      .has_fixtures = true, .columns = Columns(), .desired = Desired(), .range_of = RangeOf,
+      .smallest_addition = Addition, .effects = Effects(), .channels = {kChannelNames.begin(), kChannelNames.end()},
+      .points = {kChannelNames.begin(), kChannelNames.end()}, .angles = {"target", "reference"},
+      .signal = SignalKind::kPosition};
   return format;
 }
 

@@ -18,24 +18,12 @@ double RangeOf(const Scenario& s, const std::string& column) {
 }  // namespace
 
 const BenchFormat& Format() {
-  static const BenchFormat format = [] {
-    BenchFormat f;
-    f.name = kTurntableBench;
-    f.title = "a turntable against a multi-tooth table by an autocollimator";
-    f.add_keys = AddKeys;
-    f.check_together = CheckTogether;
-    f.tables = TableNames{"turntable", "multitooth", TableOf};
-    f.columns = Columns();
-    f.into_frame = CountBothTheSameWay;
-    f.channels = {"x", "y"};
-    f.points = {"x", "y"};
-    f.angles = {"turntable", "multitooth"};
-    f.desired = Desired();
-    f.range_of = RangeOf;
-    f.smallest_addition = Addition;
-    f.effects = Effects();
-    return f;
-  }();
+  static const BenchFormat format = {
+      .name = kTurntableBench, .title = "a turntable against a multi-tooth table by an autocollimator",
+      .add_keys = AddKeys, .check_together = CheckTogether, .tables = TableNames{"turntable", "multitooth", TableOf},
+      .columns = Columns(), .into_frame = CountBothTheSameWay, .desired = Desired(), .range_of = RangeOf,
+      .smallest_addition = Addition, .effects = Effects(), .channels = {"x", "y"}, .points = {"x", "y"},
+      .angles = {"turntable", "multitooth"}};
   return format;
 }
 
