@@ -11,6 +11,7 @@
 #include "twin/benches/circular_motion/estimators/far_radii.h"
 #include "twin/benches/circular_motion/ranked.h"
 #include "twin/core/reading_clock.h"
+#include "twin/report/far_readings.h"
 #include "twin/report/json_units.h"
 #include "twin/report/polar_text.h"
 #include "twin/report/sound.h"
@@ -357,22 +358,6 @@ ShapesAsRead ShapesOf(const CircleAnalysis& a, const CircularMachineSettings& st
   return shapes;
 }
 
-json FarJson(const std::vector<separate::FarOnCourse>& far) {
-  json all = json::array();
-  for (const separate::FarOnCourse& one : far)
-    all.push_back({{"reading", one.reading}, {"angle_deg", one.angle_rad / units::deg}, {"off_um", In(um, one.off)}, {"times_scatter", one.times}});
-  return all;
-}
-
-std::string FarText(const std::vector<separate::FarOnCourse>& far) {
-  std::string text;
-  for (const separate::FarOnCourse& one : far)
-    text += fmt::format("doubtful: the radius of reading {} ({:.6g} deg) lies {:.3g} µm from the curve through its neighbours, {:.2g} times the scatter "
-                        "of the others, and no other turn does: left out\n",
-                        one.reading, one.angle_rad / units::deg, one.off / um, one.times);
-  return text;
-}
-
 /// G, F, D and H are of the radii as they were read, and errors widen their uncertainty by what they leave: of radii alone that is no reason to
 /// have nothing. Where rows contradict their clock, or an angle does what is shown, it is.
 report::Misfit MisfitOf(const CircleAnalysis& a, const std::string& other_ways) {
@@ -401,8 +386,9 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   for (const RadialPart& part : RadialPartsOf(a)) evaluation.results["radial_parts"].push_back({{"errors", part.keys}, {"rms_um", In(um, part.rms_m)}});
   const std::vector<RankedError> ranked = RankedErrors(a);
   if (!ranked.empty()) evaluation.results["ranked"] = RankedJson(ranked);
-  if (!far.empty()) evaluation.results["far"] = FarJson(far);
-  evaluation.summary = fmt::format("{} of {} readings have a radius\n", a.points.size() + far.size(), all_readings.size()) + FarText(far);
+  if (!far.empty()) evaluation.results["far"] = report::FarJson(far, "off_um", um);
+  evaluation.summary = fmt::format("{} of {} readings have a radius\n", a.points.size() + far.size(), all_readings.size()) +
+                       report::FarText(far, "the radius of reading {} ({:.6g} deg)", "µm", um);
   if (!a.method_bias.empty()) evaluation.results["method_bias"] = BiasJson(a.method_bias);
   evaluation.summary += BiasText(a);
   evaluation.summary += RankedText(ranked) + DeviationsText(a);

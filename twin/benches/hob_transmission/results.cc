@@ -9,6 +9,7 @@
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
 #include "twin/benches/hob_transmission/uncertainty_parts.h"
 #include "twin/report/compensation_text.h"
+#include "twin/report/far_readings.h"
 #include "twin/report/json_units.h"
 #include "twin/separate/far_on_course.h"
 
@@ -291,22 +292,6 @@ std::vector<separate::FarOnCourse> TakeOutFar(double ratio, std::vector<Reading>
   return separate::TakeOutFar(readings, error, kLeast_rad, [](double, double) { return true; });
 }
 
-std::string FarText(const std::vector<separate::FarOnCourse>& far) {
-  std::string text;
-  for (const separate::FarOnCourse& one : far)
-    text += fmt::format("doubtful: reading {} (table at {:.6g} deg) lies {:.3g} arcsec from the curve through its neighbours, {:.2g} times the "
-                        "scatter of the others, and no other turn does: left out\n",
-                        one.reading, one.angle_rad / units::deg, one.off / units::arcsec, one.times);
-  return text;
-}
-
-nlohmann::json FarJson(const std::vector<separate::FarOnCourse>& far) {
-  nlohmann::json all = nlohmann::json::array();
-  for (const separate::FarOnCourse& one : far)
-    all.push_back({{"reading", one.reading}, {"angle_deg", one.angle_rad / units::deg}, {"off_arcsec", report::Arcsec(one.off)}, {"times_scatter", one.times}});
-  return all;
-}
-
 /// Of all orders together, of e_T + psi.
 report::Misfit MisfitOf(const separate::hob::HeadSeparation& separation) {
   double chi2 = 0.0;
@@ -327,8 +312,8 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   const std::vector<separate::FarOnCourse> far = TakeOutFar(settings.transmission.Ratio(), readings);
   const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
   const nlohmann::json separation = analysis.separation ? SeparationJson(analysis, settings) : nlohmann::json();
-  report::Evaluation evaluation{ResultsOf(analysis, settings), separation, analysis.not_separated, FarText(far) + SummaryOf(analysis, settings)};
-  if (!far.empty()) evaluation.results["far"] = FarJson(far);
+  report::Evaluation evaluation{ResultsOf(analysis, settings), separation, analysis.not_separated, report::FarText(far, "reading {} (table at {:.6g} deg)", "arcsec", units::arcsec) + SummaryOf(analysis, settings)};
+  if (!far.empty()) evaluation.results["far"] = report::FarJson(far, "off_arcsec", units::arcsec);
   if (analysis.separation) evaluation.misfits = {MisfitOf(*analysis.separation)};
   evaluation.score = [analysis](const nlohmann::json& truth) { return ScoreOf(analysis, truth); };
   return evaluation;
