@@ -13,14 +13,12 @@
 namespace twinbench::model {
 namespace {
 
-/// The longest time between two readings of one motion: some are left out, none is a pause.
 double LongestStep_s(const Eigen::VectorXd& time_s) {
-  constexpr double kSome = 3.5;  // usual steps
   std::vector<double> steps_s;
   for (Eigen::Index i = 1; i < time_s.size(); ++i) {
     if (time_s[i] > time_s[i - 1]) steps_s.push_back(time_s[i] - time_s[i - 1]);
   }
-  return steps_s.empty() ? 0.0 : kSome * Median(std::move(steps_s));
+  return steps_s.empty() ? 0.0 : kLongestStep * Median(std::move(steps_s));
 }
 
 /// Which readings are of one motion.

@@ -6,6 +6,9 @@
 
 namespace twinbench::model {
 
+/// The longest time between two readings of one motion, in usual steps: some are left out, none is a pause.
+inline constexpr double kLongestStep = 3.5;
+
 /// Rate of change of what has one value a reading, by the times of the course [1/s]: the slope of the parabola through
 /// a reading and its neighbours of the same motion, the nearest two at its ends, zero where there is no neighbour.
 ///

@@ -5,6 +5,7 @@
 
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/core/units.h"
+#include "twin/model/motion.h"
 #include "twin/model/signals.h"
 #include "twin/sim/pointwise_follow.h"
 
@@ -44,11 +45,10 @@ double RunUp_rad(const std::vector<Reading>& record, const Scenario& scenario) {
 
 /// Of a reading in motion behind others that were left out the next one tells how the shaft gains speed.
 double BehindGap_rad_s2(const std::vector<Reading>& record, std::size_t i) {
-  constexpr double kLeftOut = 3.5;  // steps
   if (i == 0 || i + 1 >= record.size() || record[i].velocity_rad_s == 0.0) return kNaN;
   const Reading &before = record[i - 1], &at = record[i], &next = record[i + 1];
   const double step_s = ToSeconds(next.time - at.time);
-  const bool is_behind_gap = next.setup == at.setup && step_s > 0.0 && ToSeconds(at.time - before.time) > kLeftOut * step_s;
+  const bool is_behind_gap = next.setup == at.setup && step_s > 0.0 && ToSeconds(at.time - before.time) > model::kLongestStep * step_s;
   return is_behind_gap ? (next.velocity_rad_s - at.velocity_rad_s) / step_s : kNaN;
 }
 

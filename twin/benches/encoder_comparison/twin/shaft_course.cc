@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/model/motion.h"
+
 namespace twinbench::sim {
 
 void ShaftCourse::Add(const AngleMoment& moment) {
@@ -32,10 +34,9 @@ double ShaftCourse::Speed_rad_s(double time_s) const {
 
 /// On the way from reading k - 1 to k. Behind a gap, where a pass begins, its speed is there already.
 double ShaftCourse::Acceleration_rad_s2(std::size_t k) const {
-  constexpr double kGap = 3.5;  // of the step before
   const Point &a = points_[k - 1], &b = points_[k];
   if (std::isfinite(b.gains_rad_s2)) return b.gains_rad_s2;
-  if (k > 1 && b.time_s - a.time_s > kGap * (a.time_s - points_[k - 2].time_s)) return 0.0;
+  if (k > 1 && b.time_s - a.time_s > model::kLongestStep * (a.time_s - points_[k - 2].time_s)) return 0.0;
   return b.time_s > a.time_s ? (b.velocity_rad_s - a.velocity_rad_s) / (b.time_s - a.time_s) : 0.0;
 }
 
