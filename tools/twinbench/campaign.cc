@@ -27,29 +27,6 @@
 namespace twinbench::tools {
 namespace {
 
-/// The live page of a campaign: trials done and lost, time left, and what some results have come to so far.
-class CampaignPage {
- public:
-  /// @param where   Study and table, in words.
-  /// @param table   What is in it already counts.
-  /// @param chosen  Results as the summary names them, "score.device.ez_arcsec[]"; empty: the first few, single ones that are scored before others.
-  CampaignPage(LivePage& page, const std::string& where, const campaign::Table& table, std::vector<std::string> chosen);
-  /// @throws InputError if the trials so far have come to results and a chosen one is not among them.
-  void Hear(const campaign::CampaignProgress& progress);
-
- private:
-  void TellLost(const campaign::TrialRow& row);
-  void TellResults(const campaign::CampaignProgress& progress);
-  void ChooseAmong(const std::map<std::string, campaign::ResultSummary>& results);
-
-  using WallClock = std::chrono::steady_clock;
-  LivePage& page_;
-  std::vector<std::string> chosen_;
-  bool is_chosen_ = false;
-  campaign::Summary summary_;
-  WallClock::time_point begun_ = WallClock::now(), due_{};
-};
-
 constexpr std::size_t kFewResults = 6;
 constexpr auto kBetweenSums = std::chrono::milliseconds(100);
 constexpr int kShareOfLooks = 20;  // summing up takes one part in so many of this thread's time at the most
@@ -79,55 +56,71 @@ std::vector<std::string> FirstFew(const std::map<std::string, campaign::ResultSu
   return names;
 }
 
-CampaignPage::CampaignPage(LivePage& page, const std::string& where, const campaign::Table& table, std::vector<std::string> chosen)
-    : page_(page), chosen_(std::move(chosen)) {
-  if (!page_.IsOpen()) return;
-  page_.Begin({{"bench", ""}, {"folder", where}, {"columns", nlohmann::json::array()}});
-  table.ForEach([this](const campaign::TrialRow& row) {
-    summary_.Add(row);
-    TellLost(row);
-  });
-}
+/// The live page of a campaign: trials done and lost, time left, and what some results have come to so far.
+class CampaignPage {
+ public:
+  /// @param where   Study and table, in words.
+  /// @param table   What is in it already counts.
+  /// @param chosen  Results as the summary names them, "score.device.ez_arcsec[]"; empty: the first few, single ones that are scored before others.
+  CampaignPage(LivePage& page, const std::string& where, const campaign::Table& table, std::vector<std::string> chosen)
+      : page_(page), chosen_(std::move(chosen)) {
+    if (!page_.IsOpen()) return;
+    page_.Begin({{"bench", ""}, {"folder", where}, {"columns", nlohmann::json::array()}});
+    table.ForEach([this](const campaign::TrialRow& row) {
+      summary_.Add(row);
+      TellLost(row);
+    });
+  }
 
-void CampaignPage::Hear(const campaign::CampaignProgress& progress) {
-  if (!page_.IsOpen()) return;
-  summary_.Add(*progress.row);
-  TellLost(*progress.row);
-  const auto now = WallClock::now();
-  if (now < due_ && progress.done < progress.planned) return;
-  TellResults(progress);
-  due_ = WallClock::now() + std::max<WallClock::duration>(kBetweenSums, kShareOfLooks * (WallClock::now() - now));
-}
+  /// @throws InputError if the trials so far have come to results and a chosen one is not among them.
+  void Hear(const campaign::CampaignProgress& progress) {
+    if (!page_.IsOpen()) return;
+    summary_.Add(*progress.row);
+    TellLost(*progress.row);
+    const auto now = WallClock::now();
+    if (now < due_ && progress.done < progress.planned) return;
+    TellResults(progress);
+    due_ = WallClock::now() + std::max<WallClock::duration>(kBetweenSums, kShareOfLooks * (WallClock::now() - now));
+  }
 
-void CampaignPage::TellLost(const campaign::TrialRow& row) {
-  if (!row.failure.empty()) page_.Told("lost_trial", {{"trial", row.trial}, {"failure", row.failure}});
-}
+ private:
+  void TellLost(const campaign::TrialRow& row) {
+    if (!row.failure.empty()) page_.Told("lost_trial", {{"trial", row.trial}, {"failure", row.failure}});
+  }
 
-void CampaignPage::TellResults(const campaign::CampaignProgress& progress) {
-  const std::map<std::string, campaign::ResultSummary> results = summary_.Results();
-  if (!is_chosen_ && !results.empty()) ChooseAmong(results);
-  const double elapsed_s = std::chrono::duration<double>(WallClock::now() - begun_).count();
-  nlohmann::json told = {{"done", progress.done},
-                         {"planned", progress.planned},
-                         {"lost", progress.lost},
-                         {"left_s", elapsed_s * static_cast<double>(progress.planned - progress.done) / static_cast<double>(progress.done)},
-                         {"trials", summary_.Trials()},
-                         {"results", nlohmann::json::array()}};
-  for (const std::string& name : chosen_)
-    if (const auto found = results.find(name); found != results.end()) told["results"].push_back(ResultJson(name, found->second));
-  page_.Told("trials", told);
-}
+  void TellResults(const campaign::CampaignProgress& progress) {
+    const std::map<std::string, campaign::ResultSummary> results = summary_.Results();
+    if (!is_chosen_ && !results.empty()) ChooseAmong(results);
+    const double elapsed_s = std::chrono::duration<double>(WallClock::now() - begun_).count();
+    nlohmann::json told = {{"done", progress.done},
+                           {"planned", progress.planned},
+                           {"lost", progress.lost},
+                           {"left_s", elapsed_s * static_cast<double>(progress.planned - progress.done) / static_cast<double>(progress.done)},
+                           {"trials", summary_.Trials()},
+                           {"results", nlohmann::json::array()}};
+    for (const std::string& name : chosen_)
+      if (const auto found = results.find(name); found != results.end()) told["results"].push_back(ResultJson(name, found->second));
+    page_.Told("trials", told);
+  }
 
-void CampaignPage::ChooseAmong(const std::map<std::string, campaign::ResultSummary>& results) {
-  is_chosen_ = true;
-  if (chosen_.empty()) chosen_ = FirstFew(results);
-  std::vector<std::string> names;
-  for (const auto& [name, r] : results) names.push_back(name);
-  for (const std::string& name : chosen_)
-    if (!results.contains(name))
-      throw InputError("--show " + name, "the trials come to no such result; those that are done are in the table, and --resume goes on",
-                       "one that the summary names; the nearest is " + Nearest(name, names));
-}
+  void ChooseAmong(const std::map<std::string, campaign::ResultSummary>& results) {
+    is_chosen_ = true;
+    if (chosen_.empty()) chosen_ = FirstFew(results);
+    std::vector<std::string> names;
+    for (const auto& [name, r] : results) names.push_back(name);
+    for (const std::string& name : chosen_)
+      if (!results.contains(name))
+        throw InputError("--show " + name, "the trials come to no such result; those that are done are in the table, and --resume goes on",
+                         "one that the summary names; the nearest is " + Nearest(name, names));
+  }
+
+  using WallClock = std::chrono::steady_clock;
+  LivePage& page_;
+  std::vector<std::string> chosen_;
+  bool is_chosen_ = false;
+  campaign::Summary summary_;
+  WallClock::time_point begun_ = WallClock::now(), due_{};
+};
 
 struct CampaignOptions {
   std::string study, table, csv;
