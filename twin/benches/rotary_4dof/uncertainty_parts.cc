@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "twin/benches/rotary_4dof/estimators/calibrate.h"
+#include "twin/core/table_errors.h"
 #include "twin/report/uncertainty_parts.h"
 
 namespace twinbench::benches::rotary {
@@ -53,11 +54,6 @@ double BiasOf(const separate::MethodBias& bias, Table table, Component component
   return 0.0;
 }
 
-std::string KeyOf(Component component) {
-  return std::string(kComponentNames[static_cast<std::size_t>(component)]) +
-         (IsAngle(component) ? "_arcsec" : "_um");
-}
-
 uncertainty::Joint JointOf(const std::string& name, const separate::TableEstimate& estimate) {
   uncertainty::Joint joint{name, {}, estimate.cov.ToDense() + estimate.cov_systematic.ToDense()};
   const std::size_t n = estimate.value.position_rad.size();
@@ -65,7 +61,7 @@ uncertainty::Joint JointOf(const std::string& name, const separate::TableEstimat
   for (const Component c : estimate.components) {
     for (std::size_t i = 0; i < n; ++i) {
       over_unit[std::ssize(joint.names)] = 1.0 / (IsAngle(c) ? units::arcsec : units::um);
-      joint.names.push_back(name + "." + KeyOf(c) + "[" + std::to_string(i) + "]");
+      joint.names.push_back(name + "." + ColumnOf(c).name + "[" + std::to_string(i) + "]");
     }
   }
   joint.cov = over_unit.asDiagonal() * joint.cov * over_unit.asDiagonal();
@@ -132,7 +128,7 @@ void AddParts(const Analysis& analysis, const std::vector<Reading>& readings, co
     for (std::size_t block = 0; block < estimate.components.size(); ++block) {
       const Component component = estimate.components[block];
       const double scale = ScaleOf(*analysis.separation, component);
-      parts[KeyOf(component)] = PartsOf(estimate, block, BiasOf(analysis.method_bias, table, component),
+      parts[ColumnOf(component).name] = PartsOf(estimate, block, BiasOf(analysis.method_bias, table, component),
                            {of_steps.value_or(0.0), of_steps ? std::max(0.0, 1.0 - 1.0 / (scale * scale)) : 0.0});
     }
   }

@@ -3,6 +3,7 @@
 
 #include "twin/benches/rotary_4dof/estimators/harmonic_u.h"
 #include "twin/benches/rotary_4dof/estimators/separate.h"
+#include "twin/core/table_errors.h"
 #include "twin/core/units.h"
 #include "twin/core/written_number.h"
 
@@ -10,15 +11,6 @@ namespace twinbench::separate {
 namespace {
 
 using nlohmann::json;
-
-double FileUnit(Component component) {
-  return IsAngle(component) ? units::arcsec : units::um;
-}
-
-std::string Key(Component component) {
-  return std::string(kComponentNames[static_cast<std::size_t>(component)]) +
-         (IsAngle(component) ? "_arcsec" : "_um");
-}
 
 json Column(const std::vector<double>& values, double unit) {
   json column = json::array();
@@ -31,7 +23,7 @@ json HarmonicsJson(const TableEstimate& estimate) {
   json harmonics = {{"order", json::array()}};
   for (std::size_t k = 1; k <= estimate.value.position_rad.size() / 2; ++k) harmonics["order"].push_back(k);
   for (const Component c : estimate.components)
-    harmonics[Key(c)] = Column(HarmonicUncertainties(estimate, c), FileUnit(c));
+    harmonics[ColumnOf(c).name] = Column(HarmonicUncertainties(estimate, c), ColumnOf(c).to_SI);
   return harmonics;
 }
 
@@ -39,8 +31,8 @@ json TableJson(const TableEstimate& estimate) {
   json table;
   table["position_deg"] = Column(estimate.value.position_rad, units::deg);
   for (const Component c : estimate.components) {
-    table[Key(c)] = Column(estimate.value[c], FileUnit(c));
-    table["u_" + Key(c)] = Column(estimate.u[c], FileUnit(c));
+    table[ColumnOf(c).name] = Column(estimate.value[c], ColumnOf(c).to_SI);
+    table["u_" + ColumnOf(c).name] = Column(estimate.u[c], ColumnOf(c).to_SI);
   }
   table["u_harmonics"] = HarmonicsJson(estimate);
   return table;
@@ -50,8 +42,8 @@ json ByMotion(const Vector4& values, bool with_units) {
   json object;
   for (int d = 0; d < measure::kDofs; ++d) {
     const Component c = kComponentOf[static_cast<std::size_t>(d)];
-    const std::string key = with_units ? Key(c) : kComponentNames[static_cast<std::size_t>(c)];
-    if (std::isfinite(values[d])) object[key] = values[d] / (with_units ? FileUnit(c) : 1.0);
+    const std::string key = with_units ? ColumnOf(c).name : kComponentNames[static_cast<std::size_t>(c)];
+    if (std::isfinite(values[d])) object[key] = values[d] / (with_units ? ColumnOf(c).to_SI : 1.0);
   }
   return object;
 }
