@@ -26,7 +26,7 @@ std::vector<Plan> ReducedPlans() {
   for (const auto& part :
        {Every(7, OfSet("kinds rotary_4dof", kinds)),
         OfSet("several encoder_comparison", SeveralPlans(7, kFirstSeed)),
-        Every(4, OfSet("clean encoder_comparison", clean)), Every(8, OfSet("clean rotary_4dof", clean))})
+        Every(8, OfSet("clean encoder_comparison", clean)), Every(16, OfSet("clean rotary_4dof", clean))})
     plans.insert(plans.end(), part.begin(), part.end());
   return plans;
 }

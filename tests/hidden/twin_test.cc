@@ -73,7 +73,7 @@ TEST(Twins, SizesAreWithinTheirStatedIntervalsInNineteenOfTwenty) {
 }
 
 TEST(Twins, CleanRunsRaiseAlarmsInOneCaseOfAHundredWhateverTheirNoise) {
-  const int runs = test::ByNight(2 * kNoises, kNoises + 4);  // the fewest that tell 0.99 from 0.90
+  const int runs = test::ByNight(2 * kNoises, kNoises + 2);  // the fewest that tell 0.99 from 0.90
   const auto outcomes = OfEveryBench([runs](const std::string& bench) { return CleanPlans(bench, runs, 1); });
   EXPECT_TRUE(WrongOnlyWhereKnown(AnsweredOf(outcomes)));
   EXPECT_TRUE(IsPooledRate(CountOf(outcomes, IsRight), outcomes.size(), 0.99, 0.90));
@@ -103,14 +103,16 @@ TEST(HiddenCases, CoverEveryEffectOfEveryCatalogue) {
   }
 }
 
-/// Diagnosed once for all tests; of the rotary bench every fourth one, by night every second, since all are in the scores.
+/// Diagnosed once for all tests; by day half of those of the circles and a fourth of those of the rotary bench, by night twice as
+/// many, since all are in the scores.
 const std::vector<Outcome>& All() {
   static const std::vector<Outcome> outcomes = [] {
     std::vector<Plan> plans;
     for (const std::string bench : {kRotaryBench, kEncoderBench, kCircularBench, kFreeformBench}) {
       std::vector<Plan> more = ChallengePlans(test::DataPath(ChallengeSetOf(bench)), bench);
       if (bench == kRotaryBench) more = Every(2, more);
-      if (bench == kRotaryBench && !test::IsNight()) more = Every(2, std::vector<Plan>(more.begin() + 1, more.end()));
+      if ((bench == kRotaryBench || bench == kCircularBench) && !test::IsNight())
+        more = Every(2, std::vector<Plan>(more.begin() + 1, more.end()));
       plans.insert(plans.end(), more.begin(), more.end());
     }
     return RunReduced(plans);
