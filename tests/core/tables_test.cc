@@ -1,6 +1,5 @@
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
-#include "tests/support/noise.h"
 #include "twin/core/compensation_table.h"
 #include "twin/core/csv.h"
 #include "twin/core/sampled_curve.h"

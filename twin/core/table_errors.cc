@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 
 #include "twin/core/csv.h"
 #include "twin/core/errors.h"
-#include "twin/core/number_text.h"
 #include "twin/core/units.h"
-#include "twin/core/whole_file.h"
 
 namespace twinbench {
 namespace {
