@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "twin/core/errors.h"
+#include "twin/core/lag.h"
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
 #include "twin/import/layout.h"
@@ -128,6 +129,34 @@ std::size_t Opening(std::string_view code, std::size_t at) {
   return at != std::string_view::npos && (code[at] == '{' || code[at] == '[') ? at : std::string_view::npos;
 }
 
+/// Behind the bracket that closes the one at `opening`.
+std::size_t EndOfList(std::string_view code, std::size_t opening) {
+  int depth = 0;
+  for (std::size_t at = opening; at < code.size(); ++at) {
+    if (code[at] == '{' || code[at] == '[') ++depth;
+    if ((code[at] == '}' || code[at] == ']') && --depth == 0) return at;
+  }
+  return code.size();
+}
+
+/// {{0.0, -15}, {0.5, -11}, ...}: the columns of a list of rows of a few numbers each; none of anything else.
+std::vector<Column> ColumnsOfRows(const std::string& name, std::string_view list) {
+  constexpr std::size_t kFewestRows = 3, kMostColumns = 6;
+  std::vector<Column> columns;
+  for (std::size_t at = 0; (at = list.find_first_of("{[", at)) != std::string_view::npos;) {
+    const std::size_t end = EndOfList(list, at);
+    std::size_t others = 0;
+    const std::vector<double> row = NumbersIn(list.substr(at + 1, end - at - 1), others);
+    if (columns.empty()) columns.resize(row.size());
+    if (others > 0 || row.size() != columns.size()) return {};
+    for (std::size_t c = 0; c < row.size(); ++c) columns[c].value.push_back(row[c]);
+    at = end;
+  }
+  const bool are_rows = columns.size() > 1 && columns.size() <= kMostColumns && columns.front().value.size() >= kFewestRows;
+  for (std::size_t c = 0; c < columns.size(); ++c) columns[c].name = fmt::format("{}.{}", name, c);
+  return are_rows ? columns : std::vector<Column>();
+}
+
 /// name[...] = { numbers }, name = [numbers]: every one in the text.
 std::vector<Column> ArraysIn(std::string_view code) {
   std::vector<Column> arrays;
@@ -137,6 +166,10 @@ std::vector<Column> ArraysIn(std::string_view code) {
     const std::size_t before = equals == 0 ? std::string_view::npos : code.find_last_of(";{}=", equals - 1);
     const std::size_t begin = before == std::string_view::npos ? 0 : before + 1;
     const std::string name = NameIn(code.substr(begin, equals - begin), code[opening]);
+    if (const auto rows = ColumnsOfRows(name, code.substr(opening + 1, EndOfList(code, opening) - opening - 1)); !name.empty() && !rows.empty()) {
+      arrays.insert(arrays.end(), rows.begin(), rows.end());
+      continue;
+    }
     const std::size_t end = std::min(code.find(code[opening] == '{' ? '}' : ']', opening), code.size());
     std::size_t others = 0;
     Column array{name, "", NumbersIn(code.substr(opening + 1, end - opening - 1), others), {}};
@@ -152,8 +185,14 @@ void TakeBareList(std::string_view code, std::vector<Column>& arrays) {
   if (others == 0 && !list.value.empty()) arrays.push_back(std::move(list));
 }
 
-/// Those as long as the longest that say together which is whose: the angles of a reference beside a device's. Of one name again, as for
-/// another machine, the first.
+/// Entry by entry on a line, whatever its slope.
+bool AreOnALine(const Column& a, const Column& b) {
+  constexpr double kLine = 0.98;
+  return std::abs(LineThrough(a.value, b.value).correlation) > kLine;
+}
+
+/// Those as long as the longest that say together which is whose: the angles of a reference beside a device's, or two that lie on a line,
+/// or the numbers of one list of rows. Of one name again, as for another machine, the first.
 std::vector<Column> SideBySide(const std::vector<Column>& arrays) {
   std::vector<Column> beside;
   std::size_t rows = 0;
@@ -164,7 +203,11 @@ std::vector<Column> SideBySide(const std::vector<Column>& arrays) {
   const auto speak = [&beside](Speaks of) {
     return std::ranges::any_of(beside, [of](const Column& a) { return Clearness(a.name, of) > 0; });
   };
-  const bool says_which = beside.size() > 1 && (speak(Speaks::kReference) || (beside.size() == 2 && speak(Speaks::kDevice)));
+  const auto row_of = [](const Column& c) { return c.name.substr(0, c.name.find('.')); };
+  const bool are_rows = beside.size() > 1 && row_of(beside[0]) == row_of(beside[1]);
+  if (are_rows) std::erase_if(beside, [first = row_of(beside[0]), &row_of](const Column& c) { return row_of(c) != first; });
+  const bool says_which =
+      beside.size() > 1 && (are_rows || speak(Speaks::kReference) || (beside.size() == 2 && (speak(Speaks::kDevice) || AreOnALine(beside[0], beside[1]))));
   return says_which ? beside : std::vector<Column>();
 }
 

@@ -15,11 +15,6 @@
 namespace twinbench::imports {
 namespace {
 
-/// A command and where the device is, of one axis.
-struct AxisPair {
-  const Choice *reference = nullptr, *shown = nullptr;
-};
-
 std::string ListOf(const std::vector<std::string>& axes) {
   std::string list;
   for (std::size_t k = 0; k < axes.size(); ++k) list += fmt::format("{}{}: {}", k == 0 ? "" : ", ", k + 1, axes[k]);
@@ -53,23 +48,22 @@ void KeepRows(const std::vector<std::size_t>& rows, Track& track) {
   track.lines.clear();
 }
 
-/// @return false if the rows are not of several axes.
-bool TakeRowsOfAxis(const Map& map, Recording& recording, Track& track) {
+/// Where the rows are of several axes.
+void TakeRowsOfAxis(Map& map, Recording& recording, Track& track) {
   const auto whose = std::ranges::find_if(track.columns, SaysWhoseRow);
-  if (whose == track.columns.end()) return false;
+  if (whose == track.columns.end()) return;
   const Column label = *whose;
   const std::set<double> values(label.value.begin(), label.value.end());
   std::vector<std::string> axes;
   for (const double value : values)
     axes.push_back(label.IsNumber() ? fmt::format("{} {:g}", label.name, value) : label.words[static_cast<std::size_t>(value)]);
-  const double chosen = *std::next(values.begin(), static_cast<std::ptrdiff_t>(ChosenOf(axes, map, recording)));
+  const double chosen = *std::next(values.begin(), static_cast<std::ptrdiff_t>(ChosenOf(axes, map, recording.remarks)));
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < label.value.size(); ++i)
     if (label.value[i] == chosen) rows.push_back(i);
   recording.left_out.push_back({label.value.size() - rows.size(), "rows of other axes"});
   KeepRows(rows, track);
   std::erase_if(track.columns, [&label](const Column& column) { return column.name == label.name; });
-  return true;
 }
 
 // Columns of several axes side by side.
@@ -120,40 +114,43 @@ std::vector<AxisPair> PairsIn(const std::vector<Choice>& columns) {
   return pairs;
 }
 
-/// @return false if there are no columns of several axes.
-bool TakePair(Map& map, std::vector<Recording>& recordings) {
+/// Where there are columns of several axes.
+void TakePair(Map& map, std::vector<Recording>& recordings) {
   const std::vector<Choice> columns = NumberColumns(recordings);
   const std::vector<AxisPair> pairs = PairsIn(columns);
-  if (pairs.size() < 2) return false;
-  std::vector<std::string> axes;
-  for (const AxisPair& pair : pairs) axes.push_back(fmt::format("\"{}\" against \"{}\"", pair.shown->name, pair.reference->name));
-  const AxisPair& chosen = pairs[ChosenOf(axes, map, recordings.front())];
-  std::vector<std::string>& remarks = recordings.front().remarks;
-  Put("reference_deg", *chosen.reference, "by its name", map, remarks);
-  Put("measured_deg", *chosen.shown, "by its name", map, remarks);
-  return true;
+  if (pairs.size() > 1) TakeOneOf(pairs, {"reference_deg", "measured_deg"}, map, recordings.front().remarks);
 }
 
 }  // namespace
 
-std::size_t ChosenOf(const std::vector<std::string>& axes, const Map& map, Recording& recording) {
+std::size_t ChosenOf(const std::vector<std::string>& axes, Map& map, std::vector<std::string>& remarks) {
   const auto number = static_cast<std::size_t>(std::max(1, map.course.axis_number));
   if (number > axes.size())
     throw InputError("--axis-number", fmt::format("axis {} of {} axes ({})", number, axes.size(), ListOf(axes)), fmt::format("1 to {}", axes.size()));
-  recording.remarks.push_back(fmt::format("{} axes are in the file ({}): {} is taken; another one by --axis-number N, or --column", axes.size(), ListOf(axes), number));
+  remarks.push_back(fmt::format("{} axes are in the file ({}): {} is taken; another one by --axis-number N, or --column", axes.size(), ListOf(axes), number));
+  map.course.axis_number = 0;
   return number - 1;
+}
+
+void TakeOneOf(const std::vector<AxisPair>& pairs, const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks) {
+  std::vector<std::string> axes;
+  for (const AxisPair& pair : pairs) axes.push_back(fmt::format("\"{}\" against \"{}\"", pair.shown->name, pair.reference->name));
+  const AxisPair& chosen = pairs[pairs.size() == 1 ? 0 : ChosenOf(axes, map, remarks)];
+  Put(compared[0], *chosen.reference, chosen.why_reference, map, remarks);
+  Put(compared[1], *chosen.shown, chosen.why_shown, map, remarks);
+}
+
+void RequireAxisWasThere(const Map& map) {
+  if (map.course.axis_number > 1)
+    throw InputError("--axis-number", fmt::format("axis {}, and of no several axes is a command beside a place known", map.course.axis_number),
+                     "a file of several axes, or the columns by --column");
 }
 
 void TakeAxis(Map& map, std::vector<Recording>& recordings) {
   const bool is_open = map.columns.empty() && map.bench.empty() && map.sought.empty();
-  bool is_taken = false;
-  if (recordings.size() == 1 && recordings.front().tracks.size() == 1) {
-    is_taken = TakeRowsOfAxis(map, recordings.front(), recordings.front().tracks.front());
-    if (is_open && TakePair(map, recordings)) is_taken = true;
-  }
-  if (map.course.axis_number > 1 && !is_taken)
-    throw InputError("--axis-number", fmt::format("axis {}, and of no several axes is a command beside a place known", map.course.axis_number),
-                     "a file of several axes, or the columns by --column");
+  if (recordings.size() != 1 || recordings.front().tracks.size() != 1) return;
+  TakeRowsOfAxis(map, recordings.front(), recordings.front().tracks.front());
+  if (is_open) TakePair(map, recordings);
 }
 
 }  // namespace twinbench::imports

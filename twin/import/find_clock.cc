@@ -13,6 +13,10 @@
 namespace twinbench::imports {
 namespace {
 
+bool HasPart(const std::string& name, const std::vector<const char*>& parts) {
+  return std::ranges::any_of(parts, [&name](const char* part) { return name.find(part) != std::string::npos; });
+}
+
 bool IsCalledTime(const Column& column) {
   const std::string name = SmallLetters(column.name);
   if (column.unit == "instant" || column.unit == "time of day") return true;
@@ -23,8 +27,7 @@ bool IsCalledTime(const Column& column) {
       return column.IsNumber();
   }
   const auto unit = UnitNamed(column.unit.empty() && name != "min" ? name : column.unit);  // "ms"; "min" is the least
-  return column.IsNumber() && unit && unit->dimension == Dimension::kTime &&
-         name.find("dwell") == std::string::npos;
+  return column.IsNumber() && unit && unit->dimension == Dimension::kTime && !HasPart(name, {"dwell", "pwm", "pulse", "width", "period", "duration", "delay"});
 }
 
 /// A time that each row has of its own, as a dwell, does not go on from row to row.
@@ -58,10 +61,6 @@ void CountRows(double rate_Hz, Track& track) {
   for (std::size_t i = 0; i < track.time_s.size(); ++i)
     track.time_s[i] = static_cast<double>(i) / (rate_Hz > 0.0 ? rate_Hz : 1.0);
   if (rate_Hz > 0.0) track.clock = fmt::format("rows at {:g} Hz, as the map says", rate_Hz);
-}
-
-bool HasPart(const std::string& name, const std::vector<const char*>& parts) {
-  return std::ranges::any_of(parts, [&name](const char* part) { return name.find(part) != std::string::npos; });
 }
 
 /// Where a clock begins anew, as one of each part of a file does; none where it goes back in another way.

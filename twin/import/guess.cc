@@ -6,14 +6,18 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <numeric>
 #include <set>
 #include <string_view>
 
 #include "twin/core/errors.h"
+#include "twin/core/lag.h"
 #include "twin/import/angle_and_error.h"
+#include "twin/import/axes.h"
 #include "twin/import/choices.h"
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
+#include "twin/import/companions.h"
 #include "twin/import/counts.h"
 #include "twin/import/join.h"
 #include "twin/import/sought.h"
@@ -201,6 +205,42 @@ const Choice* TheReal(const std::vector<Choice>& columns, const std::set<std::st
   return is_alone ? &*real : nullptr;
 }
 
+/// A name that speaks of one side goes before what the values say of the order.
+void TurnByName(AxisPair& pair) {
+  const auto speaks_otherwise = [](const Choice* c, Speaks own, Speaks other) { return Clearness(c->name, own) == 0 && Clearness(c->name, other) > 0; };
+  if (speaks_otherwise(pair.reference, Speaks::kReference, Speaks::kDevice) && Clearness(pair.shown->name, Speaks::kDevice) == 0)
+    std::swap(pair.reference, pair.shown);
+}
+
+/// Of columns whose names do not say enough those that go together.
+/// @return false if there are none, or not with the one that is given.
+bool TakeCompanions(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks) {
+  if (compared.size() != 2) return false;
+  const auto is_mostly_empty = [](const Choice& c) { return 2 * std::ranges::count_if(c.column->value, [](double x) { return std::isnan(x); }) > std::ssize(c.column->value); };
+  std::vector<Choice> open;
+  std::ranges::copy_if(columns, std::back_inserter(open), [&](const Choice& c) { return !IsCounter(*c.column) && !is_mostly_empty(c); });
+  std::vector<AxisPair> pairs = CompanionsIn(open);
+  std::ranges::for_each(pairs, TurnByName);
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (!IsGiven(map, compared[k])) continue;
+    const auto is_given = [&](const Choice* c) { return c->name == GivenExpression(map, compared[k]); };
+    const auto with_given = std::ranges::find_if(pairs, [&](const AxisPair& p) { return is_given(p.reference) || is_given(p.shown); });
+    if (with_given == pairs.end()) return false;
+    const Choice* other = is_given(with_given->reference) ? with_given->shown : with_given->reference;
+    Put(compared[1 - k], *other, "which goes with it", map, remarks);
+    return true;
+  }
+  if (pairs.empty()) return false;
+  TakeOneOf(pairs, compared, map, remarks);
+  return true;
+}
+
+/// Three and more of which no name says which is the reference.
+bool AreManyWithoutReference(const std::vector<Choice>& columns, const std::vector<std::string>& compared, const Map& map) {
+  const auto is_reference = [](const Choice& c) { return Clearness(c.name, Speaks::kReference) > 0; };
+  return compared.size() == 2 && !IsGiven(map, compared[0]) && !IsGiven(map, compared[1]) && columns.size() > 2 && std::ranges::none_of(columns, is_reference);
+}
+
 void TakeByName(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
                 std::vector<std::string>& remarks) {
   for (std::size_t k = 0; k < compared.size(); ++k) {
@@ -266,6 +306,19 @@ bool IsOfAnotherDimension(const Choice& choice, const Map& map) {
          });
 }
 
+/// Of a quantity of another kind beside the only place, the pulses of a servo, say: the place that a straight line makes of it.
+std::string PlaceByLine(const std::vector<Recording>& recordings, const std::string& target, const Choice& place) {
+  const auto mean = [](const std::vector<double>& x) { return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size()); };
+  for (const Choice& c : NumberColumns(recordings)) {
+    if (c.name == place.name || !Changes(c) || c.track != place.track || IsCounter(*c.column)) continue;
+    const StraightLine line = LineThrough(c.column->value, place.column->value);
+    if (std::abs(line.correlation) < 0.9) continue;
+    const double offset = mean(place.column->value) - line.slope * mean(c.column->value);
+    return fmt::format("; --column '{}=[{}] * {:.5g} + {:.5g}' is the straight line from it to \"{}\", which shows how straight that goes", target, c.name, line.slope, offset, place.name);
+  }
+  return "";
+}
+
 /// The line to type, with columns that there are: which of them it is only the user knows.
 std::string ExampleOf(const std::vector<Choice>& left, const std::vector<Recording>& recordings, const std::vector<std::string>& compared, const Map& map) {
   std::string example;
@@ -278,6 +331,14 @@ std::string ExampleOf(const std::vector<Choice>& left, const std::vector<Recordi
     if (next != left.end()) ++next;
   }
   return fmt::format("the columns that are meant, as in{}, or under [columns] of a map", example);
+}
+
+/// A target that is one place in all rows is why no reference is found.
+std::string StandingTarget(const std::vector<Recording>& recordings) {
+  for (const Choice& c : NumberColumns(recordings)) {
+    if (!Changes(c) && IsCalledCommand(c.name)) return fmt::format("; \"{}\" is none, which is {:g} in all rows and never moves", c.name, c.column->value.front());
+  }
+  return "";
 }
 
 void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Recording>& recordings,
@@ -301,8 +362,10 @@ void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Record
       Put(compared[k], left[0], "the first column that is left", map, remarks);
       continue;
     }
-    throw InputError(recordings[0].file, fmt::format("which column is {} is not clear; there are {}", compared[k], ColumnNames(recordings)),
-                     ExampleOf(left.size() > missing ? left : open, recordings, compared, map) + ReadyMapsByNames(recordings[0]));
+    if (TakeCompanions(columns, compared, map, remarks)) return;
+    throw InputError(recordings[0].file, fmt::format("which column is {} is not clear; there are {}{}", compared[k], ColumnNames(recordings), StandingTarget(recordings)),
+                     ExampleOf(left.size() > missing ? left : open, recordings, compared, map) +
+                         (columns.size() == 1 ? PlaceByLine(recordings, compared[k], columns[0]) : "") + ReadyMapsByNames(recordings[0]));
   }
 }
 
@@ -322,7 +385,7 @@ void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
   if (columns.size() > compared.size()) std::erase_if(columns, [](const Choice& c) { return IsCalledError(c.name); });
   const std::string reference = GivenExpression(map, compared[0]);
   std::erase_if(columns, [&reference](const Choice& c) { return AreOfTwoAxes(c.name, reference); });
-  TakeByName(columns, compared, map, remarks);
+  if (!AreManyWithoutReference(columns, compared, map) || !TakeCompanions(columns, compared, map, remarks)) TakeByName(columns, compared, map, remarks);
   TakeWhatIsLeft(columns, recordings, compared, map, remarks);
   TakeCountsBesideAngle(compared, recordings, map, remarks);
   TakeBothForCounts(compared, recordings, map, remarks);

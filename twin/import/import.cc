@@ -111,6 +111,7 @@ Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
   TakeReadyMapOfList(recordings, map, guessed);
   const BenchFormat& bench = BenchFor(recordings, map);
   FillIn(recordings, bench, ComparedColumns(bench), map, guessed);
+  RequireAxisWasThere(map);
   RequireColumns(bench, map, recordings);
   const Joined joined = Join(recordings, map, bench.compared ? bench.compared->shown : map.columns.at(0).column);
   Imported imported;

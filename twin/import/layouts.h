@@ -68,11 +68,12 @@ bool AreNamedLists(const std::vector<std::string_view>& lines);
 /// name and one value, such as a time stamp. A record ends where a name comes again. Other lines stay as they are.
 std::string TableOfNamedLists(std::string_view text);
 
-/// True of lines that are nearly all "target=5.0 actual=5.03" or "ref: 5.0, enc: 5.03", as serial monitors show them.
-bool ArePairs(const std::vector<std::string_view>& lines);
+/// True of lines that are nearly all "target=5.0 actual=5.03", or of a log in which no line is a row of numbers but one sentence
+/// comes again and again: "[INFO] moved to 5.0 mm, encoder 5.03 mm".
+bool AreSentences(const std::vector<std::string_view>& lines);
 
-/// The same as a table between tabs, the names above it; lines that are no such pairs stay as they are.
-std::string TableOfPairs(std::string_view text);
+/// The values of the sentence that comes most often as a table between tabs; names are the words before each. Other lines stay.
+std::string TableOfSentences(std::string_view text);
 
 /// True of a text that begins as JSON does: {"..., [{..., [[...
 bool OpensRecords(const std::vector<std::string_view>& lines);

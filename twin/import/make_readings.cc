@@ -88,7 +88,7 @@ void Maker::Take(const Session& session, const MostReadings& most, Imported& imp
     TakeStops(session, course, cut, imported);
   } else {
     const bool may_come = one_place && session.has_clock && !linear_;
-    const std::size_t on_way = may_come ? RowsOnTheWay(session.value.at(bench_.compared->shown), units::turn) : 0;
+    const std::size_t on_way = may_come ? RowsOnTheWay(session.value.at(bench_.compared->shown), reference.front(), units::turn) : 0;
     if (on_way > 0) tally.left_out.push_back({on_way, "rows at the beginning, on the way to the only place"});
     for (const Block& block : cut.blocks) {
       if (block.begin >= on_way) Append(session, course, block, {block.begin, MeanOf(course.reference, block)}, imported);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "twin/core/errors.h"
+#include "twin/core/lag.h"
 #include "twin/import/by_speed.h"
 #include "twin/import/common.h"
 #include "twin/import/follows.h"
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kLikeOne = 0.2;  // a gain further from 1 is no error of a scale but another quantity
 constexpr double kFollows = 0.5;  // correlation below which a device does not follow at all
+constexpr double kOnItsWay = 0.05;  // correlation that all rows have less than those in which it has arrived
 constexpr double kFollowsLater = 0.75;  // the same at the best of many lags, where chance has more to offer
 constexpr double kLeastGain = 1.0 / 3.0, kLargestGain = 3.0;  // that play, stiction or a slow servo may leave
 
@@ -73,9 +75,9 @@ std::string LagText(const std::string& name, const std::string& reference, const
 }
 
 /// Less than that is what stops short by a part of its last step.
-HowItFollows ByItsSpeed(const std::string& name, const std::string& by, const std::vector<double>& reference, const std::vector<double>& shown) {
+HowItFollows ByItsSpeed(const std::string& name, const std::string& by, const Session& session, const std::vector<double>& reference) {
   constexpr double kLeastRows = 0.3;
-  const double rows = RowsBehindBySpeed(reference, shown);
+  const double rows = session.has_clock ? 0.0 : RowsBehindBySpeed(reference, session.value.at(name));
   if (!(rows > kLeastRows)) return {};
   return {fmt::format("{} is behind {} by its speed, about {:.2g} rows", name, by, rows), true};
 }
@@ -92,10 +94,9 @@ HowItFollows ByItsSpeed(const std::string& name, const std::string& by, const st
 
 /// The whole number of turns that one side makes for one of the other; 0: it is none.
 double GearOf(double ratio) {
-  constexpr double kExact = 5e-3, kLargest = 400.0;
-  const double whole = std::round(ratio);
-  const bool is_gear =
-      whole >= 2.0 && whole <= kLargest && std::abs(ratio / whole - 1.0) < kExact && MeaningOfGain(ratio).empty();
+  constexpr double kExact = 5e-3, kNearlyWhole = 0.05, kLargest = 400.0;  // any large ratio is within 5e-3 of a whole number
+  const double whole = std::round(ratio), off = std::abs(ratio - whole);
+  const bool is_gear = whole >= 2.0 && whole <= kLargest && off < std::min(kExact * whole, kNearlyWhole) && MeaningOfGain(ratio).empty();
   return is_gear ? whole : 0.0;
 }
 
@@ -140,9 +141,14 @@ HowItFollows RequireOneToOne(const Session& session, const std::vector<double>& 
   if (one_place) return {};
   RequireMotion(by, NameOf(map, by), reference);
   const Following now = FollowingOf(reference, shown);
-  if (std::abs(now.gain - 1.0) <= kLikeOne && now.correlation > kFollows) return session.has_clock ? HowItFollows{} : ByItsSpeed(name, by, reference, shown);
+  constexpr double kAtOnce = 0.9;  // correlation beyond which nothing can come so much later that it would tell
+  const bool goes_so_far = std::abs(now.gain - 1.0) <= kLikeOne;
+  // Without a clock nobody knows yet that a device was on its way in the rows in which a command waits for it.
+  const bool was_on_its_way = !session.has_clock && LineThrough(reference, shown).correlation < now.correlation - kOnItsWay;
+  if (goes_so_far && now.correlation > kAtOnce && !was_on_its_way) return ByItsSpeed(name, by, session, reference);
   const Following later = FollowingLater(reference, shown);
-  if (FollowsLater(now, later)) return {LagText(name, by, session, later), true};
+  if (FollowsLater(now, later) || (was_on_its_way && later.rows_later > 0 && IsOwnGain(later))) return {LagText(name, by, session, later), true};
+  if (goes_so_far && now.correlation > kFollows) return ByItsSpeed(name, by, session, reference);
   if (std::abs(now.correlation) < kFollows)
     throw InputError(NameOf(map, name), fmt::format("{} does not follow {} (correlation {:.2f}, and at no lag more than {:.2f})", name, by, now.correlation,
                                                     std::max(now.correlation, later.correlation)),

@@ -70,8 +70,9 @@ std::vector<Rest> RestsOf(const Course& course, const std::vector<double>& shown
   return rests;
 }
 
-std::size_t RowsOnTheWay(std::vector<double> shown, double turn_rad) {
-  constexpr double kShareOfTurn = 0.05, kTimesLater = 3.0;
+std::size_t RowsOnTheWay(std::vector<double> shown, double place_rad, double turn_rad) {
+  constexpr double kShareOfTurn = 0.05, kTimesLater = 3.0, kShareOfPlace = 0.5;
+  const double far_rad = place_rad == 0.0 ? kShareOfTurn * turn_rad : std::min(kShareOfTurn * turn_rad, kShareOfPlace * std::abs(place_rad));
   const std::size_t half = shown.size() / 2;
   Unwrap(turn_rad, shown);
   const double place = MedianOf({shown.begin() + static_cast<std::ptrdiff_t>(half), shown.end()});
@@ -79,7 +80,7 @@ std::size_t RowsOnTheWay(std::vector<double> shown, double turn_rad) {
   for (const double x : shown) off.push_back(std::abs(x - place));
   const double later = *std::max_element(off.begin() + static_cast<std::ptrdiff_t>(half), off.end());
   std::size_t rows = 0;
-  if (off.front() < std::max(kShareOfTurn * turn_rad, kTimesLater * later)) return rows;
+  if (off.front() < std::max(far_rad, kTimesLater * later)) return rows;
   while (rows < half && off[rows] > later) ++rows;
   return rows;
 }

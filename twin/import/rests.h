@@ -21,8 +21,8 @@ struct Rest {
 /// last tenth and the one before. At least the first third of a rest is left out.
 std::vector<Rest> RestsOf(const Course& course, const std::vector<double>& shown, double turn_rad);
 
-/// So many rows at the beginning of a recording at one place are of the way there: a twentieth of a turn or more from the
-/// place where the device ends, and three times as far as it ever goes in the second half. What drifts goes less far.
-std::size_t RowsOnTheWay(std::vector<double> shown, double turn_rad);
+/// So many rows at the beginning of a recording at one place are of the way there: a twentieth of a turn or more from where the device
+/// ends, or half of the place itself, and three times as far as it ever goes in the second half. What drifts goes less far.
+std::size_t RowsOnTheWay(std::vector<double> shown, double place_rad, double turn_rad);
 
 }  // namespace twinbench::imports

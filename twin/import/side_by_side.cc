@@ -68,7 +68,7 @@ bool TakeSideBySide(Map& map, std::vector<Recording>& recordings) {
     numbers.push_back(c);
   }
   if (axes.empty()) return false;
-  const std::size_t axis = numbers[axes.size() == 1 && map.course.axis_number <= 1 ? 0 : ChosenOf(axes, map, recordings[0])];
+  const std::size_t axis = numbers[axes.size() == 1 && map.course.axis_number <= 1 ? 0 : ChosenOf(axes, map, recordings[0].remarks)];
   const auto put = [&](const std::string& target, std::size_t file) {
     const Track& track = recordings[file].tracks[0];
     const Choice choice{fmt::format("{}:{}", file + 1, track.columns[axis].name), &track.columns[axis], &track, &recordings[file]};

@@ -101,8 +101,8 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
     ReadCycles(text, layout, recording);
   } else if (kind == "records") {
     ReadRecords(text, layout, clock, recording);
-  } else if (layout.separator == "auto" && ArePairs(FirstLines(text))) {
-    ReadTable(TableOfPairs(text), layout, clock, recording);
+  } else if (layout.separator == "auto" && AreSentences(FirstLines(text))) {
+    ReadTable(TableOfSentences(text), WithTabs(layout), clock, recording);
     recording.layout = "lines of names and values";
   } else {
     ReadTable(text, layout, clock, recording);

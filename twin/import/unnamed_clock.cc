@@ -9,7 +9,7 @@
 
 #include "twin/import/clock.h"
 #include "twin/import/common.h"
-#include "twin/import/follows.h"
+#include "twin/import/companions.h"
 
 namespace twinbench::imports {
 namespace {
@@ -25,20 +25,17 @@ double StepWithin(double off, const std::vector<double>& values) {
   return all ? usual : 0.0;
 }
 
-bool GoTogether(const Column& first, const Column& second) {
-  const Following following = FollowingOf(first.value, second.value);
-  return std::abs(following.gain - 1.0) < 0.2 && following.correlation > 0.9;
-}
-
 bool FirstIsAngle(const Track& track) {
   const Column& first = track.columns.front();
   return std::any_of(track.columns.begin() + 1, track.columns.end(), [&first](const Column& other) { return other.IsNumber() && GoTogether(first, other); });
 }
 
-/// Of a column that rises evenly, up to the rounding of its last digit; or as evenly as a computer logs, if it is not itself an angle
-/// that goes with the others.
+/// Of a column that rises evenly, up to the rounding of its last digit, or in seconds since 1970, say; or as evenly as a computer logs,
+/// if it is not itself an angle that goes with the others.
 double StepOfClock(const Track& track) {
   constexpr double kEqual = 0.02, kLogged = 0.9;
+  const std::vector<double>& values = track.columns.front().value;
+  if (const auto clock = ClockOf(values, ""); clock && clock->absolute) return StepWithin(std::numeric_limits<double>::infinity(), values);
   const double step = StepWithin(kEqual, track.columns.front().value);
   return step > 0.0 ? step : FirstIsAngle(track) ? 0.0 : StepWithin(kLogged, track.columns.front().value);
 }

@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/import/importing.h"
+
+/// Files whose names do not say which columns are one axis: what the columns hold says it.
+namespace twinbench::imports {
+namespace {
+
+using testing::HasSubstr, testing::Not;
+
+double Azimuth_deg(double time_s) { return 80.0 * std::sin(0.11 * time_s); }
+double Elevation_deg(double time_s) { return 30.0 - 30.0 * std::cos(0.07 * time_s); }
+
+/// Seconds since 1970 with gaps, azimuth and elevation that are shown 50 ms late, where they should be, their rates, an empty field.
+std::string Tracking() {
+  std::string text;
+  double time_s = 0.0;
+  for (int i = 0; i < 900; ++i) {
+    time_s += i % 100 == 99 ? 0.9 : 0.2 + 0.001 * (i % 3);
+    text += fmt::format("{:.5f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}, {:.4f}, \n", 1652493229.0 + time_s, Azimuth_deg(time_s - 0.05), Elevation_deg(time_s - 0.05),
+                        Azimuth_deg(time_s), Elevation_deg(time_s), 8.8 * std::cos(0.11 * time_s));
+  }
+  return text;
+}
+
+TEST_F(Importing, TakesColumnsThatGoTogetherWhereNothingHasAName) {
+  const Imported first = Take(Tracking());
+  EXPECT_THAT(first.story, HasSubstr("reference <- column 4 [deg]\n  measured <- column 2 [deg]"));
+  EXPECT_THAT(first.story, HasSubstr("clock: column 1 [s since 1970]"));
+  EXPECT_THAT(first.story, HasSubstr("2 axes are in the file (1: \"column 2\" against \"column 4\", 2: \"column 3\" against \"column 5\"): 1 is taken"));
+  Map second;
+  second.course.axis_number = 2;
+  EXPECT_THAT(Import({File("raw.txt", Tracking())}, second).story, HasSubstr("reference <- column 5 [deg]\n  measured <- column 3 [deg]"));
+}
+
+/// A square wave goes together with the motor row by row in no way; that the third channel is their difference says it, and that rows
+/// in which a motor is on its way are motion.
+TEST_F(Importing, TakesTwoChannelsOfWhichAThirdIsTheDifference) {
+  std::string text = "Channel 1,Channel 2,Channel 3,Channel 4\n";
+  double shown_deg = 0.0;
+  for (int i = 0; i < 2400; ++i) {
+    const double set_deg = (i / 300) % 2 == 0 ? 0.0 : 90.0;
+    shown_deg += (set_deg - shown_deg) / 40.0;
+    text += fmt::format("{:.2f},{:.2f},{:.2f},{:.2f}\n", shown_deg, set_deg, set_deg - shown_deg, 2.0 * (set_deg - shown_deg));
+  }
+  const Imported imported = Take(text);
+  EXPECT_THAT(imported.story, HasSubstr("reference <- Channel 2 [deg]\n  measured <- Channel 1 [deg]"));
+  EXPECT_THAT(imported.story, HasSubstr("taken as motion that was read 100 times a second"));
+}
+
+TEST_F(Importing, TakesNoColumnsThatDoNotGoTogether) {
+  std::string text;
+  for (int i = 0; i < 300; ++i) text += fmt::format("{:.3f} {:.3f} {:.3f}\n", std::sin(0.1 * i), 20.0 * std::sin(0.1 * i), std::cos(0.23 * i));
+  EXPECT_THAT(MessageOf([&] { Take(text); }), HasSubstr("is not clear"));
+}
+
+TEST_F(Importing, ReadsTheSentenceOfALogThatComesMostOften) {
+  std::string text = "Hello Computer!\nmotor 2 ready\n";
+  for (int i = 0; i < 60; ++i) {
+    text += fmt::format("[12:00:{:02d}.250] joint 2: moved to {:.2f} deg, encoder shows {:.2f} deg (off by {:.2f})\n", i, 3.0 * i, 3.0 * i + 0.1 * std::sin(i), 0.1 * std::sin(i));
+    if (i % 9 == 0) text += "still 5 to go, or 7\n";
+  }
+  const Imported imported = Take(text);
+  EXPECT_THAT(imported.story, HasSubstr("measured <- encoder shows [deg]"));
+  EXPECT_EQ(imported.readings.size(), 60u);
+  EXPECT_NEAR(imported.readings[20].reference_rad / units::deg, 60.0, 1e-9);
+}
+
+/// Volts in steps of a sentence without names: the difference of two sensors and both.
+TEST_F(Importing, ReadsASentenceWithoutNamesByItsDifference) {
+  std::string text;
+  for (int i = 0; i < 80; ++i) text += fmt::format("Sensor difference: {:.2f} = {:.2f} - {:.2f}\n", 0.05 * i, 2.05 * i, 2.0 * i);
+  EXPECT_THAT(Take(text).story, HasSubstr("\"column 2\""));
+}
+
+TEST_F(Importing, ReadsListsAndRowsOfNumbersOfAProgramWhateverTheyAreCalled) {
+  const std::string pairs = "coord_t toAngle[5] = \n{\n  {0.0000, -15},\n {10.1, -5.0},\n {20.2, 5.2}, {29.9, 15.1}, {40.0, 25.0}\n};\nint n = 5;\n";
+  EXPECT_THAT(Take(pairs).story, HasSubstr("reference <- toAngle.0 [deg]\n  measured <- toAngle.1 [deg]"));
+  const std::string lists = "p = [188 208 228 248 268];\nu = [188.2 208.1 228.3 248.2 268.4];\na = sin(p);\n";
+  EXPECT_THAT(Take(lists).story, HasSubstr("reference <- p [deg]\n  measured <- u [deg]"));
+  const std::string servo = "pwm_us = [1100 1300 1500 1700 1900];\nangle_deg = [30.1 14.9 0.2 -15.1 -29.8];\n";
+  EXPECT_THAT(MessageOf([&] { Take(servo); }), HasSubstr("--column 'reference_deg=[pwm_us] * -0.0749 + 112.41' is the straight line from it"));
+}
+
+/// Any large ratio is near a whole number.
+TEST_F(Importing, TakesNoGearWhereOneSideIsInAnotherUnit) {
+  std::string text = "a,b\n";
+  for (int i = 0; i < 40; ++i) text += fmt::format("{},{:.4f}\n", 10 * i, 10.0 * i / 85.3);
+  EXPECT_THAT(MessageOf([&] { Take(text); }), HasSubstr("measured_deg follows reference_deg times 0.0117"));
+}
+
+TEST_F(Importing, LeavesOutTheWayToAPlaceThatIsNotFar) {
+  std::string text = "Time,Target,X Position\n";
+  for (int i = 0; i < 400; ++i) text += fmt::format("{:.2f},1,{:.5f}\n", 0.02 * i, 0.97 * (1.0 - std::exp(-0.05 * i)) + 0.0002 * (i % 3));
+  EXPECT_THAT(Take(text).story, HasSubstr("rows at the beginning, on the way to the only place"));
+  EXPECT_THAT(MessageOf([&] { Take("Speed,Target,Real,Gyro\n25,90,87,88\n50,90,89,89\n75,90,90,88\n100,90,91,87\n"); }), HasSubstr("the reference never moves"));
+}
+
+}  // namespace
+}  // namespace twinbench::imports
