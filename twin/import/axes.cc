@@ -123,6 +123,11 @@ void TakePair(Map& map, std::vector<Recording>& recordings) {
 
 }  // namespace
 
+bool MayBeOneAxis(const AxisPair& pair) {
+  const std::string &a = pair.reference->name, &b = pair.shown->name;
+  return pair.has_difference || (SaysNothing(a) && SaysNothing(b)) || AxisOf(a) == AxisOf(b);
+}
+
 std::size_t ChosenOf(const std::vector<std::string>& axes, Map& map, std::vector<std::string>& remarks) {
   const auto number = static_cast<std::size_t>(std::max(1, map.course.axis_number));
   if (number > axes.size())

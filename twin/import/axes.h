@@ -14,6 +14,9 @@ namespace twinbench::imports {
 /// it is 0. What the map gives already stays, and nothing is chosen where there is one axis.
 void TakeAxis(Map& map, std::vector<Recording>& recordings);
 
+/// Two columns that may be one axis by their names: those say nothing, or the same but for a side.
+bool MayBeOneAxis(const AxisPair& pair);
+
 /// The one of several that the map says, the first where it says none, which is said. The map asks for no other one then.
 /// @param axes  In words, by number.
 /// @throws InputError if there are not so many.

@@ -128,6 +128,12 @@ bool AreOfTwoAxes(const std::string& a, const std::string& b) {
   return !of_a.empty() && !of_b.empty() && of_a != of_b;
 }
 
+bool SaysNothing(const std::string& name) {
+  static const std::set<std::string> kAnything = {"column", "col", "channel", "chan", "var", "field", "data", "value", "values", "signal", "trace", "entry", "list", "array", "series", "unnamed"};
+  constexpr std::size_t kInitial = 2;
+  return std::ranges::all_of(WordsOf(name), [](const std::string& word) { return word.size() <= kInitial || kAnything.contains(word); });
+}
+
 bool SpeaksOfSide(const std::string& word) {
   return Clearness(word, Speaks::kReference) > 0 || Clearness(word, Speaks::kDevice) > 0 || IsCalledPlace(word) ||
          HasAny(word, std::array{"state", "status", "given", "deg", "rad"});

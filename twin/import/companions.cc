@@ -19,14 +19,14 @@ constexpr std::size_t kFewestTogether = 8;  // rows: fewer go together by chance
 using Series = std::vector<double>;
 
 /// Rows in which all are numbers, evenly fewer of many.
-std::vector<Series> CommonRows(const std::vector<Choice>& columns) {
+std::vector<Series> CommonRows(const std::vector<const Choice*>& columns) {
   constexpr std::size_t kMost = 6000;
-  const std::size_t rows = columns.front().column->value.size(), step = rows / kMost + 1;
+  const std::size_t rows = columns.front()->column->value.size(), step = rows / kMost + 1;
   std::vector<Series> common(columns.size());
   for (std::size_t i = 0; i < rows; i += step) {
-    const auto has_row = [i](const Choice& c) { return i < c.column->value.size() && std::isfinite(c.column->value[i]); };
+    const auto has_row = [i](const Choice* c) { return i < c->column->value.size() && std::isfinite(c->column->value[i]); };
     if (!std::ranges::all_of(columns, has_row)) continue;
-    for (std::size_t c = 0; c < columns.size(); ++c) common[c].push_back(columns[c].column->value[i]);
+    for (std::size_t c = 0; c < columns.size(); ++c) common[c].push_back(columns[c]->column->value[i]);
   }
   return common;
 }
@@ -155,14 +155,14 @@ std::vector<Candidate> ClosestOf(std::vector<Candidate> all) {
 
 AxisPair PairOf(const Choice& first, const Choice& second, Order order) {
   switch (order) {
-    case Order::kFirstLeads: return {&first, &second, "which goes first of two that go together", "which follows it"};
-    case Order::kSecondLeads: return {&second, &first, "which goes first of two that go together", "which follows it"};
-    case Order::kFirstIsSmoother: return {&first, &second, "the smoother one of two that go together", "which goes with it"};
-    case Order::kSecondIsSmoother: return {&second, &first, "the smoother one of two that go together", "which goes with it"};
+    case Order::kFirstLeads: return {&first, &second, "which goes first of two that go together", "which follows it", false};
+    case Order::kSecondLeads: return {&second, &first, "which goes first of two that go together", "which follows it", false};
+    case Order::kFirstIsSmoother: return {&first, &second, "the smoother one of two that go together", "which goes with it", false};
+    case Order::kSecondIsSmoother: return {&second, &first, "the smoother one of two that go together", "which goes with it", false};
     case Order::kNotTold: break;
   }
   return {&first, &second, "the first of two that go together",
-          fmt::format("which goes with it; --column 'reference_deg=[{}]' --column 'measured_deg=[{}]' turns them round", second.name, first.name)};
+          fmt::format("which goes with it; --column 'reference_deg=[{}]' --column 'measured_deg=[{}]' turns them round", second.name, first.name), false};
 }
 
 }  // namespace
@@ -171,8 +171,8 @@ bool GoTogether(const Column& first, const Column& second) {
   return IsClose(LineThrough(first.value, second.value));
 }
 
-std::vector<AxisPair> CompanionsIn(const std::vector<Choice>& columns) {
-  if (columns.size() < 2 || std::ranges::any_of(columns, [&columns](const Choice& c) { return c.track != columns.front().track; })) return {};
+std::vector<AxisPair> CompanionsIn(const std::vector<const Choice*>& columns) {
+  if (columns.size() < 2 || std::ranges::any_of(columns, [&columns](const Choice* c) { return c->track != columns.front()->track; })) return {};
   const std::vector<Series> values = CommonRows(columns);
   if (values.front().size() < kFewestTogether) return {};
   std::vector<Candidate> all;
@@ -186,7 +186,9 @@ std::vector<AxisPair> CompanionsIn(const std::vector<Choice>& columns) {
     const bool is_rate = std::ranges::any_of(found, [&](const Candidate& other) {
       return other.first != c.first && (IsRateOf(values[c.first], values[other.first]) || IsRateOf(values[c.second], values[other.second]));
     });
-    if (!is_rate) pairs.push_back(PairOf(columns[c.first], columns[c.second], OrderOf(values[c.first], values[c.second])));
+    if (is_rate) continue;
+    pairs.push_back(PairOf(*columns[c.first], *columns[c.second], OrderOf(values[c.first], values[c.second])));
+    pairs.back().has_difference = c.closeness > 1.0;
   }
   return pairs;
 }

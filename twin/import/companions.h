@@ -12,6 +12,7 @@ namespace twinbench::imports {
 struct AxisPair {
   const Choice *reference = nullptr, *shown = nullptr;
   std::string why_reference = "by its name", why_shown = "by its name";
+  bool has_difference = false;  // a third column is what they differ by
 };
 
 /// One to one and closely, row by row.
@@ -20,6 +21,6 @@ bool GoTogether(const Column& first, const Column& second);
 /// Of each axis two columns that go together, at once or one later than the other, those first of which a third is the difference.
 /// Whichever comes later follows; where neither does, the smoother one is followed, else the first. What changes as another pair
 /// moves is its rate, and the same column twice is no pair. In the order of the columns, which are of one track.
-std::vector<AxisPair> CompanionsIn(const std::vector<Choice>& columns);
+std::vector<AxisPair> CompanionsIn(const std::vector<const Choice*>& columns);
 
 }  // namespace twinbench::imports

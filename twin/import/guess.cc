@@ -212,27 +212,41 @@ void TurnByName(AxisPair& pair) {
     std::swap(pair.reference, pair.shown);
 }
 
+std::vector<AxisPair> CompanionsAmong(const std::vector<Choice>& columns) {
+  const auto is_mostly_empty = [](const Choice& c) { return 2 * std::ranges::count_if(c.column->value, [](double x) { return std::isnan(x); }) > std::ssize(c.column->value); };
+  std::vector<const Choice*> open;
+  for (const Choice& c : columns)
+    if (!IsCounter(*c.column) && !is_mostly_empty(c)) open.push_back(&c);
+  std::vector<AxisPair> pairs = CompanionsIn(open);
+  std::ranges::for_each(pairs, TurnByName);
+  return pairs;
+}
+
 /// Of columns whose names do not say enough those that go together.
 /// @return false if there are none, or not with the one that is given.
 bool TakeCompanions(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks) {
   if (compared.size() != 2) return false;
-  const auto is_mostly_empty = [](const Choice& c) { return 2 * std::ranges::count_if(c.column->value, [](double x) { return std::isnan(x); }) > std::ssize(c.column->value); };
-  std::vector<Choice> open;
-  std::ranges::copy_if(columns, std::back_inserter(open), [&](const Choice& c) { return !IsCounter(*c.column) && !is_mostly_empty(c); });
-  std::vector<AxisPair> pairs = CompanionsIn(open);
-  std::ranges::for_each(pairs, TurnByName);
+  std::vector<AxisPair> pairs = CompanionsAmong(columns);
+  std::erase_if(pairs, std::not_fn(MayBeOneAxis));
   for (std::size_t k = 0; k < 2; ++k) {
     if (!IsGiven(map, compared[k])) continue;
     const auto is_given = [&](const Choice* c) { return c->name == GivenExpression(map, compared[k]); };
     const auto with_given = std::ranges::find_if(pairs, [&](const AxisPair& p) { return is_given(p.reference) || is_given(p.shown); });
     if (with_given == pairs.end()) return false;
-    const Choice* other = is_given(with_given->reference) ? with_given->shown : with_given->reference;
-    Put(compared[1 - k], *other, "which goes with it", map, remarks);
+    Put(compared[1 - k], is_given(with_given->reference) ? *with_given->shown : *with_given->reference, "which goes with it", map, remarks);
     return true;
   }
   if (pairs.empty()) return false;
   TakeOneOf(pairs, compared, map, remarks);
   return true;
+}
+
+/// Two that go together and are called so differently that only the user knows whether they are one axis.
+std::string WhatGoesTogether(const std::vector<Choice>& columns) {
+  const std::vector<AxisPair> pairs = CompanionsAmong(columns);
+  if (pairs.empty()) return "";
+  const std::string &a = pairs[0].reference->name, &b = pairs[0].shown->name;
+  return fmt::format("; \"{}\" and \"{}\" go together: --column 'reference_deg=[{}]' --column 'measured_deg=[{}]' if they are one axis", a, b, a, b);
 }
 
 /// Three and more of which no name says which is the reference.
@@ -362,10 +376,11 @@ void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Record
       Put(compared[k], left[0], "the first column that is left", map, remarks);
       continue;
     }
-    if (TakeCompanions(columns, compared, map, remarks)) return;
+    const std::string kinds = ReadyMapsByNames(recordings[0]);
+    if (kinds.empty() && TakeCompanions(columns, compared, map, remarks)) return;
     throw InputError(recordings[0].file, fmt::format("which column is {} is not clear; there are {}{}", compared[k], ColumnNames(recordings), StandingTarget(recordings)),
                      ExampleOf(left.size() > missing ? left : open, recordings, compared, map) +
-                         (columns.size() == 1 ? PlaceByLine(recordings, compared[k], columns[0]) : "") + ReadyMapsByNames(recordings[0]));
+                         (columns.size() == 1 ? PlaceByLine(recordings, compared[k], columns[0]) : kinds.empty() ? WhatGoesTogether(columns) : "") + kinds);
   }
 }
 
