@@ -129,9 +129,8 @@ bool AreOfTwoAxes(const std::string& a, const std::string& b) {
 }
 
 bool SaysNothing(const std::string& name) {
-  static const std::set<std::string> kAnything = {"column", "col", "channel", "chan", "var", "field", "data", "value", "values", "signal", "trace", "entry", "list", "array", "series", "unnamed"};
-  constexpr std::size_t kInitial = 2;
-  return std::ranges::all_of(WordsOf(name), [](const std::string& word) { return word.size() <= kInitial || kAnything.contains(word); });
+  static const std::set<std::string> kAnything = {"column", "col", "channel", "chan", "var", "field", "data", "value", "values", "signal", "trace", "entry", "list", "array", "series", "unnamed", "ch"};
+  return std::ranges::all_of(WordsOf(name), [](const std::string& word) { return kAnything.contains(word); });
 }
 
 bool SpeaksOfSide(const std::string& word) {

@@ -23,7 +23,7 @@ bool IsCalledCommand(const std::string& name);
 /// "motor_roll" and "imu_pitch": each name has a word for an axis, and not the same.
 bool AreOfTwoAxes(const std::string& a, const std::string& b);
 
-/// "column 3", "Channel 1", "A0", "u": a number or a letter that somebody gave, and nothing of what is in it.
+/// "column 3", "Channel 1": a number that somebody gave, and nothing of what is in it.
 bool SaysNothing(const std::string& name);
 
 /// One word that says which side of a comparison a column is, or that it is a place, but not of which axis.

@@ -115,14 +115,13 @@ struct Candidate {
 };
 
 std::optional<Candidate> CandidateOf(std::size_t a, std::size_t b, const std::vector<Series>& values) {
-  constexpr double kWithDifference = 0.5;
+  constexpr double kLeast = 0.5;  // two sides of a circle go together a quarter of a turn later
   const Series difference = Differences(values[a], values[b]);
   if (std::ranges::all_of(difference, [&](double d) { return d == difference.front(); })) return std::nullopt;
   const StraightLine line = LineThrough(values[a], values[b]);
-  if (line.correlation > kWithDifference) {
-    for (std::size_t c = 0; c < values.size(); ++c)
-      if (c != a && c != b && IsDifference(values[c], difference)) return Candidate{a, b, 1.0 + line.correlation};
-  }
+  if (line.correlation < kLeast) return std::nullopt;
+  for (std::size_t c = 0; c < values.size(); ++c)
+    if (c != a && c != b && IsDifference(values[c], difference)) return Candidate{a, b, 1.0 + line.correlation};
   const bool is_pair = IsClose(line) || FollowsAtALag(values[a], values[b]) || FollowsAtALag(values[b], values[a]);
   return is_pair ? std::optional(Candidate{a, b, line.correlation}) : std::nullopt;
 }

@@ -137,7 +137,7 @@ bool AreSentences(const std::vector<std::string_view>& lines) {
   const auto [usual, count] = UsualSentence(lines);
   if (count == 0) return false;
   const bool are_all_named = std::ranges::all_of(usual.before, HasLetter);
-  return (are_all_named && 10 * count > 8 * lines.size()) || !HasRows(lines);
+  return (are_all_named && 10 * count > 8 * lines.size()) || (3 * count > lines.size() && !HasRows(lines));
 }
 
 std::string TableOfSentences(std::string_view text) {
