@@ -51,14 +51,16 @@ TEST_F(Importing, TakesTwoChannelsOfWhichAThirdIsTheDifference) {
   EXPECT_THAT(imported.story, HasSubstr("taken as motion that was read 100 times a second"));
 }
 
-/// A circle's sides go together a quarter of a turn later, and joints of two names may by chance.
+/// A circle's sides go together a quarter of a turn later, joints of a walking machine elsewhere, and joints of two names may by chance.
 TEST_F(Importing, TakesNoColumnsThatAreNotOneAxis) {
-  std::string circle, joints = "time,waist_pos,shoulder_pos,elbow_pos\n";
+  std::string circle, legs, joints = "time,waist_pos,shoulder_pos,elbow_pos\n";
   for (int i = 0; i < 300; ++i) {
     circle += fmt::format("{:.3f} {:.3f} {:.3f}\n", std::sin(0.1 * i), 20.0 * std::sin(0.1 * i), std::cos(0.1 * i));
+    legs += fmt::format("{:.3f} {:.3f} {:.3f}\n", 0.8 + 0.3 * std::sin(0.1 * i), -1.4 - 0.3 * std::sin(0.1 * i), 0.6 + 0.29 * std::sin(0.1 * i));
     joints += fmt::format("{:.2f},{:.3f},{:.3f},{:.3f}\n", 0.01 * i, 50.0 * std::sin(0.02 * i), 50.2 * std::sin(0.02 * i + 0.01), 9.0 * std::cos(0.3 * i));
   }
   EXPECT_THAT(MessageOf([&] { Take(circle); }), HasSubstr("is not clear"));
+  EXPECT_THAT(MessageOf([&] { Take(legs); }), HasSubstr("is not clear"));
   EXPECT_THAT(MessageOf([&] { Take(joints); }), HasSubstr("\"shoulder_pos\" and \"waist_pos\" go together: --column 'reference_deg=[shoulder_pos]'"));
 }
 

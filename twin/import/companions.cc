@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -90,6 +91,12 @@ bool IsClose(const StraightLine& line, double least_gain = 1.0 - kOffOne) {
   return line.correlation > kClosely && line.slope > least_gain && line.slope < 1.0 + kOffOne;
 }
 
+/// Two joints that go alike do not go to the same places.
+bool AreAtTheSamePlaces(const Series& first, const Series& difference) {
+  constexpr double kOfTheWay = 0.1;
+  return std::abs(std::accumulate(difference.begin(), difference.end(), 0.0)) < kOfTheWay * RangeOf(first) * static_cast<double>(difference.size());
+}
+
 bool FollowsAtALag(const Series& first, const Series& second) {
   constexpr double kSlowServo = 0.5;  // of the way
   const auto lag = LagOf(first, second);
@@ -122,6 +129,7 @@ std::optional<Candidate> CandidateOf(std::size_t a, std::size_t b, const std::ve
   if (line.correlation < kLeast) return std::nullopt;
   for (std::size_t c = 0; c < values.size(); ++c)
     if (c != a && c != b && IsDifference(values[c], difference)) return Candidate{a, b, 1.0 + line.correlation};
+  if (!AreAtTheSamePlaces(values[a], difference)) return std::nullopt;
   const bool is_pair = IsClose(line) || FollowsAtALag(values[a], values[b]) || FollowsAtALag(values[b], values[a]);
   return is_pair ? std::optional(Candidate{a, b, line.correlation}) : std::nullopt;
 }
