@@ -36,6 +36,16 @@ TEST_F(Importing, TakesColumnsThatGoTogetherWhereNothingHasAName) {
   EXPECT_THAT(Import({File("raw.txt", Tracking())}, second).story, HasSubstr("reference <- column 5 [deg]\n  measured <- column 3 [deg]"));
 }
 
+/// A robot that follows at once and too far: what stands exactly still between moves is the command.
+TEST_F(Importing, TakesWhatStandsStillForTheCommand) {
+  std::string text;
+  for (int i = 0; i < 400; ++i) {
+    const double at_rad = i < 150 ? 1.1 : i < 250 ? 1.1 + 0.004 * (i - 150) : 1.5;
+    text += fmt::format("{:.3f},{:.6f},{:.5f},{:.3f}\n", 0.008 * i, at_rad + 0.03 * (at_rad - 1.3) + 1e-5 * ((i * i) % 3), at_rad, 5.0 * std::cos(0.3 * i));
+  }
+  EXPECT_THAT(Take(text).story, HasSubstr("reference <- column 3 [deg]\n  measured <- column 2 [deg]"));
+}
+
 /// A square wave goes together with the motor row by row in no way; that the third channel is their difference says it, and that rows
 /// in which a motor is on its way are motion.
 TEST_F(Importing, TakesTwoChannelsOfWhichAThirdIsTheDifference) {

@@ -67,6 +67,20 @@ double Roughness(const Series& x) {
   return sum;
 }
 
+/// In which share of the rows `other` trembles about a place while `standing` stands still, as a command does at rest.
+double TremblesWhileStands(const Series& standing, const Series& other) {
+  constexpr std::size_t kFewestAtRest = 5;
+  std::size_t trembling = 0, begin = 0;
+  for (std::size_t i = 1; i <= standing.size(); ++i) {
+    if (i < standing.size() && standing[i] == standing[begin]) continue;
+    double way = 0.0;
+    for (std::size_t k = begin + 1; k < i; ++k) way += std::abs(other[k] - other[k - 1]);
+    if (i - begin >= kFewestAtRest && way > 0.0 && std::abs(other[i - 1] - other[begin]) < 0.5 * way) trembling += i - begin;
+    begin = i;
+  }
+  return static_cast<double>(trembling) / static_cast<double>(standing.size());
+}
+
 enum class Order { kFirstLeads, kSecondLeads, kFirstIsSmoother, kSecondIsSmoother, kNotTold };
 
 /// What is behind is off against the motion, by as much as it is fast; behind a step it comes later.
@@ -81,6 +95,9 @@ Order OrderOf(const Series& first, const Series& second) {
     const double lead = LeadWithin(rows, first, second);
     if (std::abs(lead) > std::max(kLeast, chance)) return lead > 0.0 ? Order::kFirstLeads : Order::kSecondLeads;
   }
+  const double first_stands = TremblesWhileStands(first, second), second_stands = TremblesWhileStands(second, first);
+  if (std::max(first_stands, second_stands) > kLeast && std::abs(first_stands - second_stands) > 0.5 * kLeast)
+    return first_stands > second_stands ? Order::kFirstIsSmoother : Order::kSecondIsSmoother;
   const double of_first = Roughness(first), of_second = Roughness(second);
   if (chance < 1.0 && of_second > kSmoother * of_first) return Order::kFirstIsSmoother;
   if (chance < 1.0 && of_first > kSmoother * of_second) return Order::kSecondIsSmoother;
