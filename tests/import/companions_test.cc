@@ -44,6 +44,7 @@ TEST_F(Importing, TakesWhatStandsStillForTheCommand) {
     text += fmt::format("{:.3f},{:.6f},{:.5f},{:.3f}\n", 0.008 * i, at_rad + 0.03 * (at_rad - 1.3) + 1e-5 * ((i * i) % 3), at_rad, 5.0 * std::cos(0.3 * i));
   }
   EXPECT_THAT(Take(text).story, HasSubstr("reference <- column 3 [deg]\n  measured <- column 2 [deg]"));
+  EXPECT_THAT(Take(text).story, HasSubstr("taken as deg (in rad: --column 'measured_rad=[column 2]')"));
 }
 
 /// A square wave goes together with the motor row by row in no way; that the third channel is their difference says it, and that rows

@@ -122,8 +122,10 @@ void Put(const std::string& target, const Choice& from, const std::string& why, 
   map.columns.push_back({target, from.name, unit, ""});
   std::string line = fmt::format("{} is taken from \"{}\"", target, from.name);
   if (!why.empty()) line += ", " + why;
-  if (own.empty() && wanted)
-    line += fmt::format("; its unit is not said and taken as {}", unit);
+  if (own.empty() && wanted) {
+    const bool may_be_rad = unit == "deg" && SaysNothing(from.name) && StaysWithin(*from.column, units::turn);
+    line += fmt::format("; its unit is not said and taken as {}{}", unit, may_be_rad ? fmt::format(" (in rad: --column '{}_rad=[{}]')", BaseOf(target), from.name) : "");
+  }
   if (!why.empty() || (own.empty() && wanted)) remarks.push_back(line);
 }
 
