@@ -25,15 +25,16 @@ const std::vector<std::pair<std::string, std::string>>& Kinds() {
 }
 
 /// G(b), or G of the one direction there is, of what one error shows along the radius at one feed.
+/// @param all_m   What all errors show at each point.
 /// @param others  All errors but that one.
-double Alone_m(const CircleAnalysis& a, const Iso230_4& of, const CircleErrors& others) {
+double Alone_m(const CircleAnalysis& a, const Iso230_4& of, const std::vector<double>& all_m, const CircleErrors& others) {
   std::vector<CirclePath> paths;
-  for (const CirclePoint& p : a.points) {
+  for (std::size_t i = 0; i < a.points.size(); ++i) {
+    const CirclePoint& p = a.points[i];
     if (p.setup != of.setup || p.feed_m_s != of.feed_m_s) continue;
     if (paths.empty() || paths.back().pass != p.pass)
       paths.push_back({p.setup, p.pass, p.direction, p.is_bar, p.radius_m, p.feed_m_s, {}, p.has_angle, p.is_drive});
-    const CircleMounting& mounting = a.fit.MountingOf(p.setup);
-    const double radial_m = (Shown_m(p, a.fit.errors, mounting, a.known) - Shown_m(p, others, mounting, a.known)).x();
+    const double radial_m = all_m[i] - Shown_m(p, others, a.fit.MountingOf(p.setup), a.known).x();
     PathPoint& point = paths.back().points.emplace_back();
     point.commanded_rad = p.commanded_rad;
     point.d_m = radial_m * p.Commanded_m() / p.radius_m;
@@ -42,7 +43,8 @@ double Alone_m(const CircleAnalysis& a, const Iso230_4& of, const CircleErrors& 
 }
 
 /// Of two axes that show their lags. What they have in common turns the circle, and is no error of the radius.
-void AddMismatch(const CircleAnalysis& a, const Iso230_4& of, const std::vector<ErrorValue>& errors, std::vector<RankedError>& ranked) {
+void AddMismatch(const CircleAnalysis& a, const Iso230_4& of, const std::vector<double>& all_m, const std::vector<ErrorValue>& errors,
+                 std::vector<RankedError>& ranked) {
   const auto x = std::ranges::find(errors, "machine.lag_x_s", &ErrorValue::key), y = std::ranges::find(errors, "machine.lag_y_s", &ErrorValue::key);
   if (x == errors.end() || y == errors.end()) return;
   const Eigen::VectorXd slope = x->slope - y->slope;
@@ -54,18 +56,18 @@ void AddMismatch(const CircleAnalysis& a, const Iso230_4& of, const std::vector<
   const double steps = parts.of_steps / parts.all, machine = parts.of_machine / parts.all;
   ranked.push_back({of.setup, of.feed_m_s, "servo mismatch (x less y)",
                     {"machine.servo_mismatch_s", "s", x->value - y->value, std::sqrt(variance), 1.0 - steps - machine, steps, machine, slope},
-                    Alone_m(a, of, others)});
+                    Alone_m(a, of, all_m, others)});
 }
 
-std::vector<RankedError> RankedAt(const CircleAnalysis& a, const Iso230_4& of, const std::vector<ErrorValue>& errors) {
+std::vector<RankedError> RankedAt(const CircleAnalysis& a, const Iso230_4& of, const std::vector<double>& all_m, const std::vector<ErrorValue>& errors) {
   std::vector<RankedError> ranked;
   double sum_m = 0.0;
   for (const auto& [key, name] : Kinds()) {
     const auto error = std::ranges::find(errors, key, &ErrorValue::key);
     if (error == errors.end() || !std::isfinite(error->u)) continue;
-    ranked.push_back({of.setup, of.feed_m_s, name, *error, Alone_m(a, of, ErrorsWithout(a.fit, {key}))});
+    ranked.push_back({of.setup, of.feed_m_s, name, *error, Alone_m(a, of, all_m, ErrorsWithout(a.fit, {key}))});
   }
-  AddMismatch(a, of, errors, ranked);
+  AddMismatch(a, of, all_m, errors, ranked);
   for (const RankedError& error : ranked) sum_m += error.alone_m;
   for (RankedError& error : ranked) error.share = sum_m > 0.0 ? error.alone_m / sum_m : 0.0;
   std::ranges::stable_sort(ranked, std::greater(), &RankedError::alone_m);
@@ -78,7 +80,9 @@ std::vector<RankedError> RankedErrors(const CircleAnalysis& a) {
   std::vector<RankedError> all;
   if (!a.IsFitted()) return all;
   const std::vector<ErrorValue> errors = ErrorsOf(a.fit);
-  for (const Iso230_4& d : a.deviations) std::ranges::move(RankedAt(a, d, errors), std::back_inserter(all));
+  std::vector<double> all_m;
+  for (const CirclePoint& p : a.points) all_m.push_back(Shown_m(p, a.fit.errors, a.fit.MountingOf(p.setup), a.known).x());
+  for (const Iso230_4& d : a.deviations) std::ranges::move(RankedAt(a, d, all_m, errors), std::back_inserter(all));
   return all;
 }
 

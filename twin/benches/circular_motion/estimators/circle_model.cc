@@ -59,6 +59,7 @@ Vector2d Position_m(const CirclePoint& p, const CircleErrors& e, const CircleCon
 }
 
 double Wave(const AxisPair& cosine_sine, double angle_rad) {
+  if (cosine_sine == AxisPair{}) return 0.0;  // most are, and each costs two functions of an angle
   return cosine_sine[0] * std::cos(angle_rad) + cosine_sine[1] * std::sin(angle_rad);
 }
 
@@ -98,6 +99,8 @@ Vector2d BarShown_m(const CirclePoint& p, const CircleErrors& e, const CircleMou
   const double form_m = memo.ball_form_m.At({ball_rad, e.ball2_m[0], e.ball2_m[1], e.ball3_m[0], e.ball3_m[1]},
                                             [&] { return BallForm_m(e, ball_rad); });
   const double longer_m = std::hypot(v_m.norm(), known.height_m) - BarLength_m(p, e, m) + form_m;
+  const double radial_m = longer_m * (1.0 + e.bar_gain + e.bar_cubic_per_m2 * longer_m * longer_m);
+  if (!p.has_angle) return {radial_m, 0.0};
   const double azimuth_rad =
       SeenAzimuth_rad(offset_m + Position_m(p, e, known, e.encoder_latency_s, memo.when_encoder_is_read), known,
                       memo.tilt.At(known.tilt_rad, [&] { return TurnsOf(known); }));
@@ -105,13 +108,14 @@ Vector2d BarShown_m(const CirclePoint& p, const CircleErrors& e, const CircleMou
       {azimuth_rad, e.eccentricity_rad[0], e.eccentricity_rad[1], e.ellipticity_rad[0], e.ellipticity_rad[1]},
       [&] { return ScaleError_rad(e, azimuth_rad); });
   const double shown_rad = azimuth_rad + scale_rad + m.rotation_rad;
-  return {longer_m * (1.0 + e.bar_gain + e.bar_cubic_per_m2 * longer_m * longer_m),
-          p.radius_m * std::remainder(shown_rad - p.commanded_rad, units::turn)};
+  return {radial_m, p.radius_m * std::remainder(shown_rad - p.commanded_rad, units::turn)};
 }
 
+Vector2d Turned(const Vector2d& v, const Turn& by) {
+  return {by.cosine * v.x() - by.sine * v.y(), by.sine * v.x() + by.cosine * v.y()};
+}
 Vector2d Turned(const Vector2d& v, double angle_rad) {
-  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+  return Turned(v, Turn(angle_rad));
 }
 
 /// Of the plate's two axes, from where the spindle is and back.
@@ -126,15 +130,18 @@ Vector2d FromPlate_m(const Vector2d& plate_m, const CircleConstants& known) {
 
 /// Subdivisional error of a place on the grid.
 Vector2d Subdivision_m(const Vector2d& place_m, const CircleConstants& known) {
+  if (known.grid_sde_m == 0.0) return {0.0, 0.0};
   return known.grid_sde_m * (units::turn / known.grid_period_m * place_m.array()).sin().matrix();
 }
 
 Vector2d GridShown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
-                     const CircleConstants& known, CircleMemo::Axes& memo) {
+                     const CircleConstants& known, CircleMemo& memo) {
   const Vector2d offset_m(m.offset_m[0], m.offset_m[1]);
-  Vector2d shown_m = Turned(OnPlate_m(Position_m(p, e, known, 0.0, memo), known), m.rotation_rad) + offset_m;
+  const Turn of_grid = memo.of_grid.At({m.rotation_rad}, [&m] { return Turn(m.rotation_rad); });
+  const Turn back = memo.back.At({p.commanded_rad}, [&p] { return Turn(-p.commanded_rad); });
+  Vector2d shown_m = Turned(OnPlate_m(Position_m(p, e, known, 0.0, memo.when_bar_is_read), known), of_grid) + offset_m;
   shown_m += Subdivision_m(shown_m, known);
-  return Turned(shown_m - p.Commanded_m(), -p.commanded_rad);
+  return Turned(shown_m - p.radius_m * Vector2d(back.cosine, -back.sine), back);
 }
 
 /// The transducer bends by how much longer the bar is, not by what it shows.
@@ -259,7 +266,7 @@ CircleConstants ConstantsOf(const CircularSettings& s) {
 
 Vector2d Shown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
                  const CircleConstants& known, CircleMemo& memo) {
-  return p.is_bar ? BarShown_m(p, e, m, known, memo) : GridShown_m(p, e, m, known, memo.when_bar_is_read);
+  return p.is_bar ? BarShown_m(p, e, m, known, memo) : GridShown_m(p, e, m, known, memo);
 }
 
 Vector2d Shown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m, const CircleConstants& known) {

@@ -101,12 +101,21 @@ struct TiltTurns {
   double cx, sx, cy, sy;
 };
 
+/// Cosine and sine of an angle.
+struct Turn {
+  double cosine = 1.0, sine = 0.0;
+
+  Turn() = default;
+  explicit Turn(double angle_rad) : cosine(std::cos(angle_rad)), sine(std::sin(angle_rad)) {}
+};
+
 /// What was computed last of one point.
 struct CircleMemo {
   using Axes = std::array<LastValue<AxisMotion, 3>, 2>;
   Axes when_bar_is_read, when_encoder_is_read;
   LastValue<double, 5> ball_form_m, scale_error_rad;
   LastValue<TiltTurns, 2> tilt;
+  LastValue<Turn, 1> of_grid, back;
 };
 
 /// Radial and tangential deviation that would be shown [m].

@@ -18,13 +18,6 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr std::size_t kEnoughPoints = 2000;
 
-std::vector<CirclePoint> Thinned(const std::vector<CirclePoint>& points) {
-  const std::size_t every = (points.size() + kEnoughPoints - 1) / kEnoughPoints;
-  std::vector<CirclePoint> some;
-  for (std::size_t i = 0; i < points.size(); i += every) some.push_back(points[i]);
-  return some;
-}
-
 /// One of the axes at a point.
 struct AxisAt {
   Eigen::Vector2d shown;  // what a displacement of it shows, weighted
@@ -204,7 +197,7 @@ std::vector<double> SpikeTimes_s(const Circles& circles) {
 
 CircleConstants WithShapeAsRead(const std::vector<CirclePoint>& points, const CircleFit& fit, const CircleConstants& known) {
   const Circles circles = CirclesOf(points);
-  const std::vector<CirclePoint> some = Thinned(points);
+  const std::vector<CirclePoint> some = Thinned(points, kEnoughPoints);
   const ShapeAsRead pitch_m = AsRead({some, fit, known, Cyclic()}, Pitches_m(circles), known.pitch_m);
   const ShapeAsRead time_s = AsRead({some, fit, known, Spikes()}, SpikeTimes_s(circles), known.spike_time_s);
   CircleConstants as_read = known;

@@ -370,8 +370,16 @@ Eigen::Matrix2Xd SlopeOfDeviation(const CirclePoint& p, const CircleFit& fit, co
   return SlopeOf([&](const CircleErrors& e, const CircleMounting& m) { return Deviation_m(p, e, m, known); }, p, fit);
 }
 
+std::vector<CirclePoint> Thinned(const std::vector<CirclePoint>& points, std::size_t enough) {
+  const std::size_t every = std::max<std::size_t>((points.size() + enough - 1) / enough, 1);
+  std::vector<CirclePoint> some;
+  for (std::size_t i = 0; i < points.size(); i += every) some.push_back(points[i]);
+  return some;
+}
+
 CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstants& known) {
   constexpr int kRounds = 8, kSetupsFirst = 2, kLastOnes = 3;
+  constexpr std::size_t kEnoughPoints = 4000;  // of the rounds that lead near: the last ones take all
   constexpr double kMoved = 2.0;  // hidden directions are none to the last digit; what they leave is fitted in the last rounds
   if (points.empty()) throw InputError("readings", "none has a radius", "readings of a bar or a grid");
   CircleFit fit = Begin(points, known);
@@ -381,13 +389,17 @@ CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstan
     throw InputError("readings", fmt::format("{} values for {} unknowns", values, unknowns), "more readings of the circle");
   Solved solved;
   Equations equations;
+  const std::vector<CirclePoint> some = Thinned(points, kEnoughPoints);
   for (int k = 0; k <= kRounds; ++k) {
-    equations = EquationsAt(points, fit, known, k < kSetupsFirst ? OfWhatTheBarShows(fit) : std::vector<Index>{});
+    const bool is_last = k >= kRounds - kLastOnes;
+    const std::vector<CirclePoint>& of_round = is_last ? points : some;
+    equations = EquationsAt(of_round, fit, known, k < kSetupsFirst ? OfWhatTheBarShows(fit) : std::vector<Index>{});
     solved = Solve(equations);
     if (k == kRounds) break;
-    AddWithin(equations.chi2, (solved.inverse * equations.right).cwiseQuotient(equations.scale), points, known, fit);
-    const double moved_chi2 = kMoved * Chi2Of(points, known, fit);
-    if (k < kRounds - kLastOnes) AddWithin(moved_chi2, ToLeastErrors(fit, equations, solved.hidden), points, known, fit);
+    AddWithin(equations.chi2, (solved.inverse * equations.right).cwiseQuotient(equations.scale), of_round, known, fit);
+    if (is_last) continue;
+    const double moved_chi2 = kMoved * Chi2Of(of_round, known, fit);
+    AddWithin(moved_chi2, ToLeastErrors(fit, equations, solved.hidden), of_round, known, fit);
   }
   fit.dof = values - unknowns + solved.hidden.cols() + equations.empty;
   fit.chi = std::sqrt(equations.chi2 / static_cast<double>(fit.dof));

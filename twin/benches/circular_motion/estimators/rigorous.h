@@ -51,6 +51,9 @@ struct CircleFit {
   Eigen::Index UnknownOf(int setup) const;  // the first of its four
 };
 
+/// As many points at even steps, or a few less.
+std::vector<CirclePoint> Thinned(const std::vector<CirclePoint>& points, std::size_t enough);
+
 /// Gauss-Newton. Along directions that the readings do not show the solution is the one with the least errors of the instruments,
 /// then of the machine; they are named. Thermal unknowns are left out unless the temperature changed by 0.2 K.
 ///
