@@ -220,7 +220,7 @@ OfColumn ColumnFunction(std::string_view name) {
 
 OfColumns ColumnsFunction(std::string_view name) {
   static constexpr auto kFunctions =
-      std::to_array<NamedFunction<OfColumns>>({{"ratio", Ratio}, {"whole_turns", WholeTurns}, {"beside", Beside}, {"stated_ratio", StatedRatio}, {"unsteady", Unsteady}, {"circle_middle", CircleMiddle}, {"circle_radius", CircleRadius}, {"scatter", Scatter}});
+      std::to_array<NamedFunction<OfColumns>>({{"ratio", Ratio}, {"whole_turns", WholeTurns}, {"beside", Beside}, {"stated_ratio", StatedRatio}, {"unsteady", Unsteady}, {"by_index", ByIndex}, {"circle_middle", CircleMiddle}, {"circle_radius", CircleRadius}, {"scatter", Scatter}});
   return FindIn(kFunctions, name);
 }
 

@@ -22,7 +22,7 @@ const std::vector<std::string>& WordsFor(Speaks of) {
       "sollwinkel", "referenz", "consigne", "consigna", "cible",          "référence",    "referencia", "riferimento",
       "comando",   "zadana",   "эталон",   "задание",  "目标",           "指令",         "参考",       "motor",
       "poscmd",    "referência", "desejado", "alvo",    "gewenst",        "doel",         "börvärde",  "hedef",
-      "zadaný",    "目標",     "rsol",     "aspos",    "ordered",      "order",      "given"};
+      "zadaný",    "目標",     "rsol",     "aspos",    "ordered",      "order",      "given",    "noml",    "lagesollwert"};
   static const std::vector<std::string> device = {
       "measured", "meas",     "device",   "dut",      "encoder",     "sensor",    "actual",    "actpos",  "posact",
       "present",  "resolver", "feedback", "fb",       "fbk",         "act",       "dial",      "gauge",   "indicator",
@@ -30,7 +30,7 @@ const std::vector<std::string>& WordsFor(Speaks of) {
       "mesuré",   "medido",   "medida",   "misurato", "misura",      "zmierzona", "измерено",  "实际",    "测量",
       "反馈",     "编码器",   "reading",  "angle",    "enc",         "probe",     "pos",       "load",
       "saída",     "saida",    "gemeten",  "ärvärde",     "uppmätt",     "ölçülen",   "zmierzone", "měřeno",    "測定",
-      "output",    "rist",     "aipos",    "real",      "process value"};
+      "output",    "rist",     "aipos",    "real",      "process value",        "lageistwert"};
   return of == Speaks::kReference ? reference : device;
 }
 
@@ -107,13 +107,13 @@ int ClearnessBy(const std::string& name, const std::vector<std::string>& words) 
 
 bool IsCalledError(const std::string& name) {
   return HasAny(name, std::array{"error", "err", "errors", "deviation", "dev", "abweichung", "fehler", "residual", "diff",
-                                 "difference", "erreur", "écart", "desviación", "offset", "offsets", "residuum", "residuals", "erro", "fout", "błąd", "hata"}) ||
+                                 "difference", "erreur", "écart", "desviación", "offset", "offsets", "residuum", "residuals", "erro", "fout", "błąd", "hata", "te"}) ||
          IsCalledCorrection(name);
 }
 
 bool IsCalledCommand(const std::string& name) {
   return HasAny(name, std::array{"target", "commanded", "command", "cmd", "setpoint", "posset", "setpos", "goal", "desired", "des", "demand", "demanded",
-                                 "soll", "sollwert", "sollposition", "sollwinkel", "consigne", "consigna", "poscmd", "comando", "ordered", "given"});
+                                 "soll", "sollwert", "sollposition", "sollwinkel", "consigne", "consigna", "poscmd", "comando", "ordered", "given", "noml", "lagesollwert"});
 }
 
 bool AreOfTwoAxes(const std::string& a, const std::string& b) {

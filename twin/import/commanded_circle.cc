@@ -3,9 +3,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
+#include "twin/core/reading.h"
+#include "twin/import/common.h"
 
 namespace twinbench::imports {
 namespace {
@@ -57,10 +60,9 @@ SentTo On(const Circle& circle, const SentTo& places) {
 }
 
 /// Of circles through three rows, near each other and far apart, the one on which most lie.
-Circle CommandedCircle(const std::vector<double>& x, const std::vector<double>& y, const std::string& where) {
+std::optional<Circle> CircleOf(const SentTo& places) {
   constexpr std::size_t kBegins = 48;
   constexpr double kLeastShare = 0.3;
-  const SentTo places = PlacesSentTo(x, y);
   SentTo best;
   for (const std::size_t part : {24, 12, 6, 3}) {
     const std::size_t apart = places.size() / part, step = 1 + places.size() / kBegins;
@@ -69,12 +71,26 @@ Circle CommandedCircle(const std::vector<double>& x, const std::vector<double>& 
       if (on.size() > best.size()) best = std::move(on);
     }
   }
-  if (best.size() < 3 || static_cast<double>(best.size()) < kLeastShare * static_cast<double>(places.size()))
-    throw InputError(where, "the commanded places are on no circle", "a log of a circle, or --column 'radius_mm=...' of each row");
+  if (best.size() < 3 || static_cast<double>(best.size()) < kLeastShare * static_cast<double>(places.size())) return std::nullopt;
   return Through(best);
 }
 
+Circle CommandedCircle(const std::vector<double>& x, const std::vector<double>& y, const std::string& where) {
+  const auto circle = CircleOf(PlacesSentTo(x, y));
+  if (!circle) throw InputError(where, "the commanded places are on no circle", "a log of a circle, or --column 'radius_mm=...' of each row");
+  return *circle;
+}
+
 }  // namespace
+
+double AwayFromCircle(const std::vector<double>& x, const std::vector<double>& y) {
+  const SentTo places = PlacesSentTo(x, y);
+  const auto circle = CircleOf(places);
+  if (!circle) return kNaN;
+  std::vector<double> away;
+  for (const Eigen::Vector2d& place : On(*circle, places)) away.push_back(std::abs((place - circle->middle).norm() / circle->radius - 1.0));
+  return MedianOf(std::move(away));
+}
 
 std::vector<double> CircleMiddle(const std::vector<double>& x, const std::vector<double>& y, const std::string& where) {
   return {CommandedCircle(x, y, where).middle.x()};

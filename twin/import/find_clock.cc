@@ -7,6 +7,7 @@
 #include "twin/core/errors.h"
 #include "twin/import/clock.h"
 #include "twin/import/common.h"
+#include "twin/import/statements.h"
 #include "twin/import/table.h"
 #include "twin/import/unit_names.h"
 
@@ -92,6 +93,13 @@ std::size_t PutOneBehindTheOther(std::vector<double>& time_s) {
 }  // namespace
 
 void TakeStatedRate(Track& track) {
+  const std::vector<double> period_s = StatedValues(track, {"sampling period", "sample period", "sampling time", "sample time", "sampling interval", "sample interval",
+                                                            "abtasttakt", "abtastzeit", "abtastperiode"}, *UnitNamed("s"));
+  if (!period_s.empty() && period_s.front() > 0.0) {
+    CountRows(1.0 / period_s.front(), track);
+    track.clock = fmt::format("rows every {:g} s, as the file says", period_s.front());
+    return;
+  }
   for (const auto& [name, number] : track.numbers) {
     const std::string small = SmallLetters(name);
     const bool is_rate = HasPart(small, {"sampl", "action", "control", "acquisition", "log"}) && HasPart(small, {"rate", "hz", "freq"});

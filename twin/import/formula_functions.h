@@ -8,6 +8,9 @@ namespace twinbench::imports {
 
 // The circle on which most rows of a log lie, whatever stands before and behind it: functions of a map's formulas.
 
+/// How far its rows usually lie off it, in radii; NaN if there is no such circle.
+double AwayFromCircle(const std::vector<double>& x, const std::vector<double>& y);
+
 /// Its middle in the direction of x.
 /// @throws InputError if there is no such circle.
 std::vector<double> CircleMiddle(const std::vector<double>& x, const std::vector<double>& y, const std::string& where);
@@ -28,6 +31,11 @@ std::vector<double> Levels(std::vector<double> x, const std::string& where);
 /// 0 in all others.
 /// @param time_s  Of each row.
 std::vector<double> Unsteady(const std::vector<double>& speed, const std::vector<double>& time_s, const std::string& where);
+
+/// The angle of what gives a pulse a turn [deg], even from one rise of it to the next; before the first and behind the last at the speed of the
+/// turn beside.
+/// @throws InputError if there are fewer than two turns.
+std::vector<double> ByIndex(const std::vector<double>& pulse, const std::vector<double>& time_s, const std::string& where);
 
 // Angles of two shafts that a train joins [deg], as columns of a file; the functions of formulas that are called so.
 

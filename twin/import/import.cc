@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "twin/core/errors.h"
 #include "twin/core/fewest_readings.h"
@@ -56,9 +57,12 @@ std::string CostOf(const std::vector<LeftOut>& left_out) {
 std::string TakeReadyMap(const std::vector<std::string>& files, Map& map) {
   if (!map.name.empty() || !map.columns.empty() || !map.bench.empty()) return "";
   const auto by_line = ReadyMapByBegin(LoadText(files.front()));
-  const auto ready = by_line ? by_line : ReadyMapOf(BeginOfTable(files.front()));
+  const auto ready = by_line ? by_line : ReadyMapOf(BeginOfTable(files.front(), map.clock));
   if (!ready) return "";
-  map = *ready;
+  const Map said = std::exchange(map, *ready);
+  if (!said.clock.column.empty() || said.clock.rate_Hz > 0.0) map.clock = said.clock;
+  map.course.axis_number = said.course.axis_number;
+  map.average = said.average;
   return by_line ? "first line" : "columns";
 }
 

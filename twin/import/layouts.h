@@ -59,6 +59,13 @@ bool AreIndexed(const std::vector<std::string_view>& lines);
 /// Empty if there is no list of targets, or no array beside it.
 std::string TableOfIndexed(std::string_view text);
 
+/// True of the target lists and runs that laser interferometers save (`.rtl`): "TARGET DATA::", "Targets :", "Run Target Data:".
+bool AreLaserRuns(const std::vector<std::string_view>& lines);
+
+/// The same as a table between tabs, a row a target, a column a run, up or down by the order of its targets.
+/// @param said  What was taken for granted, a line each.
+std::string TableOfLaserRuns(std::string_view text, std::vector<std::string>& said);
+
 // Records of a program's log in which every quantity has a line: "Order given: [0.1, -0.2, 0.3]" above "Actual position: [...]".
 
 /// True where lists of numbers under two names and more come again and again.

@@ -112,7 +112,7 @@ void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
       "sought", map.sought,
       [](Table& t, Sought& s) {
         t.Text("name", &s.name, {}, "of a quantity, with its unit, as formulas have it");
-        t.Text("kind", &s.kind, {"value", "condition", "any", "turn", "column"},
+        t.Text("kind", &s.kind, {"value", "condition", "any", "turn", "column", "pulse"},
                "changes from row to row | holds for many rows | either | a way round | either, in a column only, "
                "where it has no unit a word too");
         t.Add("words", kPure, {}, &s.words, "what it is called in columns and lines of text, the clearest first");

@@ -37,7 +37,7 @@ struct AverageSettings {
 /// A quantity that formulas need and files give under many names: in a column, or in a line of text above its rows.
 struct Sought {
   std::string name;                    // as formulas have it, with its unit: "angle_deg"
-  // value: another in most rows | condition: holds for many rows, also in a line | any | turn: a way round |
+  // value: another in most rows | condition: holds for many rows, also in a line | any | turn: a way round | pulse: high in a few rows of each turn |
   // column: either, in a column only, where it has no unit a word too
   std::string kind = "value";
   std::vector<std::string> words;      // what it is called, in small letters, the clearest first

@@ -10,6 +10,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
+#include "twin/import/circle_columns.h"
 #include "twin/import/clampings.h"
 #include "twin/import/column_words.h"
 #include "twin/import/common.h"
@@ -48,6 +49,24 @@ bool IsTurn(const Column& column) {
   return column.IsNumber() && std::ranges::all_of(column.value, [](double x) { return x == 1.0 || x == -1.0; });
 }
 
+/// High in a few rows of each turn.
+bool IsPulse(const Column& column) {
+  constexpr double kMostHigh = 0.3;
+  constexpr int kFewestTurns = 3;
+  if (!column.IsNumber() || column.value.empty()) return false;
+  const auto [low, high] = std::ranges::minmax(column.value);
+  int rises = 0;
+  double up = 0.0;
+  bool was = true;
+  for (const double x : column.value) {
+    const bool is = x > 0.5 * (low + high);
+    rises += is && !was ? 1 : 0;
+    up += is ? 1.0 : 0.0;
+    was = is;
+  }
+  return rises >= kFewestTurns && up < kMostHigh * static_cast<double>(column.value.size());
+}
+
 /// The radius of a circle is no deviation from it.
 bool IsTooLarge(const Column& column, const Sought& sought) {
   if (!(sought.most > 0.0)) return false;
@@ -60,6 +79,7 @@ bool IsTooLarge(const Column& column, const Sought& sought) {
 bool CanBe(const Column& column, const Sought& sought, const Track& track) {
   constexpr double kSeldom = 0.25;
   if (sought.kind == "turn") return IsTurn(column);
+  if (sought.kind == "pulse") return IsPulse(column);
   if (sought.kind == "column" && !column.IsNumber()) return UnitOf(sought).dimension == Dimension::kPure;
   if (!column.IsNumber() || !UnitFits(column, sought, track) || IsTooLarge(column, sought)) return false;
   if (sought.kind == "value") return ShareOfChanges(column) > kSeldom;
@@ -79,8 +99,20 @@ class Seeker {
   Seeker(const std::vector<Sought>& all, Track& track) : all_(all), track_(track) {}
 
   /// Takes those that have a column or a line.
-  void Find() {
+  /// @param on_circle  Columns that are known by where they go.
+  void Find(const std::map<std::string, std::string>& on_circle = {}) {
+    found_.clear();
+    taken_.clear();
+    source_.clear();
+    assumed_.clear();
+    for (const auto& [name, column] : on_circle) taken_.insert(column);
     for (const Sought& sought : all_) {
+      if (const auto known = on_circle.find(sought.name); known != on_circle.end()) {
+        const Column& column = *std::ranges::find(track_.columns, known->second, &Column::name);
+        source_[sought.name] = column.name;
+        Put(sought, InUnitOf(sought, column), column.unit);
+        continue;
+      }
       if (const Column* column = ColumnFor(sought)) {
         taken_.insert(column->name);
         source_[sought.name] = column->name;
@@ -192,13 +224,30 @@ class Seeker {
   }
 
   std::vector<double> StatedOf(const Sought& sought) const {
-    if (sought.words.empty() || sought.kind == "value" || sought.kind == "column") return {};
+    if (sought.words.empty() || sought.kind == "value" || sought.kind == "column" || sought.kind == "pulse") return {};
     return sought.kind == "turn" ? StatedTurns(track_) : StatedValues(track_, sought.words, UnitOf(sought));
+  }
+
+  /// Angles without a unit that stay within a turn of rad. A shaft before a gear goes on for many turns where the one behind it does; of axes
+  /// beside each other one may be tilted by a few degrees only.
+  bool AreInRad(const Sought& sought, const Column& column) const {
+    constexpr double kMoreThanATurn_rad = 6.4;
+    const auto stays = [](const Column& c) {
+      return c.value.size() > 20 && std::ranges::all_of(c.value, [](double x) { return !(std::abs(x) > kMoreThanATurn_rad); });
+    };
+    std::vector<bool> all = {stays(column)};
+    for (const Sought& other : all_) {
+      const auto unit = UnitAtEnd(other.name);
+      if (&other == &sought || other.kind != sought.kind || !unit || unit->name != "deg") continue;
+      const auto found = source_.find(other.name);
+      const Column* beside = found == source_.end() ? ColumnFor(other) : &*std::ranges::find(track_.columns, found->second, &Column::name);
+      if (beside && beside != &column && IsNoUnit(beside->unit) && beside->IsNumber()) all.push_back(stays(*beside));
+    }
+    return sought.kind == "value" ? std::ranges::count(all, true) > 0 : std::ranges::count(all, false) == 0;
   }
 
   /// A column that says no unit is in that of the name; a place that stays within a turn of rad, in rad.
   std::vector<double> InUnitOf(const Sought& sought, const Column& column) {
-    constexpr double kMoreThanATurn_rad = 6.4;
     const NamedUnit to = UnitOf(sought);
     auto has = UnitNamed(column.unit);
     const auto counts = has || to.dimension != Dimension::kAngle ? std::nullopt : CountsPerTurnOf(column, track_, sought.words);
@@ -207,10 +256,7 @@ class Seeker {
       has = NamedUnit{"counts", Dimension::kAngle, units::turn / *counts};
     }
     if (!has && to.dimension != Dimension::kPure) {
-      const bool is_rad =
-          to.name == "deg" && column.value.size() > 20 &&
-          std::ranges::all_of(column.value, [](double x) { return !(std::abs(x) > kMoreThanATurn_rad); });
-      has = is_rad ? UnitNamed("rad") : to;
+      has = to.name == "deg" && AreInRad(sought, column) ? UnitNamed("rad") : to;
       assumed_.push_back(fmt::format("the unit of \"{}\" is not said and taken as {}", column.name, has->name));
     }
     std::vector<double> values = column.value;
@@ -271,6 +317,15 @@ std::vector<std::string> NamesIn(const std::string& list) {
   return names;
 }
 
+/// Finds by names first; then by a circle that columns go round.
+void FindIn(const Map& map, Track& track, Seeker& seeker, std::vector<std::string>& remarks) {
+  const auto is_missing = [&seeker](const Sought& sought) { return sought.kind == "value" && sought.otherwise.empty() && !seeker.Has(sought); };
+  seeker.Find();
+  if (std::ranges::none_of(map.sought, is_missing)) return;
+  const std::map<std::string, std::string> on_circle = ColumnsOnCircle(map, track, remarks);
+  if (!on_circle.empty()) seeker.Find(on_circle);
+}
+
 /// The most columns by which a track is of the map's kind; 0: it is not.
 /// @param by_names  Whether columns need no units, as many of them do not anyway.
 std::size_t ColumnsOfKind(const Track& own, const Map& map, bool by_names) {
@@ -279,8 +334,10 @@ std::size_t ColumnsOfKind(const Track& own, const Map& map, bool by_names) {
   Track track = own;
   TakeAnglesOfProbes(track);
   StackTurns(map, track);
+  StackBalls(map, track);
   Seeker seeker(map.sought, track);
-  seeker.Find();
+  std::vector<std::string> unsaid;
+  FindIn(map, track, seeker, unsaid);
   std::size_t most = 0;
   for (const std::string& list : map.guess_by) {
     const std::vector<std::string> names = NamesIn(list);
@@ -409,8 +466,9 @@ void TakeSought(Map& map, Recording& recording) {
     const std::vector<double> angles_deg = has_probes ? TakeAnglesOfProbes(track) : std::vector<double>();
     if (!angles_deg.empty()) map.set.push_back(fmt::format("probes.angles_deg=[{}]", fmt::join(angles_deg, ", ")));
     StackTurns(map, track);
+    StackBalls(map, track);
     Seeker seeker(map.sought, track);
-    seeker.Find();
+    FindIn(map, track, seeker, recording.remarks);
     SayPlane(map, track, seeker, recording);
     if (const std::vector<std::string> left = seeker.LeftOver(map); !left.empty())
       recording.remarks.push_back(fmt::format("left out, for by {} nothing of this map is meant: {}", left.size() > 1 ? "their names" : "its name", fmt::join(left, ", ")));

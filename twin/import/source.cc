@@ -78,6 +78,10 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
     recording.layout = "tags and runs of a ball bar";
     return recording;
   }
+  if (AreLaserRuns(FirstLines(text))) {
+    ReadCycles(TableOfLaserRuns(text, recording.remarks), WithTabs({}), recording);
+    return recording;
+  }
   if ((layout.columns_are_open || layout.kind == "cycles") && AreIndexed(FirstLines(text))) {
     if (const std::string table = TableOfIndexed(text); !table.empty()) {
       ReadCycles(table, {}, recording);
@@ -113,23 +117,23 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
   return recording;
 }
 
-Recording BeginOfTable(const std::string& path) {
+Recording BeginOfTable(const std::string& path, const ClockSettings& clock) {
   Recording recording;
   recording.file = path;
   std::string text = LoadText(path);
   if (std::vector<std::string> said; IsBarExport(FirstLines(text))) text = TableOfBarExport(text, path, said);
   const std::vector<std::string_view> lines = FirstLines(text);
   const std::string kind = FindKind(lines, true);
-  if (AreNamedLists(lines)) return recording;
+  if (AreNamedLists(lines) || AreLaserRuns(lines)) return recording;
   if (kind == "array") return recording;  // a line of thousands of numbers is no row of as many columns
   constexpr std::size_t kBegin = 5000;  // lines: an axis may rest for a while before it moves
   std::string begin;
   for (const std::string_view line : FirstLines(text, kBegin)) begin += std::string(line) + "\n";
   try {
     if (kind == "records")
-      ReadRecords(text, {}, {}, recording);
+      ReadRecords(text, {}, clock, recording);
     else
-      ReadTable(begin, {}, {}, recording);
+      ReadTable(ArePairs(lines) ? TableOfPairs(begin) : begin, {}, clock, recording);
   } catch (const InputError&) {
     recording.tracks.clear();
   }

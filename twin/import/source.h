@@ -13,7 +13,7 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
 
 /// The first rows of a table, or all records of JSON; of another file it has no tracks.
 /// @throws InputError if it is no text.
-Recording BeginOfTable(const std::string& path);
+Recording BeginOfTable(const std::string& path, const ClockSettings& clock = {});
 
 /// Says what a text gives away itself: columns with units, clock, rate, gaps; a few lines.
 std::string Describe(const Recording& recording);

@@ -1,9 +1,12 @@
 #include "twin/import/formula_functions.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "twin/core/errors.h"
 #include "twin/import/common.h"
 
 namespace twinbench::imports {
@@ -58,6 +61,21 @@ std::vector<double> Unsteady(const std::vector<double>& of_row, const std::vecto
     for (std::size_t k = i; k < speed.size() && (k - i <= kFewestRows || time_s[k] - time_s[i] < kSettling_s); ++k) unsteady[k] = 1.0;
   }
   return unsteady;
+}
+
+std::vector<double> ByIndex(const std::vector<double>& pulse, const std::vector<double>& time_s, const std::string& where) {
+  const auto [low, high] = std::ranges::minmax(pulse);
+  std::vector<std::size_t> rises;
+  for (std::size_t i = 1; i < pulse.size(); ++i)
+    if (pulse[i] > 0.5 * (low + high) && !(pulse[i - 1] > 0.5 * (low + high))) rises.push_back(i);
+  if (rises.size() < 3) throw InputError(where, fmt::format("the index rises {} times", rises.size()), "a pulse a turn, over three turns at least");
+  std::vector<double> angle_deg(pulse.size());
+  for (std::size_t i = 0, turn = 0; i < pulse.size(); ++i) {
+    while (turn + 2 < rises.size() && i >= rises[turn + 1]) ++turn;
+    const double begin_s = time_s[rises[turn]], whole_s = time_s[rises[turn + 1]] - begin_s;
+    angle_deg[i] = 360.0 * (static_cast<double>(turn) + (time_s[i] - begin_s) / whole_s);
+  }
+  return angle_deg;
 }
 
 }  // namespace twinbench::imports

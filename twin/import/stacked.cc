@@ -169,9 +169,19 @@ class Stack {
  private:
   bool IsShared(const Column& column) const { return !SideOf(map_, column).IsOne(); }
 
-  /// Rows that ways share are gone through once forward and once back.
+  /// Which way the places go that ways share; 0: nothing says so.
+  int WayOfRows() const {
+    const auto place = std::ranges::find_if(track_.columns, [this](const Column& c) { return c.IsNumber() && IsShared(c) && SaysWhere(map_, c); });
+    if (place == track_.columns.end()) return 0;
+    const std::vector<double> steps = StepsOf(place->value);
+    const auto up = std::ranges::count_if(steps, [](double step) { return step > 0.0; });
+    return 2 * up > std::ssize(steps) ? 1 : -1;
+  }
+
+  /// Rows that ways share are gone through forward one way and back the other way.
   void Take(const Part& part, double run) {
-    const bool is_back = !part.angle && part.side.turn != parts_.front().side.turn;
+    const int forward = WayOfRows() != 0 && part.side.turn != 0 ? WayOfRows() : parts_.front().side.turn;
+    const bool is_back = !part.angle && part.side.turn != forward;
     for (std::size_t k = 0; k < track_.Rows(); ++k) {
       const std::size_t row = is_back ? track_.Rows() - 1 - k : k;
       if (!std::isfinite(part.value->value[row])) continue;

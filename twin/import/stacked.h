@@ -12,4 +12,7 @@ namespace twinbench::imports {
 /// columns "clamping" and "offset"; lines between rows may say it as well.
 void StackTurns(const Map& map, Track& track);
 
+/// Of a map that seeks balls: puts columns of several balls ("dx1, dy1, dx2, dy2") below each other, with a column "ball".
+void StackBalls(const Map& map, Track& track);
+
 }  // namespace twinbench::imports

@@ -57,9 +57,19 @@ class TableReader {
     if (IsComment(line)) return TakeAside(line);
     Split(line, how_.separator, fields_);
     if (!layout_.header.empty() && IsSaid(fields_[0])) return TakeAside(line);
-    if (IsRow(fields_, how_) && (!heading_.found || fields_.size() > 1 || heading_.columns.size() == 1))
+    if (!NamesPlaces() && IsRow(fields_, how_) && (!heading_.found || fields_.size() > 1 || heading_.columns.size() == 1))
       return TakeRow(line);
     TakeAside(line);
+  }
+
+  /// "Position; 0°; 30°; 60°" above the rows: columns that are called by where something stood.
+  bool NamesPlaces() const {
+    if (Gathering() || !waiting_.empty() || fields_.size() < 3 || CellOf(fields_[0], how_.decimal_comma)) return false;
+    return std::ranges::all_of(fields_.begin() + 1, fields_.end(), [this](std::string_view field) {
+      const auto cell = CellOf(field, how_.decimal_comma);
+      const auto unit = cell ? UnitNamed(cell->unit) : std::nullopt;
+      return unit && unit->dimension == Dimension::kAngle;
+    });
   }
 
   /// "INFO: DITHER by -1.995", whatever numbers stand behind it.

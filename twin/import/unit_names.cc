@@ -53,7 +53,7 @@ constexpr std::array kSpellings = std::to_array<Spelling>({
     {"°", "deg"},           {"degree", "deg"},   {"degrees", "deg"},     {"grad", "deg"},
     {"º", "deg"},           {"radian", "rad"},   {"radians", "rad"},     {"µrad", "urad"},
     {"μrad", "urad"},       {"as", "arcsec"},    {"a-s", "arcsec"},      {"asec", "arcsec"},
-    {"arc-sec", "arcsec"},  {"\"", "arcsec"},    {"″", "arcsec"},        {"''", "arcsec"},        {"arcseconds", "arcsec"},
+    {"arc-sec", "arcsec"},  {"\"", "arcsec"},    {"″", "arcsec"},        {"''", "arcsec"},        {"arcseconds", "arcsec"}, {"arc seconds", "arcsec"}, {"angular seconds", "arcsec"}, {"seconds of arc", "arcsec"}, {"arc minutes", "arcmin"},
     {"arc-min", "arcmin"},  {"'", "arcmin"},     {"′", "arcmin"},        {"turns", "turn"},
     {"rev", "turn"},        {"revs", "turn"},    {"revolution", "turn"}, {"revolutions", "turn"},
     {"u", "turn"},          {"meter", "m"},      {"metre", "m"},         {"millimeter", "mm"},

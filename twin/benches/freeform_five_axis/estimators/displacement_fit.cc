@@ -172,6 +172,11 @@ void RequireDisplacements(const std::vector<ShiftRead>& reads) {
       if (std::abs(shift_m) > kFarthest_m)
         throw InputError("readings", fmt::format("a displacement is {:.4g} mm", shift_m / units::mm),
                          "displacements, in the unit that their column says");
+  std::set<int> setups;
+  for (const ShiftRead& read : reads) setups.insert(read.setup);
+  if (setups.size() > 1 && std::ranges::all_of(reads, [](const ShiftRead& read) { return read.at_m.isZero(0.0); }))
+    throw InputError("readings", fmt::format("of {} balls none says where it stands", setups.size()),
+                     "X, Y, Z of each on the table, as in --map pose_table --column 'x_mm=150' --column 'z_mm=50 + 200 * (ball - 1)'");
 }
 
 }  // namespace
