@@ -1,4 +1,5 @@
 #include "tests/circular_motion/written_circles.h"
+#include "twin/benches/circular_motion/bench.h"
 #include "twin/benches/circular_motion/twin/live.h"
 #include "twin/benches/evaluated.h"
 #include "twin/core/stream.h"
@@ -101,6 +102,17 @@ TEST(Drive, IsAmbiguousAtOneFeed) {
 /// A grid plate that is turned looks as axes do that are late alike; a controller's axes are not turned.
 TEST(Drive, ShowsItsLagOneWayRound) {
   ExpectCircleError(ResultsOf(Logged({}, {1000.0, 3000.0}, {1})), "machine.lag_x_s", 5e-3, 1e-5);
+}
+
+/// A lag that makes the circle smaller was taken for a turned plate, and what is left of it for scales of both axes.
+TEST(Drive, IsDiagnosedWithItsLagOneWayRound) {
+  const Drives late{.are_delayed = false, .late_x_s = 12e-3, .late_y_s = 12.5e-3, .scale_x = 0.0, .scale_y = 0.0, .squareness_rad = 0.0};
+  const diagnose::Diagnosis found = Diagnose(Logged(late, {3000.0}, {-1}), test::ToldOfCircles("drive", kCircle_m), {}).diagnosis;
+  const auto causes_called = [&found](const char* effect) {
+    return std::ranges::count_if(found.causes, [effect](const auto& cause) { return cause.effect == effect; });
+  };
+  EXPECT_EQ(causes_called("servo_lag"), 1);
+  EXPECT_EQ(causes_called("scale"), 0);
 }
 
 TEST(Drive, IsLateByAFixedTimeWhereTheScenarioSaysSo) {

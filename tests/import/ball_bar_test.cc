@@ -64,6 +64,15 @@ TEST_F(BallBar, IsGuessedByAnAngleAndADeviationInALength) {
   EXPECT_THAT(taken.story, HasSubstr("the feed is not stated: taken as 1000 mm/min"));
 }
 
+/// What comes again in a pass the other way is the angle, not the row.
+TEST_F(BallBar, NumbersItsPlacesByTheirAngles) {
+  std::string text = "angle [deg];CCW [um];CW [um]\n";
+  for (int k = 0; k < 360; k += 5) text += fmt::format("{};{:.4f};{:.4f}\n", k, Deviation_um(k, 1), Deviation_um(k, -1));
+  const Imported taken = Take(text);
+  ASSERT_EQ(taken.readings.size(), 144u);
+  EXPECT_EQ(taken.readings[10].position, taken.readings[133].position) << "50 deg, and back at 50 deg";
+}
+
 TEST_F(BallBar, MayBeGermanWithConditionsAboveAndDirectionsInWords) {
   const auto comma = [](std::string text) {
     std::ranges::replace(text, '.', ',');

@@ -154,18 +154,22 @@ diagnose::TwinComparison OfRadiiAlone(diagnose::TwinComparison comparison, const
   return comparison;
 }
 
+bool AreDrives(const Scenario& scenario) {
+  return std::ranges::all_of(CircularOf(scenario).procedure.setups, &CircularSetup::IsDrive);
+}
+
 diagnose::TwinComparison Comparison(const Scenario& scenario, const std::vector<Reading>& readings) {
   diagnose::TwinComparison comparison = Comparison(scenario);
   comparison.shown = [left_out = TakingUpPlay(readings, scenario)](const Reading& r) {
     return left_out.contains(r.reading) ? Eigen::VectorXd::Constant(2, kNaN) : Shown_m(r);
   };
+  if (AreDrives(scenario)) comparison.free_points = {"offset_x", "offset_y"};  // nothing is mounted: what turns the circle is a lag or a squareness
   return HasAngles(readings) ? comparison : OfRadiiAlone(std::move(comparison), readings);
 }
 
 /// As drives lag by their own readings.
 Scenario WithKindOfLag(Scenario scenario, const std::vector<Reading>& readings, std::vector<std::string>& notes) {
-  std::vector<CircularSetup>& setups = CircularOf(scenario).procedure.setups;
-  if (!std::ranges::all_of(setups, &CircularSetup::IsDrive)) return scenario;
+  if (!AreDrives(scenario)) return scenario;
   std::string kind;
   try {
     kind = Analyse(scenario, readings, Estimator::kRigorous).lag_kind;
