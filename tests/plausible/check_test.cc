@@ -319,18 +319,6 @@ TEST(Mangled, WhatJumpsFromOneRowOfAPositionToTheNextIsNotDoubted) {
   EXPECT_THAT(Lines(readings), Not(HasSubstr("of its place")));
 }
 
-/// A circle both ways round with backlash: what comes from one side of a reversal differs from the rest, and then what comes from the other.
-TEST(Mangled, WhatJumpsAtAReversalIsNotDoubted) {
-  std::vector<Reading> readings;
-  for (int pass = 0; pass < 4; ++pass)
-    for (int k = 0; k < 100; ++k) {
-      Reading& r = readings.emplace_back(Reading{.reading = 100 * pass + k, .time = Time(FromSeconds(100 * pass + k)), .pass = pass, .direction = 1, .position = k});
-      r.reference_rad = k * 1.8 * units::deg;
-      r.measured_rad = r.reference_rad + 1e-5 * std::sin(17.0 * r.reading) + ((k < 50) == (pass % 2 == 0) ? 1e-3 : 0.0);
-    }
-  EXPECT_THAT(Lines(readings), Not(HasSubstr("of its place")));
-}
-
 /// Nobody plans a recording: neither a scenario that was made up for it, nor one that knows the device only.
 TEST(Mangled, AComparisonAtOtherAnglesThanPlannedMayHaveAnyNumberOfReadings) {
   const Scenario& planned = Benches()[2];

@@ -92,20 +92,12 @@ double NextTo(const RowsOfPass& pass, std::size_t k, const std::vector<double>& 
   return largest;
 }
 
-/// As far from both rows next to it: where a value jumps, as at a reversal with backlash, it is like those on one side.
-bool StandsAlone(const RowsOfPass& pass, std::size_t k, const std::vector<double>& course, double by) {
-  constexpr double kAsFar = 0.5;
-  const auto is_away = [&](std::size_t next) { return !(std::abs(course[pass[k]] - course[pass[next]]) < kAsFar * by); };
-  return (k == 0 || is_away(k - 1)) && (k + 1 >= pass.size() || is_away(k + 1));
-}
-
 }  // namespace
 
 void CheckRepeatedPlaces(const Expected& expected, const Channel& channel, const std::vector<double>& left,
                          std::vector<Finding>& findings) {
   const std::vector<RowsOfPass> passes = Passes(channel);
   std::vector<double> beside = BesideOthers(channel, passes, left, expected.is_angle), sizes;
-  const std::vector<double> course = beside;
   for (const RowsOfPass& pass : passes) TakeNeighbours(pass, beside);
   for (const double one : beside)
     if (std::isfinite(one)) sizes.push_back(std::abs(one));
@@ -118,7 +110,7 @@ void CheckRepeatedPlaces(const Expected& expected, const Channel& channel, const
   for (const RowsOfPass& pass : passes) {
     for (std::size_t k = 0; k < pass.size(); ++k) {
       const double here = std::abs(beside[pass[k]]);
-      if (here > times * usual && here > kTimesNext * NextTo(pass, k, beside) && StandsAlone(pass, k, course, here))
+      if (here > times * usual && here > kTimesNext * NextTo(pass, k, beside))
         times = here / usual, worst = pass[k];
     }
   }
