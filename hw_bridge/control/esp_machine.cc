@@ -10,11 +10,14 @@
 namespace twinbench::hw {
 namespace {
 
-constexpr int kUnitMillimetre = 2, kUnitDegree = 7;
 constexpr int kReferenced = 1, kLower = 2, kUpper = 4, kMoving = 8;
 
 std::string OfAxis(std::size_t axis, const char* command) {
   return std::to_string(axis + 1) + command;
+}
+
+int UnitOf(const MachineAxis& axis) {
+  return axis.is_rotary ? kEspDegree : kEspMillimetre;
 }
 
 }  // namespace
@@ -36,7 +39,7 @@ void EspMachine::Prepare() {
 }
 
 void EspMachine::PrepareAxis(std::size_t k) {
-  const int unit = Axes()[k].is_rotary ? kUnitDegree : kUnitMillimetre;
+  const int unit = UnitOf(Axes()[k]);
   if (line().AskWholeNumber(OfAxis(k, "SN?")) != unit) TellEsp(line(), OfAxis(k, "SN") + std::to_string(unit));
   if (!knows_status_ && line().AskWholeNumber(OfAxis(k, "MO?")) == 0) lost_origin_[k] = true;
 }
@@ -45,6 +48,7 @@ std::vector<AxisLimits> EspMachine::Travel() {
   Prepare();
   std::vector<AxisLimits> travel(Axes().size());
   for (std::size_t k = 0; k < Axes().size(); ++k) {
+    RequireEspUnit(line(), OfAxis(k, ""), UnitOf(Axes()[k]));
     travel[k].lower = line().AskNumber(OfAxis(k, "SL?"), Axes()[k].to_SI());
     travel[k].upper = line().AskNumber(OfAxis(k, "SR?"), Axes()[k].to_SI());
   }

@@ -11,7 +11,6 @@ namespace twinbench::hw {
 namespace {
 
 constexpr Duration kPoll = std::chrono::milliseconds(20);
-constexpr int kDegrees = 7;
 constexpr int kStatusAxes = 4;  // that TS? tells of
 constexpr int kReferencedBit = 1, kLowerBit = 2, kUpperBit = 4;
 
@@ -35,7 +34,7 @@ void EspTable::Prepare() {
   if (opening == prepared_opening_) return;
   knows_status_ = EspAnswerTo(line(), Axis("MS?")).has_value();
   if (prepared_opening_ == 0) knows_speed_ = EspAnswerTo(line(), Axis("VU?")).has_value();
-  if (line().AskWholeNumber(Axis("SN?")) != kDegrees) Tell("SN" + std::to_string(kDegrees));
+  if (line().AskWholeNumber(Axis("SN?")) != kEspDegree) Tell("SN" + std::to_string(kEspDegree));
   const bool motor_is_off = line().AskWholeNumber(Axis("MO?")) == 0;
   if (motor_is_off && !knows_status_) lost_origin_ = true;
   if (motor_is_off && !lost_origin_) Tell("MO");
@@ -126,6 +125,7 @@ void EspTable::SendHome() {
 
 AllowedMotion EspTable::ReadAllowed() {
   Prepare();
+  RequireEspUnit(line(), Axis(""), kEspDegree);
   AllowedMotion allowed{line().AskNumber(Axis("SL?"), units::deg), line().AskNumber(Axis("SR?"), units::deg)};
   if (knows_speed_) allowed.fastest = line().AskNumber(Axis("VU?"), units::deg);
   return allowed;

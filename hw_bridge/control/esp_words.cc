@@ -60,6 +60,13 @@ void FormEspGroup(DeviceLine& line, std::size_t axes) {
   RequireTaken(line, command, error);
 }
 
+void RequireEspUnit(DeviceLine& line, const std::string& axis, int unit) {
+  const auto counts_in = line.AskWholeNumber(axis + "SN?");
+  if (counts_in != unit)
+    line.Fail(FaultKind::kMoved, fmt::format("axis {} was told to count in unit {} and counts in unit {}: somebody else changed it", axis,
+                                             unit, counts_in));
+}
+
 std::vector<std::string> EspIntroductions(const std::string& token, const std::string& watchdog) {
   std::vector<std::string> said;
   if (!token.empty()) said.push_back("XK" + token + "\n" + kEspErrorQuery);

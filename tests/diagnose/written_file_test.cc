@@ -8,6 +8,7 @@
 #include "twin/benches/rotary_4dof/diagnose.h"
 #include "twin/core/errors.h"
 #include "twin/core/signal_effect.h"
+#include "twin/diagnose/engine/followed.h"
 #include "twin/diagnose/engine/scanner.h"
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/file_fit.h"
@@ -73,6 +74,11 @@ TEST(JudgeByFile, AFileThatShowsAllOrHalfGainsAllOrThreeQuartersAndOneThatShowsN
     EXPECT_LE(d.causes.front().probability, share > 0.0 ? stated : 0.6);
     EXPECT_GE(d.causes.front().probability, share > 0.0 ? stated : 0.0);
   }
+}
+
+TEST(Followed, WhatNoBodyCanBeIsTheFaultOfItsScenario) {
+  const model::FollowMaker maker = [](const auto&, const auto&) -> std::unique_ptr<model::Follow> { throw std::invalid_argument("a ring of no radius"); };
+  EXPECT_THROW(Followed(maker, twinbench::test::SmallNoiseFree(), {}, {}, 0), InputError);
 }
 
 TEST(JudgeByFile, AFileThatTheBenchRefusesIsToldAndTheFitIsJudged) {

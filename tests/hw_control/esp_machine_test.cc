@@ -50,7 +50,7 @@ TEST_F(EspMachineWithoutStatus, AnAxisWhoseMotorIsOffAtTheStartHasNoOrigin) {
   EXPECT_EQ(test::KindOf([this] { Machine().StartMove({0.01, 0.0}, 0.0); }), FaultKind::kRestarted);
 }
 
-TEST_F(EspMachineWithoutStatus, LimitsAndAGreatestSpeedThatSomebodyElseSetAreToldBeforeAnythingMoves) {
+TEST_F(EspMachineWithoutStatus, LimitsUnitsAndAGreatestSpeedThatSomebodyElseSetAreToldBeforeAnythingMoves) {
   model_.fastest = 20;
   EspMachine machine = Machine();
   machine.AgreeOnLimits();
@@ -60,6 +60,8 @@ TEST_F(EspMachineWithoutStatus, LimitsAndAGreatestSpeedThatSomebodyElseSetAreTol
     EXPECT_EQ(test::KindOf([&] { machine.StartMove({0.02, 0.0}, 0.0); }), FaultKind::kMoved);
     EXPECT_NEAR(machine.State()[0].encoder, 0.01, 1e-12);
   }
+  model_.axis[1].upper = 200, model_.fastest = 20, model_.unit = 3;
+  EXPECT_EQ(test::KindOf([&] { machine.StartMove({0.02, 0.0}, 0.0); }), FaultKind::kMoved);
 }
 
 TEST_F(EspMachineWithoutStatus, AGroupThatIsThereAlreadyIsOursIfItIsOfOurAxes) {

@@ -195,13 +195,14 @@ TEST_F(EspTables, OfMsQueryTheLimitSwitchHasItsSide) {
   }
 }
 
-TEST_F(EspTables, LimitsAndAGreatestSpeedThatSomebodyElseSetAreToldBeforeAnythingMoves) {
-  for (const int fastest_deg_s : {0, 40}) {
+TEST_F(EspTables, LimitsUnitsAndAGreatestSpeedThatSomebodyElseSetAreToldBeforeAnythingMoves) {
+  for (const int fastest_deg_s : {0, 40, 80}) {
     model_.fastest = fastest_deg_s;
     EspTable table = Table(1);
     table.AgreeOnLimits();
     table.StartMove(0.5);
-    model_.fastest *= 2;
+    if (fastest_deg_s == 40) model_.fastest *= 2;
+    if (fastest_deg_s == 80) model_.unit = 10;
     if (fastest_deg_s == 0) model_.axis[1].upper += 1.0;
     EXPECT_EQ(KindOf([&] { table.StartMove(0.25); }), FaultKind::kMoved);
     EXPECT_NEAR(table.State().encoder_rad, 0.5, 1e-9);

@@ -128,7 +128,8 @@ TEST(RequireNotReversed, SpotsDifferAgainstEachOtherAsInThePassBefore) {
   EXPECT_EQ(PassUntilExchangeIsNoticed(0, 1e-4), 16);  // from the begin on nothing tells it
   EXPECT_EQ(PassUntilExchangeIsNoticed(8, 1e-4), 13);
   EXPECT_EQ(PassUntilExchangeIsNoticed(10, 1e-4), 15);
-  EXPECT_EQ(PassUntilExchangeIsNoticed(4, 1e-4), 16);  // four places are too few
+  EXPECT_EQ(PassUntilExchangeIsNoticed(4, 1e-4), 14);  // in mid-pass, by three places beside others that are as before
+  EXPECT_EQ(PassUntilExchangeIsNoticed(2, 1e-4), 16);  // two are too few
   EXPECT_EQ(PassUntilExchangeIsNoticed(8, 1e-6), 16);  // less than ten times the noise
 }
 
@@ -197,6 +198,34 @@ TEST(DoubtedInstruments, KeepNothingOfDeadStuckLateAndRangelessOnesAndAllOfGoodO
       {[](const auto& all) { return 1e3 * all.back(); }, kNoiseOfOne},                               // in another unit
       {[](const auto&) { return 0.0; }, 0.0}};  // of one that claims nothing nothing is asked
   for (const auto& [fault, noise] : cases) EXPECT_KEPT(Measured(fault, noise));
+}
+
+/// Two channels, of which the second shows noise as long as told, and then nothing but its end.
+class OneDies : public InstrumentSet {
+ public:
+  explicit OneDies(double ends) : ends_(ends) {}
+  Reading Read() override {
+    Reading reading;
+    reading.autocollimator_yaw_rad = kNoiseOfOne * std::sin(17.0 * ++reads_);
+    reading.autocollimator_tilt_rad = std::min(ends_, place + kNoiseOfOne * std::cos(17.0 * reads_));
+    return reading;
+  }
+  void Arm(int, int) override {}
+  LatchedSamples Latched() override { return {}; }
+  double place = 0.0;
+
+ private:
+  double ends_;
+  int reads_ = 0;
+};
+
+TEST(DoubtedInstruments, OneChannelThatShowsNoNoiseAnyMoreIsDeadBesideOthersThatLive) {
+  const ClaimedColumn y = ClaimOf("turntable_autocollimator", "autocollimator_y_arcsec");
+  OneDies shows(1e-4);
+  DoubtedInstruments doubted(shows, {{X().column, kNoiseOfOne}, {y.column, kNoiseOfOne}});
+  for (; shows.place < 0.9e-4; shows.place += 1e-5) EXPECT_FALSE(test::KindOf([&] { doubted.Read(); }));
+  shows.place = 2e-4;
+  EXPECT_EQ(test::KindOf([&] { doubted.Read(); }), FaultKind::kStuck);
 }
 
 /// Sixteen readings: of how many the steps are proved.

@@ -140,7 +140,27 @@ Reading DoubtedInstruments::OfThisPlace(const Reading& shown) {
         "show {} and then {} at one place, by more than noise: do they answer late by one, or move still?",
         Text(claim, shown), Text(claim, again)));
   }
+  RequireNoise(shown, again);
   return again;
+}
+
+/// Of one channel beside others that live. One whose noise hides in its steps shows the same twice anyway.
+void DoubtedInstruments::RequireNoise(const Reading& shown, const Reading& again) {
+  constexpr int kFewest = 5;
+  constexpr double kNearlyAlways = 0.8;
+  for (std::size_t k = 0; k < claims_.size(); ++k) {
+    const ClaimedColumn& claim = claims_[k];
+    if (!(claim.noise > 0.0) || !IsShown(claim, shown)) continue;
+    const auto is_another = [&](const Reading& other) { return ValueOf(claim, other) != ValueOf(claim, shown); };
+    Twice& twice = twice_[k];
+    const bool shows_noise = twice.read >= kFewest && twice.differed >= kNearlyAlways * twice.read;
+    bool differs = is_another(again);
+    for (int more = 0; shows_noise && !differs && more < kAgain; ++more) differs = is_another(inner_.Read());
+    if (shows_noise && !differs)
+      Fail(fmt::format("show {} in {} readings of one place, where it showed noise before: it is dead, stuck or at its end",
+                       Text(claim, shown), kAgain + 2));
+    ++twice.read, twice.differed += is_another(again);
+  }
 }
 
 void DoubtedInstruments::Arm(int samples, int lines) {

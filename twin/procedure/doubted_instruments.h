@@ -41,12 +41,12 @@ void RequireAsBefore(const std::vector<ClaimedColumn>& claims, const Reading& ag
 /// Instruments of a real bench, which are not believed at once. Every reading at rest is taken twice at its place,
 /// and both must agree within ten times the noise: those that answer late by one show the place before, and a spike
 /// comes alone. One that is the reading before to the last digit, or nothing but zeros, is taken again until
-/// another comes, and then once more, which counts. In motion: no column shows the very same for 16 samples, no angle for 64. What
+/// another comes, and then once more, which counts; so is what one channel shows twice, where it hardly ever did before. In motion: no column shows the very same for 16 samples, no angle for 64. What
 /// is read again is in no record: replays need it not.
 class DoubtedInstruments : public InstrumentSet {
  public:
   DoubtedInstruments(InstrumentSet& inner, std::vector<ClaimedColumn> claims)
-      : inner_(inner), claims_(std::move(claims)), same_(claims_.size()) {}
+      : inner_(inner), claims_(std::move(claims)), same_(claims_.size()), twice_(claims_.size()) {}
   /// @throws DeviceFault kStuck of what is dead, stuck or late; kProtocol of a value out of range.
   Reading Read() override;
   Reading Look() override { return inner_.Look(); }
@@ -59,12 +59,18 @@ class DoubtedInstruments : public InstrumentSet {
   Reading Alive(const Reading& shown);
   /// The second, which agrees with the one that was shown.
   Reading OfThisPlace(const Reading& shown);
+  void RequireNoise(const Reading& shown, const Reading& again);
   void RequireMoving(const Reading& sample);
 
   InstrumentSet& inner_;
   std::vector<ClaimedColumn> claims_;
   std::optional<Reading> last_;  // of all answers
   std::vector<int> same_;        // samples in a row, a column
+  /// How often a column was read twice at its place, and showed another value.
+  struct Twice {
+    int read = 0, differed = 0;
+  };
+  std::vector<Twice> twice_;
 };
 
 }  // namespace twinbench::procedure

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include "twin/core/device_fault.h"
 #include "twin/core/distributions.h"
@@ -19,6 +20,7 @@ struct Repeat {
   double before, again;
   int reading;  // the earlier
   double Differs() const { return again - before; }
+  double Adds() const { return again + before; }
 };
 
 /// One entry a place that both have, this reading's pass and the one before it, in the order of the later.
@@ -74,6 +76,21 @@ double Left(const ClaimedColumn& claim, const Reading& reading) {
   return claim.is_angle ? std::remainder(left, units::turn) : left;
 }
 
+/// Of places in two passes: 1, they show the same in both; -1, the other way round; 0, neither is sure.
+int WayRound(std::span<const Repeat> places, double noise) {
+  constexpr double kTimes = 8.0, kTimesNoise = 10.0;  // root mean squares
+  double differs = 0.0, adds = 0.0, mean_differs = 0.0, mean_adds = 0.0;
+  const auto count = static_cast<double>(places.size());
+  for (const Repeat& one : places) mean_differs += one.Differs() / count, mean_adds += one.Adds() / count;
+  for (const Repeat& one : places) {
+    differs += std::pow(one.Differs() - mean_differs, 2);
+    adds += std::pow(one.Adds() - mean_adds, 2);
+  }
+  const double least = kTimesNoise * std::sqrt(2.0 * count) * noise;
+  const auto rules = [&](double one, double other) { return std::sqrt(one) > std::max(kTimes * std::sqrt(other), least); };
+  return rules(adds, differs) - rules(differs, adds);
+}
+
 }  // namespace
 
 void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& reading,
@@ -109,26 +126,25 @@ void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& read
 void RequireNotReversed(const ClaimedColumn& a, const ClaimedColumn* less, const Reading& reading,
                         const std::vector<Reading>& kept) {
   constexpr std::size_t kPlaces = 6;  // what repeats nowhere is by chance the other way round once in 30 000 times
-  constexpr double kTimes = 8.0, kTimesNoise = 10.0;  // root mean squares
+  constexpr std::size_t kPart = 3;    // beside as many that are as before
   const auto value = [&](const Reading& r) { return ValueOf(a, r) - (less ? ValueOf(*less, r) : 0.0); };
-  std::vector<Repeat> last = RepeatsOf(value, reading, kept);
-  if (last.size() < kPlaces) return;
-  last.erase(last.begin(), last.end() - kPlaces);
-  double differs = 0.0, adds = 0.0, mean_differs = 0.0, mean_adds = 0.0;
-  for (const Repeat& one : last)
-    mean_differs += one.Differs() / kPlaces, mean_adds += (one.again + one.before) / kPlaces;
-  for (const Repeat& one : last) {
-    differs += std::pow(one.Differs() - mean_differs, 2);
-    adds += std::pow(one.again + one.before - mean_adds, 2);
-  }
-  const double noise = std::sqrt(2.0 * kPlaces) * std::hypot(a.noise, less ? less->noise : 0.0);
-  if (!(std::sqrt(differs) > std::max(kTimes * std::sqrt(adds), kTimesNoise * noise))) return;
+  const std::vector<Repeat> repeats = RepeatsOf(value, reading, kept);
+  const std::size_t all = repeats.size();
+  if (all < kPlaces) return;
+  const double noise = std::hypot(a.noise, less ? less->noise : 0.0);
+  const auto way = [&](std::size_t first, std::size_t end) {
+    return WayRound(std::span(repeats).subspan(first, end - first), noise);
+  };
+  bool is_reversed = way(all - kPlaces, all) < 0;
+  for (std::size_t first = kPart; first + kPart <= all && !is_reversed; ++first)
+    is_reversed = way(0, first) * way(first, all) < 0;
+  if (!is_reversed) return;
   throw DeviceFault(
       FaultKind::kChanged, "instruments",
       fmt::format(
-          "show {} at the places of the last {} readings the other way round than in the pass before: was a wire "
+          "show {} at places of this pass the other way round than in the pass before: was a wire "
           "exchanged or its sign, in this pass or that one? Measure mounting {} again, in another run",
-          less ? a.column.name + " less " + less->column.name : a.column.name, kPlaces, reading.setup));
+          less ? a.column.name + " less " + less->column.name : a.column.name, reading.setup));
 }
 
 void Closing::Took(const Reading& reading) {

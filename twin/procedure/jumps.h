@@ -18,9 +18,9 @@ void RequireNoJump(const std::vector<ClaimedColumn>& claims, const Reading& read
                    const std::vector<Reading>& kept);
 
 /// Of the same readings and a column, or one less another that shows nearly the same: two spots of one grating.
-/// @throws DeviceFault kChanged where at the last six places it is what it was in the pass before, but the
-///         other way round, by ten times the noise: a sign is another, or one was plugged in where the other was.
-///         What is the same everywhere counts for nothing.
+/// @throws DeviceFault kChanged where at the last six places, or at three beside three that are as before, it is what it was in
+///         the pass before, but the other way round, by ten times the noise: a sign is another, or one was plugged in where
+///         the other was. What is the same everywhere counts for nothing.
 void RequireNotReversed(const ClaimedColumn& a, const ClaimedColumn* less, const Reading& reading,
                         const std::vector<Reading>& kept);
 

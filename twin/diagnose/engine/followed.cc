@@ -1,6 +1,6 @@
 #include "twin/diagnose/engine/followed.h"
 
-#include "twin/core/errors.h"
+#include "twin/core/built.h"
 
 namespace twinbench::diagnose {
 
@@ -10,7 +10,8 @@ Eigen::VectorXd ByRow(const Eigen::MatrixXd& by_reading) {
 
 Followed::Followed(const model::FollowMaker& maker, const Scenario& scenario, const std::vector<Reading>& record,
                    const std::vector<Reading>& used, int channels)
-    : follow_(maker(scenario, record)), readings_(std::ssize(record)), channels_(channels) {
+    : follow_(Built(scenario.bench, [&] { return maker(scenario, record); })),
+      readings_(std::ssize(record)), channels_(channels) {
   for (Eigen::Index i = 0; i < readings_ && rows_.size() < used.size(); ++i) {
     if (record[static_cast<std::size_t>(i)].reading == used[rows_.size()].reading) rows_.push_back(i);
   }

@@ -7,6 +7,7 @@
 
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/world.h"
+#include "twin/core/built.h"
 #include "twin/core/device_fault.h"
 #include "twin/core/happened_once.h"
 #include "twin/core/numbered_runs.h"
@@ -124,13 +125,7 @@ struct HobTwin::Impl : Clock, MachineController, InstrumentSet, MachineFixture, 
   std::unique_ptr<HobWorld> world;
 };
 
-HobTwin::HobTwin(const Scenario& scenario) {
-  try {
-    impl_ = std::make_unique<Impl>(scenario);
-  } catch (const std::invalid_argument& error) {
-    throw InputError("bench " + scenario.bench, error.what(), "a scenario of parts that can be built");
-  }
-}
+HobTwin::HobTwin(const Scenario& scenario) : impl_(Built(scenario.bench, [&] { return std::make_unique<Impl>(scenario); })) {}
 HobTwin::~HobTwin() = default;
 
 MachineBench HobTwin::Devices() {

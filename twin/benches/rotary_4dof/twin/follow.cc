@@ -7,7 +7,7 @@
 #include "twin/benches/rotary_4dof/twin/course.h"
 #include "twin/benches/rotary_4dof/twin/points.h"
 #include "twin/benches/rotary_4dof/twin/table_stack.h"
-#include "twin/core/errors.h"
+#include "twin/core/built.h"
 
 namespace twinbench::sim {
 namespace {
@@ -172,11 +172,7 @@ class RotaryFollow : public PointwiseFollow<RotaryExtra> {
 
 std::unique_ptr<model::Follow> FollowRotary(const Scenario& scenario, const std::vector<Reading>& record,
                                             std::shared_ptr<DrivesOnce> drives) {
-  try {
-    return std::make_unique<RotaryFollow>(scenario, record, std::move(drives));
-  } catch (const std::invalid_argument& error) {
-    throw InputError("bench " + scenario.bench, error.what(), "a scenario of parts that can be built");
-  }
+  return Built(scenario.bench, [&] { return std::make_unique<RotaryFollow>(scenario, record, drives); });
 }
 
 }  // namespace twinbench::sim

@@ -8,8 +8,8 @@
 
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/world.h"
+#include "twin/core/built.h"
 #include "twin/core/device_fault.h"
-#include "twin/core/errors.h"
 #include "twin/core/happened_once.h"
 #include "twin/core/numbered_runs.h"
 #include "twin/sim/setup_check.h"
@@ -93,13 +93,7 @@ struct TurntableTwin::Impl : Clock, MachineController, InstrumentSet, MachineFix
   std::unique_ptr<TurntableWorld> world;
 };
 
-TurntableTwin::TurntableTwin(const Scenario& scenario) {
-  try {
-    impl_ = std::make_unique<Impl>(scenario);
-  } catch (const std::invalid_argument& error) {
-    throw InputError("bench " + scenario.bench, error.what(), "a scenario of parts that can be built");
-  }
-}
+TurntableTwin::TurntableTwin(const Scenario& scenario) : impl_(Built(scenario.bench, [&] { return std::make_unique<Impl>(scenario); })) {}
 TurntableTwin::~TurntableTwin() = default;
 
 MachineBench TurntableTwin::Devices() {
