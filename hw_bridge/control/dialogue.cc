@@ -125,7 +125,7 @@ void Dialogue::Tell(const std::string& device, const std::string& text, Duration
   Send(device, text, patience);
 }
 
-void Dialogue::AwaitSomething(Duration patience, const std::function<void()>& meanwhile) {
+Duration Dialogue::AwaitSomething(Duration patience, const std::function<void()>& meanwhile) {
   const auto end = SteadyClock::now() + patience;
   while (!link_->HasUnread() && SteadyClock::now() < end) {
     try {
@@ -136,14 +136,14 @@ void Dialogue::AwaitSomething(Duration patience, const std::function<void()>& me
     }
     std::this_thread::sleep_for(kHearsWhileItWaits);
   }
+  return std::max<Duration>(end - SteadyClock::now(), Duration(0));
 }
 
 std::string Dialogue::Ask(const std::string& device, const std::string& text, Duration patience, const std::function<void()>& meanwhile) {
   Open(device, patience);
   if (link_->HasUnread()) Fail(FaultKind::kProtocol, device, "an answer came that nobody had asked for");
   Send(device, text, patience);
-  if (meanwhile) AwaitSomething(patience, meanwhile);
-  return NextLine(device, patience);
+  return NextLine(device, meanwhile ? AwaitSomething(patience, meanwhile) : patience);
 }
 
 }  // namespace twinbench::hw

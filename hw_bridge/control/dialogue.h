@@ -59,7 +59,8 @@ class Dialogue {
   void ReadOldAnswersAway(Duration patience);
   void Identify(const std::string& device, Duration patience);
   void Introduce(const std::string& device, const std::string& introduction, Duration patience);
-  void AwaitSomething(Duration patience, const std::function<void()>& meanwhile);
+  /// @return what is left of the patience.
+  Duration AwaitSomething(Duration patience, const std::function<void()>& meanwhile);
   std::string AwaitIdentity(const std::string& device, Duration patience);
   void Send(const std::string& device, const std::string& text, Duration patience);
   [[noreturn]] void Fail(FaultKind kind, const std::string& device, const std::string& why);

@@ -190,6 +190,14 @@ TEST(Dialogue, NobodyThereOrNoSuchSerialDeviceIsAFaultWithinThePatience) {
   }
 }
 
+TEST(Dialogue, WhoeverIsHeardMeanwhileDoesNotDoubleThePatience) {
+  Talk talk(WithIdentity([](const std::string&) { return Reply{""}; }));
+  talk.dialogue.Open("it", kPatience);
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(test::KindOf([&] { talk.dialogue.Ask("it", "A?\n", kPatience, [] {}); }), FaultKind::kTimeout);
+  EXPECT_LE(std::chrono::steady_clock::now() - begin, 3 * kPatience / 2);
+}
+
 TEST(Dialogue, AControllerThatComesBackWithinThePatienceIsFound) {
   const auto handler = WithIdentity([](const std::string&) { return Reply{"7\n"}; });
   const test::ReservedPort port;

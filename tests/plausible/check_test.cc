@@ -2,6 +2,7 @@
 #include "tests/support/angle_benches.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/expected.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 
 namespace twinbench::plausible {
 namespace {
@@ -209,6 +210,17 @@ Rows Shuffled(const Rows& readings, const Scenario& scenario) {
   return shuffled;
 }
 
+/// By one, in what is shown alone.
+Rows Late(const Rows& readings, const Scenario& scenario) {
+  Rows late = readings;
+  for (std::size_t i = 1; i < late.size(); ++i)
+    for (const ReadingColumn* column : Values(scenario)) {
+      Reading before = readings[i - 1];
+      column->number(late[i]) = column->number(before);
+    }
+  return late;
+}
+
 Rows Twice(const Rows& readings) {
   Rows twice;
   for (const Reading& r : readings) twice.insert(twice.end(), 2, r);
@@ -263,7 +275,7 @@ TEST(Mangled, ReadingsOfAnyBenchAreRefusedOrSaidAndGoodOnesAreNot) {
       {"a thousand times",
        [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return 1e3 * x; }); }},
       {"negative", [](const Rows& r, const Scenario& s) { return EachValue(r, s, [](double x) { return -x; }); }},
-      {"stuck", Stuck}, {"shuffled", Shuffled}, {"twice", [](const Rows& r, const Scenario&) { return Twice(r); }},
+      {"stuck", Stuck}, {"shuffled", Shuffled}, {"late by one", Late}, {"twice", [](const Rows& r, const Scenario&) { return Twice(r); }},
       {"every second", [](const Rows& r, const Scenario&) { return EverySecond(r); }},
       {"the first half", [](const Rows& r, const Scenario&) { return FirstHalf(r); }},
       {"times in ms", [](const Rows& r, const Scenario&) { return EachTime(r, 1e3); }},
@@ -349,13 +361,20 @@ TEST(Mangled, AnAutocollimatorWhoseAxesAreExchangedIsRefusedAndOneOfOtherSignsDo
   }
 }
 
-TEST(Mangled, AnAutocollimatorThatAnswersOneReadingLateIsDoubted) {
-  Rows late = Good(1);
-  for (std::size_t i = late.size(); i-- > 1;) {
-    late[i].autocollimator_yaw_rad = late[i - 1].autocollimator_yaw_rad;
-    late[i].autocollimator_tilt_rad = late[i - 1].autocollimator_tilt_rad;
+TEST(Mangled, ANulledFaceIsDoubtedInAnotherUnitAndATableOfFacesIsNot) {
+  const Scenario scenario = LoadScenario(test::ScenarioPath("turntable_polygon.toml"), {});
+  const Rows good = test::ReadingsOf(scenario);
+  Rows far = good, of_table = good;
+  for (Reading& r : far) r.autocollimator_yaw_rad *= 1e3;
+  const TurntableProcedureSettings& procedure = TurntableOf(scenario).turntable_procedure;
+  for (Reading& r : of_table) {
+    r.autocollimator_yaw_rad *= 1e3;
+    r.target_rad = procedure.Of(procedure.polygon_offsets_rad, r.setup) - r.reference_rad;
+    r.extra.clear();
   }
-  EXPECT_THAT(Said(late, Benches()[1]), HasSubstr("answer one reading late"));
+  EXPECT_EQ(Said(good, scenario), "-");
+  EXPECT_THAT(Said(far, scenario), HasSubstr("as far from zero as it is brought"));
+  EXPECT_THAT(Said(of_table, scenario), Not(HasSubstr("as far from zero")));
 }
 
 /// As a controller shows an axis that comes to one place again and again: its own last digits are no other place.

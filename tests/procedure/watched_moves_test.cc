@@ -69,6 +69,17 @@ TEST_F(WayOfAxis, WhereItSettlesNothingIsAsked) {
     EXPECT_NO_THROW(way_.Shows({kWay - 1e-4}, begin_ + FromSeconds(look * kLook_s), kStall_s));
 }
 
+TEST_F(WayOfAxis, WhoeverSendsItElsewhereIsToldAtTheNextLookWhereItsControllerTellsTargets) {
+  const auto said_of = [this](double first, double second) {
+    way_.Begins({0.0}, {kWay}, {0.0}, begin_, Duration(0));
+    EXPECT_NO_THROW(way_.RequireOurs({first}));
+    return test::KindOf([&] { way_.RequireOurs({second}); });
+  };
+  EXPECT_EQ(said_of(kWay, kWay), std::nullopt);
+  EXPECT_EQ(said_of(kWay, 0.5 * kWay), FaultKind::kMoved);
+  EXPECT_EQ(said_of(0.1 * kWay, 0.5 * kWay), std::nullopt);  // it tells how far it is
+}
+
 /// Stands, and is on a switch from the n-th look on.
 class AtSwitch : public fuzz::PlainMachine {
  public:
@@ -98,6 +109,30 @@ TEST(WatchedMachine, ComesBackAtOnceWhereItRunsOntoASwitchAndNotWhereItLeavesOne
   EXPECT_NEAR(waited_s(+1), 0.1, 1e-9);
   EXPECT_NEAR(waited_s(-1), 1.0, 1e-9);
   EXPECT_NEAR(waited_s(0), 1.0, 1e-9);
+}
+
+/// Goes round, and is pushed off.
+class OffCircle : public fuzz::PlainMachine {
+ public:
+  bool Settles(Duration) override { return false; }
+  std::vector<AxisState> State() override {
+    std::vector<AxisState> states(2);
+    states[0].encoder = at_m;
+    states[1].encoder = 0.0;
+    return states;
+  }
+  double at_m = 0.05;
+};
+
+TEST(WatchedMachine, OneThatIsPushedOffItsCircleIsToldAtTheNextLook) {
+  const fuzz::PlainClock clock;
+  const std::vector<AxisLimits> limits;
+  OffCircle machine;
+  WatchedMachine watched(machine, clock, limits);
+  watched.StartArc({});
+  EXPECT_FALSE(watched.Settles(FromSeconds(0.3)));
+  machine.at_m += 2e-3;
+  EXPECT_EQ(test::KindOf([&] { watched.Settles(FromSeconds(0.3)); }), FaultKind::kFollowing);
 }
 
 /// Stands where its zero says; the first command of a run sets other zeros.

@@ -1,5 +1,6 @@
 #include "twin/benches/expected.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "twin/benches/circular_motion/columns.h"
@@ -18,6 +19,8 @@ namespace twinbench {
 namespace {
 
 using plausible::Expected;
+
+constexpr double kStepOfAngles_rad = 1e-9;  // by which numbers of files are rounded
 
 /// Where steps are larger than the noise, equal values say nothing of it.
 double UnlessCoarse(double noise, double step) {
@@ -67,14 +70,27 @@ std::vector<Expected> ShownByDevice(const EncoderSettings& s) {
            .is_angle = true}};
 }
 
-std::vector<Expected> ShownByCollimator(const TurntableSettings& s) {
+/// To which the turntable brings x of a face; 0: all readings are at nominal angles, as of a table of faces.
+double Nulled_rad(const TurntableSettings& s, const std::vector<Reading>& readings) {
+  const TurntableProcedureSettings& p = s.turntable_procedure;
+  const auto is_beside = [&](const Reading& r) {
+    const double nominal_rad = (r.setup < p.SetUps() ? p.Of(p.polygon_offsets_rad, r.setup) : 0.0) - r.reference_rad;
+    return std::abs(std::remainder(r.target_rad - nominal_rad, units::turn)) > kStepOfAngles_rad;
+  };
+  return s.HasPolygon() && std::ranges::any_of(readings, is_beside) ? std::hypot(s.collimator.deadband_rad, s.ReadingNoise_rad()) : 0.0;
+}
+
+std::vector<Expected> ShownByCollimator(const TurntableSettings& s, const std::vector<Reading>& readings) {
   const double noise = UnlessCoarse(s.ReadingNoise_rad(), s.HasPolygon() ? s.collimator.deadband_rad : 0.0);
   // The tilted axis is carried round by the turntable, and its teeth turn the mirror back.
   const auto tilt = [p = s.turntable_procedure](const Reading& r) {
     const bool is_planned = r.setup >= 0 && r.setup < p.SetUps() && r.phase == Phase::kFullCircle;
     return is_planned ? -p.Of(p.tilts_rad, r.setup) * std::sin(r.target_rad + p.Of(p.tilt_azimuths_rad, r.setup)) : kNaN;
   };
-  return {{.column = "autocollimator_x_arcsec", .noise = noise, .by_axes = [](const Reading& r) { return r.target_rad; }},
+  return {{.column = "autocollimator_x_arcsec",
+           .noise = noise,
+           .nulled = Nulled_rad(s, readings),
+           .by_axes = [](const Reading& r) { return r.target_rad; }},
           {.column = "autocollimator_y_arcsec", .noise = s.ReadingNoise_rad(), .course = tilt, .not_in = "autocollimator_x_arcsec",
            .by_axes = StandsStill}};
 }
@@ -133,7 +149,7 @@ std::vector<Expected> ShownByProbe(const FreeformSettings& s) {
 std::vector<Expected> ExpectedOf(const Scenario& scenario, const std::vector<Reading>& readings) {
   if (scenario.bench == kRotaryBench) return ShownByTables(RotaryOf(scenario), readings);
   if (scenario.bench == kEncoderBench) return ShownByDevice(EncoderOf(scenario));
-  if (scenario.bench == kTurntableBench) return ShownByCollimator(TurntableOf(scenario));
+  if (scenario.bench == kTurntableBench) return ShownByCollimator(TurntableOf(scenario), readings);
   if (scenario.bench == kHobBench) return ShownByHob(HobOf(scenario));
   if (scenario.bench == kCircularBench) return ShownOfCircles(CircularOf(scenario));
   if (scenario.bench == kFreeformBench) return ShownByProbe(FreeformOf(scenario));

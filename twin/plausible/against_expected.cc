@@ -141,6 +141,10 @@ double NoiseBound(const Channel& channel, const std::vector<double>& left) {
 void CheckSize(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
   if (channel.size() < kFewestToJudge) return;
   const std::string& name = channel.column->name;
+  const double off_zero = MiddleOf(Sizes(channel.value));
+  if (expected.nulled > 0.0 && off_zero > kTimes * expected.nulled)
+    findings.push_back({false, fmt::format("{} lies {:.3g} times as far from zero as it is brought: is it in another unit?", name,
+                                           off_zero / expected.nulled)});
   const double noise = NoiseBound(channel, LeftOf(channel, expected));
   const bool is_still = expected.noise > 0.0 && noise < expected.noise / kTimes && !(StepOf(channel) > noise);
   const CourseSpread spread = expected.course ? SpreadAbout(channel, expected) : CourseSpread{};
@@ -242,6 +246,7 @@ void CheckAgainst(const Expected& expected, const Channel& channel, std::vector<
   const std::size_t before = findings.size();
   CheckSingleValues(channel, expected, findings);
   if (findings.size() == before) CheckRepeatedPlaces(expected, channel, LeftOf(channel, expected), findings);
+  if (findings.size() == before) CheckLate(expected, channel, findings);
 }
 
 }  // namespace twinbench::plausible

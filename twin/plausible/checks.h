@@ -38,4 +38,7 @@ void CheckAgainst(const Expected& expected, const Channel& channel, std::vector<
 void CheckRepeatedPlaces(const Expected& expected, const Channel& channel, const std::vector<double>& left,
                          std::vector<Finding>& findings);
 
+/// Of places in passes of both directions: values that are those of the place before, or behind.
+void CheckLate(const Expected& expected, const Channel& channel, std::vector<Finding>& findings);
+
 }  // namespace twinbench::plausible

@@ -92,6 +92,40 @@ double NextTo(const RowsOfPass& pass, std::size_t k, const std::vector<double>& 
   return largest;
 }
 
+/// Means of a place, of passes in either direction.
+struct BothWays {
+  double sum[2] = {0.0, 0.0};
+  int count[2] = {0, 0};
+};
+
+/// By how much places differ between passes of either direction if every value is that of the place so many readings before; NaN: too
+/// few have both. Where nobody knows what it should show, about what each set-up has everywhere, which may be a reversal.
+double ApartBothWays(const Expected& expected, const Channel& channel, const std::vector<RowsOfPass>& passes, int later) {
+  const auto left = [&](const Reading& place, double value) {
+    const double off = expected.nominal ? value - expected.nominal(place) : value;
+    return expected.nominal && expected.is_angle ? std::remainder(off, units::turn) : off;
+  };
+  std::map<std::tuple<Phase, int, std::size_t>, std::map<int, BothWays>> set_ups;
+  for (const RowsOfPass& pass : passes) {
+    const auto rows = static_cast<int>(pass.size());
+    for (int k = std::max(0, -later); k < std::min(rows, rows - later); ++k) {
+      const Reading& r = *channel.reading[pass[static_cast<std::size_t>(k)]];
+      BothWays& place = set_ups[{r.phase, r.setup, pass.size()}][r.position];
+      const int way = r.direction > 0 ? 0 : 1;
+      place.sum[way] += left(r, channel.value[pass[static_cast<std::size_t>(k + later)]]), ++place.count[way];
+    }
+  }
+  std::vector<double> apart;
+  for (const auto& [set_up, places] : set_ups) {
+    std::vector<double> own;
+    for (const auto& [position, at] : places)
+      if (at.count[0] > 0 && at.count[1] > 0) own.push_back(at.sum[0] / at.count[0] - at.sum[1] / at.count[1]);
+    const double middle = expected.nominal ? 0.0 : MiddleOf(own);
+    for (const double one : own) apart.push_back(one - middle);
+  }
+  return apart.size() < kFewestToJudge ? kNaN : MiddleOf(Sizes(std::move(apart)));
+}
+
 }  // namespace
 
 void CheckRepeatedPlaces(const Expected& expected, const Channel& channel, const std::vector<double>& left,
@@ -118,6 +152,24 @@ void CheckRepeatedPlaces(const Expected& expected, const Channel& channel, const
   findings.push_back(
       {false, fmt::format("{} of reading {} lies {:.3g} times the scatter from all others of its place",
                           Text(*channel.column, channel.value[worst]), channel.reading[worst]->reading, times)});
+}
+
+void CheckLate(const Expected& expected, const Channel& channel, std::vector<Finding>& findings) {
+  constexpr double kTimesShifted = 4.0, kTimesNoise = 5.0;
+  const auto in_motion = [](const Reading* r) { return std::isfinite(r->velocity_rad_s) && r->velocity_rad_s != 0.0; };
+  if (expected.course || (expected.may_lag && std::ranges::any_of(channel.reading, in_motion))) return;  // they tell by themselves
+  const std::vector<RowsOfPass> passes = Passes(channel);
+  const double apart = ApartBothWays(expected, channel, passes, 0);
+  const double least = std::max({expected.noise, expected.step, StepOf(channel), LeastScatterOf(channel)});
+  if (!(apart > kTimesNoise * least)) return;
+  for (const int later : {1, -1}) {
+    const double shifted = ApartBothWays(expected, channel, passes, later);
+    if (!(apart > kTimesShifted * shifted)) continue;
+    findings.push_back(
+        {false, fmt::format("{} is the same in both directions, to {:.3g} of what it differs by, if it is that of the reading {}: "
+                            "is the instrument late by one, or has it a latency of that time?",
+                            channel.column->name, shifted / apart, later > 0 ? "before" : "behind")});
+  }
 }
 
 }  // namespace twinbench::plausible

@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kTraverseAtLeast_m_s = 1e-3, kTurnAtLeast_rad_s = 1.0 * units::deg;
 
-double Radius_m(const Arc& arc, const std::vector<AxisState>& from) {
-  return std::hypot(from[arc.axes[0]].encoder - arc.centre_m[0], from[arc.axes[1]].encoder - arc.centre_m[1]);
-}
-
 }  // namespace
 
 bool CanProve(const MachineRunState& state, const MachineOptions& options) {
@@ -138,7 +134,7 @@ void MachineSequencer::Go(const Arc& arc) {
   const std::vector<AxisState> from = LookBeforeMotion();
   bench_.machine.StartArc(arc);
   where_.SentRound(arc, from);
-  Watch(bench_, PathTime_s(arc, Radius_m(arc, from)), where_, options_);
+  Watch(bench_, PathTime_s(arc, RadiusNow_m(arc, from)), where_, options_);
 }
 
 void MachineSequencer::Sweep(const Arc& arc, int first, int end, const Reading& stands) {
@@ -152,7 +148,7 @@ std::vector<Reading> MachineSequencer::SamplesAlong(const Arc& arc, std::size_t 
   HearOperator(options_);
   if (options_.log) options_.log->RequireRoom();
   const std::vector<AxisState> from = LookBeforeMotion();
-  const double radius_m = Radius_m(arc, from);
+  const double radius_m = RadiusNow_m(arc, from);
   std::vector<Reading> samples;
   Arm(static_cast<int>(triggers), 0);
   bench_.machine.StartArc(arc);

@@ -8,6 +8,7 @@
 #include "twin/core/device_fault.h"
 #include "twin/core/units.h"
 #include "twin/procedure/rest.h"
+#include "twin/procedure/whereabouts.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -32,9 +33,7 @@ class Watched {
     const TableState state = table_.State();
     CheckHealth(state);
     if (std::abs(state.commanded_rad - sent_rad_) > kThere_rad)
-      Fail(FaultKind::kMoved, fmt::format("was sent to {:.6f} deg by us and its controller has {:.6f} deg as its target: somebody else moved "
-                                          "or stopped it, or changed its zero or units",
-                                          Deg(sent_rad_), Deg(state.commanded_rad)));
+      TellSentElsewhere({name_, true}, sent_rad_, state.commanded_rad);
     last_rad_ = state.encoder_rad;
     way_rad_ = to_rad_ - state.encoder_rad;
     nearest_rad_ = std::abs(way_rad_);

@@ -18,10 +18,10 @@ constexpr double kShareOfSpeed = 0.1;
 constexpr double kLittleMore_s = 0.25, kTimesKnown = 2.0;
 constexpr double kNear = 1e-3;  // m or rad: where axes settle, as slowly as they like
 
-std::vector<double> EncodersOf(const std::vector<AxisState>& states) {
-  std::vector<double> at;
-  for (const AxisState& state : states) at.push_back(state.encoder);
-  return at;
+std::vector<double> EachOf(const std::vector<AxisState>& states, double AxisState::*what) {
+  std::vector<double> all;
+  for (const AxisState& state : states) all.push_back(state.*what);
+  return all;
 }
 
 /// What is for whoever watches the move, whose looks are in the record; a switch that the axis leaves is not.
@@ -47,6 +47,17 @@ void WatchedWay::Begins(const std::vector<double>& from, const std::vector<doubl
   for (std::size_t k = 0; k < to.size(); ++k) RequireOnWay(axes_[k], from[k], to[k], at[k], ToSeconds(took));
   to_ = to, at_ = at, shown_ = now;
   slow_s_ = slowest_s_ = 0.0;
+  has_our_targets_ = false;
+}
+
+void WatchedWay::RequireOurs(const std::vector<double>& commanded) {
+  bool has_all = !to_.empty();
+  for (std::size_t k = 0; k < to_.size(); ++k) {
+    const bool is_ours = std::abs(commanded[k] - to_[k]) <= kSameTarget;
+    if (has_our_targets_ && !is_ours && !std::isnan(commanded[k])) TellSentElsewhere(axes_[k], to_[k], commanded[k]);
+    has_all = has_all && is_ours;
+  }
+  has_our_targets_ = has_all;
 }
 
 bool WatchedWay::IsSlow(const std::vector<double>& at, double in_s) {
@@ -86,22 +97,34 @@ void WatchedWay::HasEnded() {
 }
 
 void WatchedMachine::StartMove(const std::vector<double>& to, double feed_m_s) {
-  const std::vector<double> from = EncodersOf(inner_.State());
+  const std::vector<double> from = EachOf(inner_.State(), &AxisState::encoder);
   const Time sent = clock_.Now();
+  round_.reset();
   inner_.StartMove(to, feed_m_s);
-  const std::vector<double> at = EncodersOf(inner_.State());
+  const std::vector<AxisState> states = inner_.State();
   const Time now = clock_.Now();
-  way_.Begins(from, to, at, now, now - sent);
+  way_.Begins(from, to, EachOf(states, &AxisState::encoder), now, now - sent);
+  way_.RequireOurs(EachOf(states, &AxisState::commanded));
   if (feed_m_s > 0.0) way_.IsAnother();
 }
 
 void WatchedMachine::StartArc(const Arc& arc) {
   way_.IsAnother();
+  radius_m_ = RadiusNow_m(arc, inner_.State());
+  round_ = arc;
   inner_.StartArc(arc);
+}
+
+void WatchedMachine::RequireOnCircle(const std::vector<AxisState>& states) const {
+  const double off_m = round_ ? RadiusNow_m(*round_, states) - radius_m_ : 0.0;
+  if (std::abs(off_m) > kNear)
+    throw DeviceFault(FaultKind::kFollowing, "machine",
+                      fmt::format("is {:.4g} mm off the circle that it was sent round: who else moves it?", off_m / units::mm));
 }
 
 void WatchedMachine::StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) {
   way_.IsAnother();
+  round_.reset();
   inner_.StartTurning(axis, speed_rad_s, ramp);
 }
 
@@ -110,7 +133,9 @@ bool WatchedMachine::Settles(Duration within) {
     const std::vector<AxisState> states = inner_.State();
     for (std::size_t k = 0; k < states.size(); ++k)
       if (IsForOthers(states[k], way_.To(k) - states[k].encoder)) return false;
-    way_.Shows(EncodersOf(states), clock_.Now(), LimitsOf(limits_, 0).stall_s);
+    way_.RequireOurs(EachOf(states, &AxisState::commanded));
+    RequireOnCircle(states);
+    way_.Shows(EachOf(states, &AxisState::encoder), clock_.Now(), LimitsOf(limits_, 0).stall_s);
     return true;
   });
   if (settles) way_.HasEnded();
@@ -140,14 +165,16 @@ void WatchedTables::Table::Stop() {
 void WatchedTables::Table::LookAtStart() {
   const double from_rad = std::exchange(from_rad_, kNaN);
   if (!std::exchange(is_sent_, false)) return;
-  const double at_rad = inner_.EncoderAngle_rad();
+  const TableState state = inner_.State();
   const Time now = clock_.Now();
-  way_.Begins({from_rad}, {to_rad_}, {at_rad}, now, now - sent_);
+  way_.Begins({from_rad}, {to_rad_}, {state.encoder_rad}, now, now - sent_);
+  way_.RequireOurs({state.commanded_rad});
 }
 
 bool WatchedTables::Table::LookOnWay() {
   const TableState state = inner_.State();
   if (IsForOthers(state, to_rad_ - state.encoder_rad)) return false;
+  way_.RequireOurs({state.commanded_rad});
   way_.Shows({state.encoder_rad}, clock_.Now(), limits_.stall_s);
   return true;
 }

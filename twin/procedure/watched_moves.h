@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ class WatchedWay {
   /// twice that and a
   ///         little more, and some have far to go.
   void Shows(const std::vector<double>& at, Time now, double stall_s);
+  /// Once a controller has as its targets where the axes were sent, nothing else may come: some tell how far they are instead.
+  /// @throws what TellSentElsewhere throws.
+  void RequireOurs(const std::vector<double>& commanded);
   void HasEnded();
   /// What moves does not go straight, or not at its own speed.
   void IsAnother() { to_.clear(); }
@@ -37,6 +41,7 @@ class WatchedWay {
   std::vector<MachineAxis> axes_;
   std::vector<double> fastest_;  // m/s or rad/s, ever
   std::vector<double> to_, at_;  // of this way; none: nothing is known of it
+  bool has_our_targets_ = false;
   Time shown_{};
   double slow_s_ = 0.0, slowest_s_ = 0.0;  // since when, and for how long at most on this way
   double known_slow_s_ = kNaN;             // on all before
@@ -54,17 +59,22 @@ class WatchedMachine : public MachineController {
   void StartArc(const Arc& arc) override;
   void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override;
   /// @return false at once where a look shows what whoever watches must see.
-  /// @throws what WatchedWay::Shows throws, and the machine.
+  /// @throws what WatchedWay::RequireOurs and Shows throw, RequireOnCircle, and the machine.
   bool Settles(Duration within) override;
   std::vector<AxisState> State() override { return inner_.State(); }
   void Stop() override { inner_.Stop(); }
   void Home() override { inner_.Home(); }
 
  private:
+  /// @throws DeviceFault kFollowing of axes that have left the circle which they were sent round.
+  void RequireOnCircle(const std::vector<AxisState>& states) const;
+
   MachineController& inner_;
   const Clock& clock_;
   const std::vector<AxisLimits>& limits_;
   WatchedWay way_;
+  std::optional<Arc> round_;  // that they go
+  double radius_m_ = kNaN;
 };
 
 /// The same of two tables that are sent one after the other: where they are is looked at behind the second.

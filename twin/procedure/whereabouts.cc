@@ -11,7 +11,6 @@ namespace twinbench::procedure {
 namespace {
 
 // Where no in-position limit is known, m or rad.
-constexpr double kSameTarget = 1e-5;  // more than commands are rounded by
 constexpr double kGrosslyOff = 1e-4;
 constexpr double kRounding = 1e-9;
 constexpr double kTurnedOn = std::numeric_limits<double>::infinity();  // in place of where it was sent
@@ -20,6 +19,17 @@ constexpr double kTurnedOn = std::numeric_limits<double>::infinity();  // in pla
 
 AxisLimits LimitsOf(const std::vector<AxisLimits>& limits, std::size_t axis) {
   return axis < limits.size() ? limits[axis] : AxisLimits{};
+}
+
+void TellSentElsewhere(const MachineAxis& axis, double sent, double commanded) {
+  throw DeviceFault(FaultKind::kMoved, axis.name,
+                    fmt::format("was sent to {:.6f} {} by us and its controller has {:.6f} {} as its target: somebody else moved or "
+                                "stopped it, or changed its zero or units",
+                                sent / axis.to_SI(), axis.unit(), commanded / axis.to_SI(), axis.unit()));
+}
+
+double RadiusNow_m(const Arc& arc, const std::vector<AxisState>& states) {
+  return std::hypot(states[arc.axes[0]].encoder - arc.centre_m[0], states[arc.axes[1]].encoder - arc.centre_m[1]);
 }
 
 Whereabouts::Whereabouts(const std::vector<MachineAxis>& axes, const std::vector<AxisLimits>& limits)
@@ -52,11 +62,7 @@ void Whereabouts::RequireOurs(const std::vector<AxisState>& states) const {
     const double in_position = LimitsOf(limits_, k).in_position;
     const double same = (std::isfinite(in_position) ? in_position : kSameTarget) + kRounding;
     if (sent_[k] == kTurnedOn || !(std::abs(states[k].commanded - sent_[k]) > same)) continue;  // nor where either is unknown
-    const MachineAxis& axis = axes_[k];
-    throw DeviceFault(FaultKind::kMoved, axis.name,
-                      fmt::format("was sent to {:.6f} {} by us and its controller has {:.6f} {} as its target: somebody else moved or "
-                                  "stopped it, or changed its units",
-                                  sent_[k] / axis.to_SI(), axis.unit(), states[k].commanded / axis.to_SI(), axis.unit()));
+    TellSentElsewhere(axes_[k], sent_[k], states[k].commanded);
   }
 }
 

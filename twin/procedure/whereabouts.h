@@ -6,8 +6,16 @@
 
 namespace twinbench::procedure {
 
+inline constexpr double kSameTarget = 1e-5;  // m or rad: more than commands are rounded by
+
 /// Those of an axis; where none are stated, the widest.
 AxisLimits LimitsOf(const std::vector<AxisLimits>& limits, std::size_t axis);
+
+/// @throws DeviceFault kMoved: its controller has another target than the one it was given.
+[[noreturn]] void TellSentElsewhere(const MachineAxis& axis, double sent, double commanded);
+
+/// Of the circle on which they stand, as their encoders say.
+double RadiusNow_m(const Arc& arc, const std::vector<AxisState>& states);
 
 /// Where the axes of a machine were sent by us: what its controller and its encoders say is compared with that, for somebody else
 /// (a pendant, another program) may have sent them elsewhere. Metres and radians.

@@ -41,7 +41,7 @@ std::vector<Reading> AtNominal(std::vector<Reading> readings, const TurntableSet
     const int setup = std::clamp(r.setup, 0, own.turntable_procedure.SetUps() - 1);
     const int face = static_cast<int>(std::lround(-r.reference_rad / own.Pitch_rad()));
     const double nominal_rad = own.FaceAngle_rad(setup, face);
-    const double beside_rad = r.target_rad - nominal_rad;
+    const double beside_rad = std::remainder(r.target_rad - nominal_rad, units::turn);
     r.autocollimator_yaw_rad -= beside_rad * std::cos(own.collimator.roll_rad);
     r.autocollimator_tilt_rad += beside_rad * std::sin(own.collimator.roll_rad);
     r.target_rad = nominal_rad;
