@@ -35,13 +35,25 @@ bool BeginsNumber(std::string_view line, std::size_t at) {
   return digit != std::string_view::npos && digit - at <= 2 && IsDigit(line[digit]);
 }
 
+/// "joint.0.pos-cmd +5,0 joint.0.pos-fb +5,03": numbers have no points.
+bool HasDecimalCommas(std::string_view line) {
+  bool is_comma = false;
+  for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+    if (!IsDigit(line[i - 1]) || !IsDigit(line[i + 1])) continue;
+    if (line[i] == '.') return false;
+    is_comma = is_comma || line[i] == ',';
+  }
+  return is_comma;
+}
+
 /// Of digits and what stands between them in a number or an instant.
-std::size_t EndOfValue(std::string_view line, std::size_t at) {
+std::size_t EndOfValue(std::string_view line, std::size_t at, bool decimal_commas) {
+  const std::string_view between = decimal_commas ? ",:/-+T" : ".:/-+T";
   std::size_t end = at + 1;
   for (; end < line.size(); ++end) {
     const char c = line[end], next = end + 1 < line.size() ? line[end + 1] : ' ';
     const bool is_exponent = (c == 'e' || c == 'E') && (IsDigit(next) || next == '-' || next == '+');
-    if (!IsDigit(c) && !is_exponent && !(IsDigit(next) && std::string_view(".:/-+T").find(c) != std::string_view::npos)) break;
+    if (!IsDigit(c) && !is_exponent && !(IsDigit(next) && between.find(c) != std::string_view::npos)) break;
   }
   return end;
 }
@@ -54,22 +66,23 @@ bool IsNone(std::string_view line, std::size_t at) {
 }
 
 /// A number, or an instant as a whole, at `at`; empty of "2: 5.0", which is one more word of a name, and of what is neither.
-std::string_view ValueAt(std::string_view line, std::size_t at) {
+std::string_view ValueAt(std::string_view line, std::size_t at, bool decimal_commas) {
   if (IsNone(line, at)) return line.substr(at, 3);
   if (!BeginsNumber(line, at)) return {};
-  const std::size_t end = EndOfValue(line, at);
+  const std::size_t end = EndOfValue(line, at, decimal_commas);
   const std::string_view value = line.substr(at, end - at);
-  if (!FieldNumber(value, false)) return ParseInstant(value) ? value : std::string_view();
+  if (!FieldNumber(value, decimal_commas)) return ParseInstant(value) ? value : std::string_view();
   const std::size_t next = line.find_first_not_of(" \t", end);
   const bool is_of_name = at > 0 && value.find('.') == std::string_view::npos && next != std::string_view::npos && (line[next] == ':' || line[next] == '=');
   return is_of_name ? std::string_view() : value;
 }
 
 Sentence SentenceOf(std::string_view line) {
+  const bool decimal_commas = HasDecimalCommas(line);
   Sentence sentence;
   std::size_t begin = 0;
   for (std::size_t at = 0; at < line.size();) {
-    const std::string_view value = ValueAt(line, at);
+    const std::string_view value = ValueAt(line, at, decimal_commas);
     if (value.empty()) {
       sentence.words += line[at++];
       continue;

@@ -133,7 +133,7 @@ Recording BeginOfTable(const std::string& path, const ClockSettings& clock) {
     if (kind == "records")
       ReadRecords(text, {}, clock, recording);
     else
-      ReadTable(ArePairs(lines) ? TableOfPairs(begin) : begin, {}, clock, recording);
+      ReadTable(AreSentences(lines) ? TableOfSentences(begin) : begin, AreSentences(lines) ? WithTabs({}) : Layout{}, clock, recording);
   } catch (const InputError&) {
     recording.tracks.clear();
   }
