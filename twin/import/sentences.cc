@@ -169,7 +169,9 @@ std::string TableOfSentences(std::string_view text) {
       continue;
     }
     if (std::exchange(is_first, false)) add_row(NamesOf(usual));
+    const std::size_t begin = table.size();
     add_row(sentence.values);
+    std::replace(table.begin() + static_cast<std::ptrdiff_t>(begin), table.end(), ',', '.');
   }
   return table;
 }
