@@ -53,9 +53,13 @@ struct Commanded {
     return at;
   }
 
+  /// Of a servo without a limit beside a gain of its own: of a triangle one that goes less far looks like one that goes slower.
   double Left(const Servo& servo) const {
     int limited = 0;
-    return Variance(device_rad - Followed(servo, limited));
+    const Eigen::VectorXd followed_rad = Followed(servo, limited);
+    if (std::isfinite(servo[2])) return Variance(device_rad - followed_rad);
+    const Eigen::VectorXd about_rad = followed_rad.array() - followed_rad.mean();
+    return Variance(device_rad - about_rad * (about_rad.dot(device_rad) / about_rad.squaredNorm()));
   }
 
   static double Variance(const Eigen::VectorXd& rows) { return (rows.array() - rows.mean()).square().mean(); }
