@@ -117,5 +117,24 @@ TEST_F(Importing, LeavesOutTheWayToAPlaceThatIsNotFar) {
   EXPECT_THAT(MessageOf([&] { Take("Speed,Target,Real,Gyro\n25,90,87,88\n50,90,89,89\n75,90,90,88\n100,90,91,87\n"); }), HasSubstr("the reference never moves"));
 }
 
+/// Whose an angle is its name does not say: it is where the other was sent if it goes by even steps.
+TEST_F(Importing, TakesAnAngleOfEvenStepsForTheReferenceOfWhatDoesNot) {
+  std::string text = "Pot (deg),Angle (deg)\n", other = "angle,sensor\n";
+  for (int i = 0; i < 60; ++i) {
+    text += fmt::format("{:.2f},{}\n", 5.0 * i + std::sin(0.1 * i * i), 5 * i);
+    other += fmt::format("{:.2f},{}\n", 5.0 * i + std::sin(0.1 * i * i), 5 * i);
+  }
+  EXPECT_THAT(Take(text).story, HasSubstr("reference <- Angle [deg]\n  measured <- Pot [deg]"));
+  EXPECT_THAT(Take(other).story, HasSubstr("measured <- sensor"));
+}
+
+TEST_F(Importing, SaysHowAnErrorByTheTimeAloneIsTaken) {
+  std::string text = "Time(s),RA error (arcsec)\n";
+  for (int i = 0; i < 300; ++i) text += fmt::format("{:.3f},{:.3f}\n", 2.0 * i, 5.0 * std::cos(0.02 * i));
+  const std::string reference = "reference_arcsec=time_s*15.041", measured = "measured_arcsec=time_s*15.041+[RA error]";
+  EXPECT_THAT(MessageOf([&] { Take(text); }), AllOf(HasSubstr(reference), HasSubstr(measured)));
+  EXPECT_NEAR(Worst_deg(Take(text, "", {reference, measured}).readings), 5.0 / 3600.0, 1e-4);
+}
+
 }  // namespace
 }  // namespace twinbench::imports

@@ -1,4 +1,5 @@
 #include "tests/import/importing.h"
+#include "tests/support/noise.h"
 
 // Files of machine benches under names that no map lists, as controllers, laser interferometers and probes write them.
 namespace twinbench::imports {
@@ -60,6 +61,17 @@ TEST_F(CircleByItsPlaces, IsABallBarsWhereNothingSaysWhereAxesWereSent) {
   const Quantity bar_m{"bar_um"};
   for (const Reading& r : taken.readings)  // an axis that is askew: 5 um sin(2 angle)
     ASSERT_NEAR(bar_m(r) / units::um, 5.0 * std::sin(2.0 * std::atan2(Quantity{"commanded_y_mm"}(r), Quantity{"commanded_x_mm"}(r))), 0.02);
+}
+
+/// A line is a piece of a large circle, and a scale that bends of a smaller one.
+TEST_F(CircleByItsPlaces, IsNoneInTwoColumnsThatGoTogether) {
+  test::Noise noise_mm(0.02, 3);
+  std::string text = "time [s],reference [mm],measured [mm]\n";
+  for (int k = 0; k < 1500; ++k) {
+    const double at_mm = -20.0 + 0.03 * k;
+    text += fmt::format("{:.1f},{:.5f},{:.5f}\n", 0.1 * k, at_mm, 49.0 + at_mm + 1e-3 * at_mm * at_mm + noise_mm());
+  }
+  EXPECT_EQ(Take(text).bench, "encoder_comparison");
 }
 
 TEST_F(CircleByItsPlaces, IsNoneInATableOfAFewRows) {

@@ -128,6 +128,11 @@ bool AreOfTwoAxes(const std::string& a, const std::string& b) {
   return !of_a.empty() && !of_b.empty() && of_a != of_b;
 }
 
+bool SaysOnlyPlace(const std::string& name) {
+  constexpr int kOneWord = 1, kMostWords = 100;  // see ClearnessBy
+  return Clearness(name, Speaks::kReference) == 0 && Clearness(name, Speaks::kDevice) % kMostWords == kOneWord && HasAny(name, std::array{"angle", "position", "pos"});
+}
+
 bool SaysNothing(const std::string& name) {
   static const std::set<std::string> kAnything = {"column", "col", "channel", "chan", "var", "field", "data", "value", "values", "signal", "trace", "entry", "list", "array", "series", "unnamed", "ch"};
   return std::ranges::all_of(WordsOf(name), [](const std::string& word) { return kAnything.contains(word); });

@@ -23,6 +23,9 @@ bool IsCalledCommand(const std::string& name);
 /// "motor_roll" and "imu_pitch": each name has a word for an axis, and not the same.
 bool AreOfTwoAxes(const std::string& a, const std::string& b);
 
+/// "Angle (deg)", "position": whose it is no word says.
+bool SaysOnlyPlace(const std::string& name);
+
 /// "column 3", "Channel 1": a number that somebody gave, and nothing of what is in it.
 bool SaysNothing(const std::string& name);
 

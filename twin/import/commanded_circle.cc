@@ -1,6 +1,7 @@
 #include "twin/import/formula_functions.h"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -8,6 +9,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
 #include "twin/core/reading.h"
+#include "twin/core/units.h"
 #include "twin/import/common.h"
 
 namespace twinbench::imports {
@@ -81,14 +83,27 @@ Circle CommandedCircle(const std::vector<double>& x, const std::vector<double>& 
   return *circle;
 }
 
+/// What of the round the places go through [rad]: a line is a piece of a large circle.
+double ArcOf(const Circle& circle, const SentTo& places) {
+  std::vector<double> at_rad;
+  for (const Eigen::Vector2d& place : places) at_rad.push_back(std::atan2(place.y() - circle.middle.y(), place.x() - circle.middle.x()));
+  std::ranges::sort(at_rad);
+  double widest_rad = units::turn - (at_rad.back() - at_rad.front());
+  for (std::size_t i = 1; i < at_rad.size(); ++i) widest_rad = std::max(widest_rad, at_rad[i] - at_rad[i - 1]);
+  return units::turn - widest_rad;
+}
+
 }  // namespace
 
 double AwayFromCircle(const std::vector<double>& x, const std::vector<double>& y) {
   const SentTo places = PlacesSentTo(x, y);
   const auto circle = CircleOf(places);
   if (!circle) return kNaN;
+  constexpr double kLeastArc = units::turn / 6.0;
+  const SentTo on = On(*circle, places);
+  if (on.empty() || ArcOf(*circle, on) < kLeastArc) return kNaN;
   std::vector<double> away;
-  for (const Eigen::Vector2d& place : On(*circle, places)) away.push_back(std::abs((place - circle->middle).norm() / circle->radius - 1.0));
+  for (const Eigen::Vector2d& place : on) away.push_back(std::abs((place - circle->middle).norm() / circle->radius - 1.0));
   return MedianOf(std::move(away));
 }
 

@@ -8,7 +8,7 @@ namespace twinbench::imports {
 
 // The circle on which most rows of a log lie, whatever stands before and behind it: functions of a map's formulas.
 
-/// How far its rows usually lie off it, in radii; NaN if there is no such circle.
+/// How far its rows usually lie off it, in radii; NaN if there is no such circle, or they go round less than a sixth of it.
 double AwayFromCircle(const std::vector<double>& x, const std::vector<double>& y);
 
 /// Its middle in the direction of x.

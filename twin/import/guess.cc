@@ -255,8 +255,33 @@ bool AreManyWithoutReference(const std::vector<Choice>& columns, const std::vect
   return compared.size() == 2 && !IsGiven(map, compared[0]) && !IsGiven(map, compared[1]) && columns.size() > 2 && std::ranges::none_of(columns, is_reference);
 }
 
+/// Nearly all of a size: places that somebody chose.
+bool GoesByEvenSteps(const Column& column) {
+  constexpr double kEven = 0.01;
+  constexpr std::size_t kFewest = 8;
+  std::vector<double> sizes = StepsOf(column.value);
+  for (double& step : sizes) step = std::abs(step);
+  if (sizes.size() < kFewest) return false;
+  const double usual = MedianOf(sizes);
+  return usual > 0.0 && 10 * std::ranges::count_if(sizes, [&](double size) { return std::abs(size - usual) < kEven * usual; }) > 9 * std::ssize(sizes);
+}
+
+/// "angle" beside "code" or "pot": what is called a place and nothing else, and goes by even steps where the other does not, is where
+/// the other was sent.
+bool TakeEvenPlaces(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks) {
+  if (columns.size() != 2 || compared.size() != 2 || IsGiven(map, compared[0]) || IsGiven(map, compared[1])) return false;
+  for (const auto& [place, other] : {std::pair(&columns[0], &columns[1]), {&columns[1], &columns[0]}}) {
+    if (!SaysOnlyPlace(place->name) || Clearness(other->name, Speaks::kReference) > 0 || !GoesByEvenSteps(*place->column) || GoesByEvenSteps(*other->column)) continue;
+    Put(compared[0], *place, "which goes by even steps", map, remarks);
+    Put(compared[1], *other, "the other one", map, remarks);
+    return true;
+  }
+  return false;
+}
+
 void TakeByName(const std::vector<Choice>& columns, const std::vector<std::string>& compared, Map& map,
                 std::vector<std::string>& remarks) {
+  if (TakeEvenPlaces(columns, compared, map, remarks)) return;
   for (std::size_t k = 0; k < compared.size(); ++k) {
     if (IsGiven(map, compared[k])) continue;
     const std::set<std::string> taken = Taken(map);
@@ -347,6 +372,18 @@ std::string ExampleOf(const std::vector<Choice>& left, const std::vector<Recordi
   return fmt::format("the columns that are meant, as in{}, or under [columns] of a map", example);
 }
 
+/// An error by the time alone has its reference in the clock: the sky that a mount follows.
+std::string ErrorByTime(const std::vector<Choice>& columns, const std::vector<std::string>& compared) {
+  if (columns.size() != 1 || compared.size() != 2 || !IsCalledError(columns[0].name) || !columns[0].track->HasClock()) return "";
+  constexpr double kSky_arcsec_s = 15.041;
+  const auto unit = UnitNamed(columns[0].column->unit);
+  const bool is_known = unit && unit->dimension == Dimension::kAngle;
+  const std::string suffix = is_known ? columns[0].column->unit : "arcsec";
+  const double factor = kSky_arcsec_s * units::arcsec / (is_known ? unit->to_SI : units::arcsec);
+  return fmt::format("; of a mount that follows the sky, an error by the time is --column '{}_{}=time_s*{:.6g}' --column '{}_{}=time_s*{:.6g}+[{}]'", BaseOf(compared[0]), suffix,
+                     factor, BaseOf(compared[1]), suffix, factor, columns[0].name);
+}
+
 /// A target that is one place in all rows is why no reference is found.
 std::string StandingTarget(const std::vector<Recording>& recordings) {
   for (const Choice& c : NumberColumns(recordings)) {
@@ -379,7 +416,7 @@ void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Record
     const std::string kinds = ReadyMapsByNames(recordings[0]);
     if (kinds.empty() && TakeCompanions(columns, compared, map, remarks)) return;
     throw InputError(recordings[0].file, fmt::format("which column is {} is not clear; there are {}{}", compared[k], ColumnNames(recordings), StandingTarget(recordings)),
-                     ExampleOf(left.size() > missing ? left : open, recordings, compared, map) +
+                     ExampleOf(left.size() > missing ? left : open, recordings, compared, map) + ErrorByTime(columns, compared) +
                          (columns.size() == 1 ? PlaceByLine(recordings, compared[k], columns[0]) : kinds.empty() ? WhatGoesTogether(columns) : "") + kinds);
   }
 }

@@ -131,7 +131,7 @@ std::vector<EffectEntry> TimeAndReadingEffects() {
       {"scale_temperature",
        "device whose scale grows with the temperature: a screw, a linear scale, a potentiometer",
        {},
-       {Signed("growth", "um_m_K", 10.0, 1e5, "of what it shows, against the reference's"), BehindTemperature()}},
+       {Signed("growth", "um_m_K", 10.0, 1000.0, "of what it shows, against the reference's"), BehindTemperature()}},
       // one line of the scale, or a coupling that gave way
       {"slip",
        "sudden step of the device's zero",

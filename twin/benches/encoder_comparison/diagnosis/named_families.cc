@@ -290,18 +290,17 @@ void AddWarmUp(const Context& context, Candidates& named) {
 /// A zero or a scale that follows the temperature, or one that lags behind it.
 void AddTemperature(const Context& context, Candidates& named) {
   if (context->above_K.size() == 0 || Range(context->above_K) == 0.0) return;
-  const auto add = [&](const std::string& effect, const std::string& parameter, const Eigen::VectorXd& of) {
-    if (!context->has_clock) {
-      named.Add(Shown(effect), {parameter}, of.cwiseProduct(context->above_K));
-      return;
-    }
-    named.AddOver(Shown(effect), {parameter}, {named.catalogue().ShapeOf(effect, "lag", TemperatureLags_s())},
-                  [context, of](const Eigen::VectorXd& lag_s) {
-                    return Eigen::MatrixXd(of.cwiseProduct(model::Lagged(context->since_start_s, context->above_K, lag_s[0])));
-                  });
+  const auto add = [&](const std::string& effect, const std::string& parameter, const Eigen::VectorXd& of) -> Family& {
+    if (!context->has_clock) return named.Add(Shown(effect), {parameter}, of.cwiseProduct(context->above_K));
+    return named.AddOver(Shown(effect), {parameter}, {named.catalogue().ShapeOf(effect, "lag", TemperatureLags_s())},
+                         [context, of](const Eigen::VectorXd& lag_s) {
+                           return Eigen::MatrixXd(of.cwiseProduct(model::Lagged(context->since_start_s, context->above_K, lag_s[0])));
+                         });
   };
   add("zero_temperature", "coefficient", Eigen::VectorXd::Ones(context->Readings()));
-  add("scale_temperature", "growth", context->reference_rad);
+  Family& growth = add("scale_temperature", "growth", context->reference_rad);
+  constexpr double kOfAngles = 0.03;  // a turn is one at any temperature; a potentiometer's track is not
+  if (!(context->device.turn_m > 0.0)) growth.prior_weight = kOfAngles;
 }
 
 /// Faults of the signals know what strength they have.
