@@ -171,13 +171,14 @@ std::optional<Term> NamedBehindStructure(const Searched& searched, const TwinCom
   if (searched.found().terms.empty() || searched.FamilyOf(searched.found().terms.front()).kind == Kind::kNamed) return {};
   const Evidence& alone = searched.found().alone;
   const auto explained = [&](int family) { return alone.explained(family, 0); };
+  const LinearRun& run = searched.compared.run;
+  const Projected data = Project(*searched.analysis.projector, {}, searched.analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual)));
   std::optional<Term> best;
   double most = kNearly * explained(searched.found().terms.front().family);
   for (int f = 0; f < static_cast<int>(std::ssize(searched.candidates.families)); ++f) {
     const Family& family = searched.candidates.families[static_cast<std::size_t>(f)];
     if (family.kind != Kind::kNamed || explained(f) < most || (comparison.may_bend && !comparison.may_bend(family.effect))) continue;
     const int g = alone.grid_point(f, 0);
-    const Projected data = Project(*searched.analysis.projector, {}, searched.analysis.noise.Whiten(searched.compared.run, Eigen::MatrixXd(searched.compared.run.residual)));
     Term term;
     term.family = f;
     term.grid_point = g;

@@ -13,6 +13,8 @@
 namespace twinbench::imports {
 namespace {
 
+constexpr int kMostOfOneSide = 100;  // of one side in a name: how many there are counts behind how clear they are
+
 /// The clearest first.
 const std::vector<std::string>& WordsFor(Speaks of) {
   static const std::vector<std::string> reference = {
@@ -101,8 +103,7 @@ int ClearnessBy(const std::string& name, const std::vector<std::string>& words) 
     ++count;
     if (clearest == 0) clearest = static_cast<int>(words.size() - i);
   }
-  constexpr int kMostWords = 100;
-  return kMostWords * clearest + count;
+  return kMostOfOneSide * clearest + count;
 }
 
 bool IsCalledError(const std::string& name) {
@@ -129,8 +130,7 @@ bool AreOfTwoAxes(const std::string& a, const std::string& b) {
 }
 
 bool SaysOnlyPlace(const std::string& name) {
-  constexpr int kOneWord = 1, kMostWords = 100;  // see ClearnessBy
-  return Clearness(name, Speaks::kReference) == 0 && Clearness(name, Speaks::kDevice) % kMostWords == kOneWord && HasAny(name, std::array{"angle", "position", "pos"});
+  return Clearness(name, Speaks::kReference) == 0 && Clearness(name, Speaks::kDevice) % kMostOfOneSide == 1 && HasAny(name, std::array{"angle", "position", "pos"});
 }
 
 bool SaysNothing(const std::string& name) {

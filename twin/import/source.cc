@@ -132,8 +132,10 @@ Recording BeginOfTable(const std::string& path, const ClockSettings& clock) {
   try {
     if (kind == "records")
       ReadRecords(text, {}, clock, recording);
+    else if (AreSentences(lines))
+      ReadTable(TableOfSentences(begin), WithTabs({}), clock, recording);
     else
-      ReadTable(AreSentences(lines) ? TableOfSentences(begin) : begin, AreSentences(lines) ? WithTabs({}) : Layout{}, clock, recording);
+      ReadTable(begin, {}, clock, recording);
   } catch (const InputError&) {
     recording.tracks.clear();
   }

@@ -124,7 +124,8 @@ Accepted Together(const std::vector<Accepted>& accepted, const std::vector<Step>
 void TellEqualSteps(DiagnosisRun& result) {
   Diagnosis& d = result.diagnosis;
   std::vector<Step> steps = StepsAmong(d.causes);
-  if (std::ranges::count_if(result.accepted, IsSlip) != std::ssize(steps) || !AreCounts(steps, IsBump(steps, result.run.Rows()))) return;
+  const bool is_bump = IsBump(steps, result.run.Rows());
+  if (std::ranges::count_if(result.accepted, IsSlip) != std::ssize(steps) || !AreCounts(steps, is_bump)) return;
   std::ranges::sort(steps, {}, &Step::at_reading);
   const Count count = CountOf(steps);
   Accepted together = Together(result.accepted, steps, count, result.run);
@@ -139,7 +140,7 @@ void TellEqualSteps(DiagnosisRun& result) {
   if (is_most || d.causes.empty()) d.verdict = Verdict::kUnknown;
   d.unknown.probability = tuning::kListed;
   d.unknown.signature =
-      (IsBump(steps, result.run.Rows()) ? WordsOfBump : Words)(steps, count, result.run) + (d.unknown.signature.empty() ? "" : " | " + d.unknown.signature);
+      (is_bump ? WordsOfBump : Words)(steps, count, result.run) + (d.unknown.signature.empty() ? "" : " | " + d.unknown.signature);
 }
 
 }  // namespace twinbench::diagnose::encoder

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kPlausible_rad = 0.01 * units::deg;
 constexpr double kRest_rad = 1e-9;
+constexpr int kMostTeeth = 720;  // of a worm wheel; poles of a motor
 
 bool Has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -104,12 +105,6 @@ double OrdersApart(const SignalContext& context) {
   constexpr double kOfPeriod = 0.5;
   return std::max(1.0, kOfPeriod * units::turn / RangeOfSetUp_rad(context));
 }
-
-namespace {
-
-constexpr int kMostTeeth = 720;  // teeth of a worm wheel, poles of a motor
-
-}  // namespace
 
 std::vector<int> WholeOrders(const SignalContext& context, int first) {
   const int last = LargestOrder(context), step = std::max(1, static_cast<int>(0.5 * OrdersApart(context)));
