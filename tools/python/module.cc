@@ -22,6 +22,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
 #include "twin/core/run_record.h"
+#include "twin/core/side_by_side.h"
 #include "twin/diagnose/extend.h"
 #include "twin/model/follow.h"
 #include "twin/procedure/machine_options.h"
@@ -111,6 +112,7 @@ Diagnosed DiagnosedBy(const Scenario& scenario, const Readings& r, const std::st
   options.model = EstimatorNamed(model);
   options.excluded = excluded;
   options.cache_folder = cache_folder;
+  options.threads = ProcessorCount();
   const diagnose::DiagnosisRun found = diagnose::Diagnose(r.readings, scenario, options);
   return {DiagnosisJson(found, scenario, ""),
           diagnose::ExtendedToml(scenario, found, "twinbench " TWINBENCH_VERSION ", Python")};

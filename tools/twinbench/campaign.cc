@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "tools/twinbench/campaign_table.h"
@@ -22,6 +21,7 @@
 #include "twin/campaign/trial.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
+#include "twin/core/side_by_side.h"
 #include "twin/report/sound.h"
 
 namespace twinbench::tools {
@@ -133,7 +133,7 @@ struct CampaignOptions {
 
 int ThreadsOf(const CampaignOptions& options, const campaign::Ranks& ranks) {
   if (options.threads > 0) return options.threads;
-  return ranks.Others() > 0 ? 1 : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return ranks.Others() > 0 ? 1 : ProcessorCount();
 }
 
 /// Study and table of the first rank; whatever is wrong with them is said once and ends all ranks.

@@ -25,6 +25,7 @@
 #include "twin/core/nearest_key.h"
 #include "twin/core/reading_clock.h"
 #include "twin/core/run_record.h"
+#include "twin/core/side_by_side.h"
 #include "twin/diagnose/disagreement.h"
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/json.h"
@@ -44,6 +45,7 @@ namespace fs = std::filesystem;
 struct DiagnoseOptions {
   std::string source, scenario, extended, cache, model = "rigorous";
   std::vector<std::string> overrides, excluded;
+  int threads = ProcessorCount();
   bool follow = false;
   double false_alarm_rate = 0.01;
 };
@@ -106,6 +108,7 @@ void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
   how.model = EstimatorNamed(options.model);
   how.excluded = options.excluded;
   how.cache_folder = CacheFolder(options.cache);
+  how.threads = options.threads;
   Doing(fmt::format("searching {} readings for the causes of the catalogue", run.readings.size()));
   diagnose::DiagnosisRun found = diagnose::Diagnose(run.readings, run.scenario, how);
   Doing("");
@@ -149,6 +152,7 @@ void AddDiagnose(CLI::App& app) {
   command->add_option("--strike", options->excluded, "exclude an effect of the catalogue")
       ->allow_extra_args(false);
   AddCache(*command, options->cache);
+  AddThreads(*command, options->threads);
   command->add_flag("--follow", options->follow, "watch a run while it is recorded and raise alarms");
   command->add_option("--false-alarm-rate", options->false_alarm_rate, "of --follow, per run")->capture_default_str();
   AnswerWith(*command, "diagnosis.json", [options](JsonAnswer& answer) { Diagnose(*options, answer); });

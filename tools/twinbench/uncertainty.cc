@@ -3,7 +3,6 @@
 #include <atomic>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "tools/twinbench/answers.h"
 #include "tools/twinbench/commands.h"
@@ -14,6 +13,7 @@
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/evaluated.h"
 #include "twin/core/errors.h"
+#include "twin/core/side_by_side.h"
 #include "twin/core/estimator.h"
 #include "twin/report/evaluation.h"
 #include "twin/report/sound.h"
@@ -87,7 +87,7 @@ void AddUncertainty(CLI::App& app) {
       "uncertainty",
       "Uncertainty budget of a run's results (GUM), and by Monte Carlo (Supplement 1)");
   auto options = std::make_shared<UncertaintyOptions>();
-  options->trials.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  options->trials.threads = ProcessorCount();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
   AddEstimator(*command, options->estimator);

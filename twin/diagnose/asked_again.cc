@@ -71,7 +71,7 @@ Eigen::VectorXd Solve(const Left& left, const std::vector<EffectEntry>& catalogu
     if (!rows.allFinite()) rows.setConstant(kImpossible);
     return true;
   };
-  return FitWithin(left_at, left.rows.size(), x, bounds, {.most = 40, .relative_size = kStep / kBegin});
+  return FitWithin(left_at, left.rows.size(), x, bounds, {.most = 40, .relative_size = kStep / kBegin, .is_central = false});
 }
 
 /// Single rows that stand far out of the others count no more; several side by side are structure.

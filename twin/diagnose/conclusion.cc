@@ -191,7 +191,9 @@ void AcceptRecurrent(const Analysis& analysis, DiagnosisRun& result) {
 }  // namespace
 
 AnalysisOptions AnalysisOptionsOf(const DiagnoseOptions& options) {
-  return {options.null_runs, options.cache_folder, 4, nullptr, options.design_only};
+  AnalysisOptions how{options.null_runs, options.cache_folder, 4, nullptr, options.design_only};
+  how.threads = options.threads;
+  return how;
 }
 
 bool IsExcluded(const DiagnoseOptions& options, const std::string& effect) {

@@ -25,6 +25,7 @@ struct DiagnoseOptions {
   std::string cache_folder;                // calibrations are kept here by design; empty: nowhere
   /// Nothing is searched for: the answer says what readings of this design could tell (DiagnosisRun::isolability).
   bool design_only = false;
+  int threads = 1;  // the answer is the same to the bit
 };
 
 struct Isolability;  // isolability.h

@@ -259,7 +259,7 @@ std::string TableOfBarExport(std::string_view text, const std::string& file, std
   for (const auto& [name, field] :
        {std::pair{",radius [mm]", &BarTest::radius_mm}, std::pair{",feed [mm/min]", &BarTest::feed_mm_min},
         std::pair{",temperature [degC]", &BarTest::temperature_degC}})
-    if (all([field](const BarRun& run) { return std::isfinite(run.test.*field); })) header += name;
+    if (all([f = field](const BarRun& run) { return std::isfinite(run.test.*f); })) header += name;
   if (!reader.unit()) said.push_back(fmt::format("no tag says the unit of the values: taken as {}", unit.name));
   said.push_back(
       "angles are not in the file: values are taken at even steps, of a clockwise run from the end of its arc "

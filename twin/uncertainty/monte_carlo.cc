@@ -1,13 +1,12 @@
 #include "twin/uncertainty/monte_carlo.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <thread>
 
 #include "twin/core/scenario_uncertainty.h"
+#include "twin/core/side_by_side.h"
 #include "twin/core/stream.h"
 #include "twin/uncertainty/agreement.h"
 
@@ -109,14 +108,7 @@ std::vector<double> Trial(const Trials& trials, int trial) {
 void AddBlock(const Trials& of, std::vector<std::vector<double>>& trials) {
   const int begin = static_cast<int>(trials.size());
   trials.resize(trials.size() + kBlock);
-  std::atomic<int> next = begin;
-  const auto work = [&] {
-    for (int trial = next++; trial < begin + kBlock; trial = next++)
-      trials[static_cast<std::size_t>(trial)] = Trial(of, trial);
-  };
-  std::vector<std::jthread> others;
-  for (int k = 1; k < of.options.threads; ++k) others.emplace_back(work);
-  work();
+  SideBySide(kBlock, of.options.threads, [&](int k) { trials[static_cast<std::size_t>(begin + k)] = Trial(of, begin + k); });
 }
 
 double MeanOf(const std::vector<double>& values) {

@@ -64,10 +64,10 @@ void NoteUnlike(const LinearRun& run, const NoiseModel& noise, const Projector& 
   }
 }
 
-void Prepare(const LinearRun& run, const std::vector<Family>& families, Analysis& analysis) {
+void Prepare(const LinearRun& run, const std::vector<Family>& families, int threads, Analysis& analysis) {
   analysis.projector = std::make_unique<Projector>(analysis.noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
   analysis.redundancy = analysis.projector->Redundancy();
-  analysis.scanner = std::make_unique<Scanner>(run, analysis.noise, *analysis.projector, families);
+  analysis.scanner = std::make_unique<Scanner>(run, analysis.noise, *analysis.projector, families, threads);
 }
 
 /// What the noise alone would explain, before and after the terms.
@@ -174,13 +174,13 @@ Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, cons
   Analysis analysis;
   analysis.noise = {run.sigma, {}};
   if (options.design_only) {
-    Prepare(run, families, analysis);
+    Prepare(run, families, options.threads, analysis);
     FindNothing(analysis);
     return analysis;
   }
   const Eigen::VectorXd log_priors = LogPriors(families);
   for (int repairs = 0;; ++repairs) {
-    Prepare(run, families, analysis);
+    Prepare(run, families, options.threads, analysis);
     if (repairs == 0) {
       analysis.null = options.null
                           ? *options.null

@@ -20,6 +20,7 @@ struct AnalysisOptions {
   int most_orders = 0;                    // see SearchExtent
   BentWaves bent = {};                    // likewise
   bool together = false;                  // likewise
+  int threads = 1;
 };
 
 /// A run searched with a noise model that its own residuals do not refute.

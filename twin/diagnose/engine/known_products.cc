@@ -5,6 +5,8 @@
 #include <iterator>
 #include <string_view>
 
+#include "twin/core/side_by_side.h"
+
 namespace twinbench::diagnose {
 namespace {
 
@@ -36,8 +38,11 @@ const KnownProducts::Known* KnownProducts::Find(std::size_t digest) {
 
 void KnownProducts::Add(const Eigen::MatrixXd& white, const std::vector<std::size_t>& digests) {
   const Unwhitened rows(run_, noise_, white);
-  std::vector<RunsByRow> products;
-  for (const Bundle& bundle : bundles_) products.push_back(AllProducts(bundle, rows));
+  std::vector<RunsByRow> products(bundles_.size());
+  SideBySide(static_cast<int>(std::ssize(bundles_)), threads_, [&](int b) {
+    const auto at = static_cast<std::size_t>(b);
+    products[at] = AllProducts(bundles_[at], rows);
+  });
   for (std::size_t k = 0; k < digests.size(); ++k) {
     Known known{digests[k], {}};
     for (const RunsByRow& of_bundle : products) known.of_bundle.emplace_back(of_bundle.col(static_cast<Eigen::Index>(k)));

@@ -13,8 +13,8 @@ namespace twinbench::diagnose {
 class KnownProducts {
  public:
   /// Keeps references.
-  KnownProducts(const LinearRun& run, const NoiseModel& noise, const std::vector<Bundle>& bundles)
-      : run_(run), noise_(noise), bundles_(bundles) {}
+  KnownProducts(const LinearRun& run, const NoiseModel& noise, const std::vector<Bundle>& bundles, int threads)
+      : run_(run), noise_(noise), bundles_(bundles), threads_(threads) {}
 
   /// S'F'Y of every bundle with F the whitening: all its grid points one after the other x columns of Y.
   /// @param white  Y, whitened: rows x any.
@@ -32,6 +32,7 @@ class KnownProducts {
   const LinearRun& run_;
   const NoiseModel& noise_;
   const std::vector<Bundle>& bundles_;
+  const int threads_;
   std::list<Known> known_;  // the latest first
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "twin/core/linear_algebra.h"
+#include "twin/core/side_by_side.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
@@ -81,8 +82,8 @@ double PseudoDegrees(const LinearRun& run) {
 }
 
 Scanner::Scanner(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
-                 const std::vector<Family>& families)
-    : run_(run), noise_(noise), projector_(projector), families_(families), known_(run_, noise_, bundles_) {
+                 const std::vector<Family>& families, int threads)
+    : run_(run), noise_(noise), projector_(projector), families_(families), threads_(threads), known_(run_, noise_, bundles_, threads) {
   std::vector<const Base*> bases;
   std::vector<std::vector<int>> sharing;
   for (int k = 0; k < std::ssize(families_); ++k) {
@@ -229,8 +230,10 @@ Evidence Scanner::Scan(const Projected& data, const Deflation& deflation) const 
   const bool is_one = data.rows.cols() == 1;  // then all its products are known
   const Unwhitened runs(run_, noise_, is_one ? Eigen::MatrixXd(run_.Rows(), 0) : data.rows);
   std::vector<Products> products = ProductsOf(data, deflation, runs);
-  for (std::size_t b = 0; b < bundles_.size(); ++b)
-    ScanBundle(bundles_[b], data, deflation, std::move(products[b]), out);
+  SideBySide(static_cast<int>(std::ssize(bundles_)), threads_, [&](int b) {
+    const auto at = static_cast<std::size_t>(b);
+    ScanBundle(bundles_[at], data, deflation, std::move(products[at]), out);
+  });
   return out;
 }
 

@@ -73,7 +73,7 @@ class Scanner {
   /// Keeps references: run, projector and families must outlive the scanner; the noise model is copied, for an
   /// analysis that has both may be moved.
   Scanner(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
-          const std::vector<Family>& families);
+          const std::vector<Family>& families, int threads);
 
   Evidence Scan(const Projected& data, const Deflation& deflation) const;
 
@@ -110,6 +110,7 @@ class Scanner {
   const NoiseModel noise_;
   const Projector& projector_;
   const std::vector<Family>& families_;
+  const int threads_;
   std::vector<Bundle> bundles_;
   mutable KnownProducts known_;  // no two scans at a time
 };

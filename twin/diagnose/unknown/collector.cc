@@ -43,6 +43,16 @@ double LargestRms(const Eigen::MatrixXd& columns) {
   return std::sqrt(columns.colwise().squaredNorm().maxCoeff() / rows);
 }
 
+/// Coefficients of many columns say nothing by themselves: their amplitude is told as that of a wave of the rms that readings show.
+void TellAsShown(Family& family) {
+  family.describe = [words = family.describe, base = family.base](int g, const Eigen::VectorXd& x, const Eigen::VectorXd& shape) {
+    const Eigen::MatrixXd series = base->series(g);
+    const Eigen::MatrixXd shown = series * x.reshaped(series.cols(), x.size() / series.cols());
+    const double amplitude = std::sqrt(2.0 / static_cast<double>(shown.rows())) * shown.norm();
+    return words(g, Eigen::VectorXd::Constant(1, amplitude), shape);
+  };
+}
+
 }  // namespace
 
 double Design::RangeOf(int channel) const {
@@ -116,6 +126,7 @@ void Collector::AddOnPlaces(const std::string& sort, const std::shared_ptr<const
       const double scale = design_->ScaleOf(ShowsMostOn(place.pattern, k / middle.cols()));
       family.amplitudes.push_back({"amplitude", design_->unit, design_->to_SI, scale * design_->plausible / rms});
     }
+    if (middle.cols() > 2) TellAsShown(family);
     if (!shape) continue;
     family.shapes = {*shape};
     family.at = [design = design_, at, map = family.map](const Eigen::VectorXd& value) -> Eigen::MatrixXd {
@@ -199,18 +210,6 @@ void Collector::GoByTime() {
 void Collector::TakeAnyCourse() {
   GoByTime();
   for (std::size_t k = last_; k < families_.size(); ++k) families_[k].takes_any_course = true;
-}
-
-void Collector::TellAsShown() {
-  for (std::size_t k = last_; k < families_.size(); ++k) {
-    Family& family = families_[k];
-    family.describe = [words = family.describe, base = family.base](int g, const Eigen::VectorXd& x, const Eigen::VectorXd& shape) {
-      const Eigen::MatrixXd series = base->series(g);
-      const Eigen::MatrixXd shown = series * x.reshaped(series.cols(), x.size() / series.cols());
-      const double amplitude = std::sqrt(2.0 / static_cast<double>(shown.rows())) * shown.norm();
-      return words(g, Eigen::VectorXd::Constant(1, amplitude), shape);
-    };
-  }
 }
 
 void Collector::AreHarmonics(const Angle& angle, const EffectSettings& factor) {

@@ -56,9 +56,6 @@ class Collector {
   void GoByTime();
   /// The same, and nearly any values.
   void TakeAnyCourse();
-  /// Their amplitude is told as that of a wave of the rms that readings show of them: coefficients of many columns say
-  /// nothing by themselves.
-  void TellAsShown();
   /// Whole orders of an angle, whose size follows what `factor` says.
   void AreHarmonics(const Angle& angle, const EffectSettings& factor);
 

@@ -36,16 +36,13 @@ void AddWander(Collector& collect) {
       },
       [](int g) { return fmt::format("slow drift, function of time, {} half periods per run", g + 1); });
   collect.TakeAnyCourse();
-  collect.TellAsShown();
   collect.Add("wander", modes(tuning::kWanderTogether, false), "slow drift, function of time");
   collect.TakeAnyCourse();
-  collect.TellAsShown();
   collect.Add(
       "wander",
       modes(std::max(tuning::kWanderTogether + 1, tuning::kWalkModes / static_cast<int>(stretches.cols())), true),
       "random walk, function of time");
   collect.TakeAnyCourse();
-  collect.TellAsShown();
   const Eigen::MatrixXd setups = model::Times(model::Indicators(d.course.setup), d.moved);
   if (stretches.cols() > 1 || setups.cols() < 2) return;
   collect.Add("wander", model::Times(setups, model::ElapsedShare(d.course)),
