@@ -1,5 +1,3 @@
-#include <numbers>
-
 #include "tests/circular_motion/written_circles.h"
 #include "tests/support/thresholds.h"
 #include "twin/benches/circular_motion/bench.h"
@@ -13,17 +11,10 @@ using units::deg, units::mm, units::um, units::arcsec;
 
 constexpr double kRadius_m = 80.0 * mm;
 
-/// Squareness turns Y towards -X; each axis stays half its backlash behind the way it goes, but for the stretch in which that is taken up.
+/// Squareness turns Y towards -X.
 struct Plane {
   double squareness_rad, scale_x, scale_y, backlash_x_m, backlash_y_m;
 };
-
-double Behind_m(double width_m, double from_turn_rad, int direction) {
-  const double along_rad = std::fmod(direction * from_turn_rad + 4.0 * std::numbers::pi, 2.0 * std::numbers::pi);
-  const double sense = along_rad < std::numbers::pi ? 1.0 : -1.0;  // behind its largest value an axis goes down
-  const double since_m = kRadius_m * (1.0 - std::cos(std::fmod(along_rad, std::numbers::pi)));
-  return sense * (std::min(since_m, width_m) - 0.5 * width_m);
-}
 
 /// @param show  What else is done to a reading.
 template <class Show>
@@ -32,8 +23,8 @@ diagnose::Diagnosis DiagnosisOf(const Plane& plane, double feed_m_s, Show show) 
   const auto readings = test::Written({kRadius_m, feed_m_s, 360, 0.0, 5.7}, [&](Reading& r, double a) {
     const double x_m = kCommandedX_m(r), y_m = kCommandedY_m(r);
     kGridX_m(r) = x_m * (1.0 + plane.scale_x) - plane.squareness_rad * y_m +
-                  Behind_m(plane.backlash_x_m, a, r.direction) + 0.05 * um * stream.Normal();
-    kGridY_m(r) = y_m * (1.0 + plane.scale_y) + Behind_m(plane.backlash_y_m, a - 90.0 * deg, r.direction) +
+                  test::Behind_m(kRadius_m, plane.backlash_x_m, a, r.direction) + 0.05 * um * stream.Normal();
+    kGridY_m(r) = y_m * (1.0 + plane.scale_y) + test::Behind_m(kRadius_m, plane.backlash_y_m, a - 90.0 * deg, r.direction) +
                   0.05 * um * stream.Normal();
     show(r, a);
   });

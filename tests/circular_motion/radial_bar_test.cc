@@ -20,14 +20,10 @@ struct Machine {
 };
 
 /// The spindle's distance from ball 1, which stands off the commanded centre, less the radius. The angle from +X to +Y is 90 deg +
-/// squareness; X stays half its backlash behind the way it goes, but for the stretch in which that is taken up.
+/// squareness.
 double Radial_m(const Machine& m, double a, int direction) {
   const double x_m = kRadius_m * std::cos(a), y_m = kRadius_m * std::sin(a);
-  // X turns round at 0 and at 180 deg; since then it has come R (1 - |cos a|).
-  const double sense = y_m * direction > 0.0 ? -1.0 : 1.0;
-  const double along_rad = std::remainder(direction * a, units::kPi);
-  const double since_m = kRadius_m * (1.0 - std::cos(along_rad >= 0.0 ? along_rad : along_rad + units::kPi));
-  const double behind_m = sense * (0.5 * m.backlash_x_m - std::min(since_m, m.backlash_x_m));
+  const double behind_m = test::Behind_m(kRadius_m, m.backlash_x_m, a, direction);
   return std::hypot(m.centre_x_m + x_m * (1.0 + m.scale_x) - m.squareness_rad * y_m + behind_m,
                     m.centre_y_m + y_m * (1.0 + m.scale_y)) -
          kRadius_m;

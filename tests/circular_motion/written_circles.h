@@ -49,6 +49,14 @@ inline Scenario ToldOfCircles(const std::string& instrument, double radius_m, st
   return ParseScenario("bench = \"circular_motion\"\n", "written", "", more);
 }
 
+/// How far an axis is ahead of where it is sent that stays half its backlash behind the way it goes, but for the stretch in which
+/// that is taken up, `from_turn_rad` behind its largest value.
+inline double Behind_m(double radius_m, double width_m, double from_turn_rad, int direction) {
+  const double along_rad = std::fmod(direction * from_turn_rad + 2.0 * units::turn, units::turn);
+  const double since_m = radius_m * (1.0 - std::cos(std::fmod(along_rad, units::kPi)));
+  return (along_rad < units::kPi ? 1.0 : -1.0) * (std::min(since_m, width_m) - 0.5 * width_m);
+}
+
 /// Within three of its standard uncertainties, which are no larger than the value needs.
 inline void ExpectCircleError(const nlohmann::json& results, const std::string& key, double value, double largest_u) {
   ASSERT_TRUE(results.at("errors").contains(key)) << key;
