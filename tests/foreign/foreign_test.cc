@@ -50,12 +50,7 @@ TEST(Foreign, MachinesAreAnsweredRightlySaveForKnownCases) {
 using diagnose::Diagnosis, diagnose::Verdict;
 
 Diagnosis Naming(const std::string& effect, double probability) {
-  Diagnosis d;
-  d.verdict = Verdict::kNamed;
-  d.causes.resize(1);
-  d.causes[0].effect = effect;
-  d.causes[0].probability = probability;
-  return d;
+  return {.verdict = Verdict::kNamed, .causes = {{.effect = effect, .probability = probability}}};
 }
 
 Truth WarmUp() {
@@ -86,11 +81,9 @@ TEST(ForeignJudge, MissesWhatIsNeitherNamedNorSaidToBeUnknown) {
 std::vector<Reading> Drifting(const Run& run) {
   std::vector<Reading> readings;
   for (int k = 0; k < 60; ++k) {
-    Reading& r = readings.emplace_back();
-    r.reading = k;
-    r.time = Time(FromSeconds((30.0 + static_cast<double>(run.seed)) * k));
-    r.reference_rad = 11.0 * k * units::deg;
-    r.measured_rad = r.reference_rad + (run.faults ? 0.02 * units::deg * ToSeconds(r.time) / 3600.0 : 0.0);
+    const double t_s = (30.0 + static_cast<double>(run.seed)) * k, at_rad = 11.0 * k * units::deg;
+    readings.push_back({.reading = k, .time = Time(FromSeconds(t_s)), .reference_rad = at_rad,
+                        .measured_rad = at_rad + (run.faults ? 0.02 * units::deg * t_s / 3600.0 : 0.0)});
   }
   return readings;
 }

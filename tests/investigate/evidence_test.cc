@@ -23,8 +23,7 @@ diagnose::Cause WithOdds(const std::string& effect, double probability) {
 /// A play, and a settling whose sizes the diagnosis did not state: it cannot be told from the play if it is slow.
 diagnose::DiagnosisRun PlayRatherThanSettling() {
   diagnose::DiagnosisRun found;
-  found.diagnosis.verdict = diagnose::Verdict::kNamed;
-  found.diagnosis.causes = {WithOdds("backlash", 0.9), WithOdds("settling", 0.1)};
+  found.diagnosis = {.verdict = diagnose::Verdict::kNamed, .causes = {WithOdds("backlash", 0.9), WithOdds("settling", 0.1)}};
   found.diagnosis.causes.front().indistinguishable_from = {{"settling", ""}};
   found.diagnosis.causes.back().indistinguishable_from = {{"backlash", ""}};
   return found;
@@ -149,11 +148,7 @@ TEST_P(LeftByAnotherScenario, IsWhatARunBuiltAnewLeaves) {
   const Means means = MeansOf(believed);
   TakenRun run = TakenOf({}, believed, hidden::TakeReadings(hidden::Drawn(GetParam().design, 5)), means, 0);
   ASSERT_TRUE(run.linear.left_by_another);
-  Supposed cause;
-  cause.name = GetParam().effect;
-  cause.where = GetParam().where;
-  cause.parameters[GetParam().size] = GetParam().value;
-  const Hypothesis hypothesis{{cause}, {}, 0.0};
+  const Hypothesis hypothesis{{{{GetParam().effect, GetParam().where, {{GetParam().size, GetParam().value}}, ""}}}, {}, 0.0};
   const Eigen::VectorXd asked = LeftBy(hypothesis, run, means);
   run.linear.left_by_another = nullptr;
   const Eigen::VectorXd anew = LeftBy(hypothesis, run, means);
@@ -167,9 +162,7 @@ TEST(LeftByAScenario, ThatShowsNothingIsTheWhole) {
   const Scenario believed = hidden::Believed(hidden::Design::kTurntable);
   const Means means = MeansOf(believed);
   const TakenRun run = TakenOf({}, believed, hidden::TakeReadings(believed), means, 0);
-  Supposed cause;
-  cause.name = "settling";
-  cause.parameters = {{"amplitude", 1.0 * units::deg}, {"time_constant", 1000.0}};
+  const Supposed cause{{"settling", "", {{"amplitude", 1.0 * units::deg}, {"time_constant", 1000.0}}, ""}};
   EXPECT_EQ(LeftBy({{cause}, {}, 0.0}, run, means), run.left);
 }
 

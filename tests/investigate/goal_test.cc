@@ -107,8 +107,7 @@ Cause Named(const std::string& effect, double probability) {
 /// A drift that the answer names, beside a creep that it is too sure of to list.
 diagnose::DiagnosisRun DriftFound() {
   diagnose::DiagnosisRun found;
-  found.diagnosis.verdict = diagnose::Verdict::kNamed;
-  found.diagnosis.causes = {Named("autocollimator_drift", 0.85)};
+  found.diagnosis = {.verdict = diagnose::Verdict::kNamed, .causes = {Named("autocollimator_drift", 0.85)}};
   Cause creep = Named("mount_creep", 0.1);
   creep.indistinguishable_from = {{"autocollimator_drift", "y"}};
   found.less_likely = {creep};
@@ -161,16 +160,12 @@ diagnose::ParameterEstimate Order(double order) {
 // What was large was taken out first: alone, its rival would be something that the rest of the readings suggests.
 TEST(Rival, OfALargeCauseBeginsWithTheOrderThatWasFitted) {
   diagnose::DiagnosisRun found;
-  found.diagnosis.verdict = diagnose::Verdict::kNamed;
-  Cause periodic = Named("periodic", 0.5), fault = Named("reference_fault", 0.5);
-  periodic.where = fault.where = "";
-  periodic.parameters = {Order(4.0)};
-  fault.indistinguishable_from = {{"periodic", ""}};
-  periodic.indistinguishable_from = {{"reference_fault", ""}};
-  found.diagnosis.causes = {periodic, fault};
-  Cause alone = fault;
-  alone.parameters = {Order(19.0)};
-  found.suspects = {alone};
+  Cause fault{.effect = "reference_fault", .probability = 0.5, .indistinguishable_from = {{"periodic", ""}}};
+  const Cause periodic{.effect = "periodic", .probability = 0.5, .parameters = {Order(4.0)},
+                       .indistinguishable_from = {{"reference_fault", ""}}};
+  found.diagnosis = {.verdict = diagnose::Verdict::kNamed, .causes = {periodic, fault}};
+  fault.parameters = {Order(19.0)};
+  found.suspects = {fault};
   const std::vector<Weighed> open = LeftOpen(found, PlainOf(kEncoderBench));
   ASSERT_EQ(open.size(), 2u);
   for (const Weighed& one : open) EXPECT_EQ(one.hypothesis.causes.front().parameters.at("order"), 4.0) << one.hypothesis.Name();
@@ -179,8 +174,7 @@ TEST(Rival, OfALargeCauseBeginsWithTheOrderThatWasFitted) {
 // A tilt with a lag: size and lag stand for each other, and the answer is "no name".
 TEST(Unsized, StaysOpenBesideWhatHasNoName) {
   diagnose::DiagnosisRun found;
-  found.diagnosis.verdict = diagnose::Verdict::kUnknown;
-  found.diagnosis.unknown.probability = 0.9;
+  found.diagnosis = {.verdict = diagnose::Verdict::kUnknown, .unknown = {0.9, ""}};
   EXPECT_DOUBLE_EQ(UnlistedBy(found), 0.9);
   found.unsized = {Named("mount_creep", 0.7)};
   EXPECT_NEAR(UnlistedBy(found), 0.9 * 0.3, 1e-12);

@@ -1,7 +1,5 @@
 #include "tests/investigate/hidden_investigation.h"
 
-#include <chrono>
-
 #include "hw_bridge/program/program_run.h"
 #include "hw_bridge/program/stops.h"
 #include "tests/core/input_error.h"
@@ -64,15 +62,6 @@ std::string AnswerOf(const Belief& belief) {
   return text + fmt::format(" | unlisted {:.3f}", belief.unlisted);
 }
 
-double MinutesToGoal(const Investigation& investigation) {
-  double minutes = 0.0;
-  for (const Step& step : investigation.steps) {
-    minutes += step.minutes;
-    if (step.u_goal <= investigation.goal->u) break;
-  }
-  return minutes;
-}
-
 constexpr const char* kUnlisted = "unlisted";
 
 /// Sweeps are read every half second: a run of the list has some hundred readings and not thousands.
@@ -118,7 +107,6 @@ Means MeansOf(const Scenario& believed) {
 
 Judged InvestigateBench(const Scenario& believed, const Truth& truth, const Measure& measure,
                         InvestigationOptions options, const std::optional<Wish>& wish) {
-  const auto begin = std::chrono::steady_clock::now();
   const Means means = MeansOf(believed);
   if (wish) options.goal = GoalOf(*wish, believed, measure, means);
   Laboratory laboratory;
@@ -131,12 +119,6 @@ Judged InvestigateBench(const Scenario& believed, const Truth& truth, const Meas
   const std::vector<Step>& steps = judged.investigation.steps;
   judged.tied_at_first = steps.front().believed.size() > 1 && steps.front().believed.front().second < options.conclusive;
   judged.probability = judged.investigation.belief.Best().probability;
-  if (wish && judged.investigation.IsGoalMet()) {
-    const double repeated_min = steps.front().minutes * std::ceil(wish->times * wish->times);
-    judged.to_wish_ratio = MinutesToGoal(judged.investigation) / repeated_min;
-    judged.minutes_ratio = judged.investigation.minutes / repeated_min;
-  }
-  judged.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return judged;
 }
 

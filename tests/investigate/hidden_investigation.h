@@ -24,9 +24,6 @@ struct Judged {
   std::string truth, answer;
   bool tied_at_first = false;  // more than one cause was left after the first run
   double probability = 0.0;    // of the answer
-  // Minutes over those of the first run repeated until the wish is met: until it is, and until the end.
-  double to_wish_ratio = kNaN, minutes_ratio = kNaN;
-  double seconds = 0.0;
 
   bool IsRight() const { return result == Result::kRight || result == Result::kRightTie; }
 };
