@@ -10,9 +10,7 @@ using testing::HasSubstr;
 // The marks themselves: a score is worth what its marks are.
 
 Hidden Listed(const std::string& effect, const std::string& where = "") {
-  Hidden hidden;
-  hidden.causes = {{effect, where, {{"size", 2.0}}}};
-  return hidden;
+  return {.causes = {{effect, where, {{"size", 2.0}}}}};
 }
 
 Diagnosis Answer(Verdict verdict, const std::vector<std::array<std::string, 2>>& causes,

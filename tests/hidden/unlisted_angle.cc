@@ -6,7 +6,10 @@
 namespace twinbench::hidden {
 namespace {
 
-std::string AnyAxis(const Draw& draw) { return draw.Whole(0, 1) == 0 ? "x" : "y"; }
+/// Of the benches that read one angle.
+UnlistedSignal OnAngle(const std::vector<std::string>& locks, const Eigen::VectorXd& series) {
+  return OnColumn(0, 1, locks, series);
+}
 
 UnlistedSignal OnEither(const Draw& draw, const std::vector<std::string>& locks, const Eigen::VectorXd& series) {
   return OnColumn(draw.Whole(0, 1), 2, locks, series);
@@ -38,10 +41,10 @@ UnlistedSignal Switching(const Draw& draw) {
 
 /// Something that was leant against the stand for one pass.
 UnlistedSignal OnePassAside(const Draw& draw) {
-  const std::string axis = AnyAxis(draw);
+  const int axis = draw.Whole(0, 1);
   const int pass = draw.Whole(2, 6), order = draw.Whole(1, 3);
   const double phase = draw.Phase();
-  return OnAxis(axis, {"pass", "time", "mounting"}, draw.FullCircleSeries([&](std::size_t i) {
+  return OnColumn(axis, 2, {"pass", "time", "mounting"}, draw.FullCircleSeries([&](std::size_t i) {
     return draw.readings[i].pass == pass ? std::cos(order * draw.readings[i].target_rad + phase) : 0.0;
   }));
 }
@@ -116,13 +119,13 @@ const std::vector<UnlistedCause>& UnlistedCausesOf(const std::string& bench) {
       {kTurntableBench,
        {{"direction times order",
          [](auto& draw) {
-           const std::string axis = AnyAxis(draw);
-           return OnAxis(axis, {"direction"}, draw.FullCircleSeries(draw.DirectionMap(&Reading::target_rad, 2, 5)));
+           const int axis = draw.Whole(0, 1);
+           return OnColumn(axis, 2, {"direction"}, draw.FullCircleSeries(draw.DirectionMap(&Reading::target_rad, 2, 5)));
          }},
         {"slow wander",
          [](auto& draw) {
-           const std::string axis = AnyAxis(draw);
-           return OnAxis(axis, {"time"}, draw.Series(draw.Wander(3.0, 8.0)));
+           const int axis = draw.Whole(0, 1);
+           return OnColumn(axis, 2, {"time"}, draw.Series(draw.Wander(3.0, 8.0)));
          }},
         {"one pass aside", OnePassAside}}},
       // Something is warm while a set-up lasts.

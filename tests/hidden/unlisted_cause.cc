@@ -1,5 +1,4 @@
 #include "tests/hidden/unlisted_cause.h"
-#include "tests/hidden/unlisted_cause.h"
 
 #include "tests/hidden/placements.h"
 
@@ -195,19 +194,9 @@ UnlistedSignal OnChannel(std::size_t channel, const std::vector<std::string>& lo
   return OnPattern(kChannelNames[channel], locks, series);
 }
 
-UnlistedSignal OnAxis(const std::string& axis, const std::vector<std::string>& locks,
-                      const Eigen::VectorXd& series) {
-  const Eigen::RowVector2d weight = axis == "x" ? Eigen::RowVector2d(1, 0) : Eigen::RowVector2d(0, 1);
-  return {locks, {}, series * weight};
-}
-
 UnlistedSignal OnColumn(Eigen::Index channel, Eigen::Index channels, const std::vector<std::string>& locks,
                         const Eigen::VectorXd& series) {
   return {locks, {}, series * Eigen::RowVectorXd::Unit(channels, channel)};
-}
-
-UnlistedSignal OnAngle(const std::vector<std::string>& locks, const Eigen::VectorXd& series) {
-  return {locks, {}, series};
 }
 
 std::vector<Plan> UnlistedPlans(const std::string& bench, const TwinOptions& options) {

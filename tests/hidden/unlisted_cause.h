@@ -42,16 +42,9 @@ UnlistedSignal OnPattern(const std::string& pattern, const std::vector<std::stri
                          const Eigen::VectorXd& series);
 UnlistedSignal OnChannel(std::size_t channel, const std::vector<std::string>& locks, const Eigen::VectorXd& series);
 
-/// Of the turntable bench: on "x" or "y".
-UnlistedSignal OnAxis(const std::string& axis, const std::vector<std::string>& locks,
-                      const Eigen::VectorXd& series);
-
 /// Of a bench whose scores do not ask for the channel: on the one of that number.
 UnlistedSignal OnColumn(Eigen::Index channel, Eigen::Index channels, const std::vector<std::string>& locks,
                         const Eigen::VectorXd& series);
-
-/// Of the benches that read one angle.
-UnlistedSignal OnAngle(const std::vector<std::string>& locks, const Eigen::VectorXd& series);
 
 struct UnlistedCause {
   std::string name;
