@@ -4,6 +4,7 @@
 
 #include "tests/support/in_parallel.h"
 #include "tests/support/thresholds.h"
+#include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/core/whole_file.h"
 

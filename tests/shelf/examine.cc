@@ -2,7 +2,6 @@
 
 #include "tests/hidden/judge.h"
 #include "tests/hidden/written_file.h"
-#include "tests/perf/timing.h"
 #include "tests/support/thresholds.h"
 #include "tools/twinbench/answers.h"
 #include "twin/benches/expected.h"
@@ -42,7 +41,6 @@ std::vector<std::string> CaseNames() {
 }
 
 Answer Examine(const std::string& name, bool asks_again) {
-  const double begin_s = perf::Seconds(CLOCK_THREAD_CPUTIME_ID);
   const Truth truth = ReadTruth(kFolder + "/truth.json", name);
   Answer answer;
   answer.truth = InWords(truth);
@@ -53,7 +51,6 @@ Answer Examine(const std::string& name, bool asks_again) {
     const diagnose::DiagnosisRun found = diagnose::Diagnose(taken.readings, taken.scenario, options);
     answer.words = Told(found.diagnosis);
     answer.judged = Judge(truth, found.diagnosis);
-    answer.cpu_s = perf::Seconds(CLOCK_THREAD_CPUTIME_ID) - begin_s;
     if (asks_again && found.diagnosis.verdict != diagnose::Verdict::kNone && !truth.causes.empty())
       answer.second = hidden::Says(taken.readings, hidden::WrittenFile(taken.scenario, found), options);
   } catch (const InputError& refusal) {

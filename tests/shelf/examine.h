@@ -13,9 +13,7 @@ std::vector<std::string> CaseNames();
 struct Answer {
   Judged judged;
   std::string truth, words;  // in words; of a file that is refused, why
-  std::optional<std::string>
-      second;          // what a second diagnosis with the written file says; nothing: it was not asked
-  double cpu_s = 0.0;  // of this thread, until the answer was judged
+  std::optional<std::string> second;  // what a second diagnosis with the written file says; nothing: it was not asked
 };
 
 /// @param asks_again  Diagnose the same readings with the written file, with thresholds that are kept.
