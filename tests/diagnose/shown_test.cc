@@ -117,9 +117,8 @@ TEST(ShownBy, GivesNoCauseMoreThanThereIs) {
 /// A device that reads `half` more going forward and as much less going backward, at four stops of two turns.
 DiagnosisRun StopsWithPlay(double half_deg) {
   DiagnosisRun found;
-  LinearRun& run = found.run;
-  Schedule& s = run.schedule = PlainSchedule(16);
-  run.residual.resize(16);
+  LinearRun& run = found.run = SyntheticSweep(16);
+  Schedule& s = run.schedule;
   for (int i = 0; i < 16; ++i) {
     const auto k = static_cast<std::size_t>(i);
     s.pass[k] = i / 8;
@@ -127,13 +126,8 @@ DiagnosisRun StopsWithPlay(double half_deg) {
     s.reference_rad[i] = 90.0 * units::deg * (i < 8 ? i : 15 - i);
     run.residual[i] = s.direction[k] * half_deg * units::deg;
   }
-  run.channels = {"angle"};
   run.unit = "deg";
   run.to_SI = units::deg;
-  run.sigma = Eigen::VectorXd::Constant(s.Readings(), 1e-3 * units::deg);
-  run.nuisance.jacobian.resize(s.Readings(), 1);
-  for (int i = 0; i < s.Readings(); ++i) run.nuisance.jacobian.insert(i, 0) = 1.0;
-  run.nuisance.prior_precision = Eigen::VectorXd::Constant(1, 1e-6);
   found.noise.sigma = run.sigma;
   return found;
 }

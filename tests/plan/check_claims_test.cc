@@ -23,30 +23,23 @@ Scenario Shipped(const std::string& name, const std::vector<std::string>& sets =
   return LoadScenario(TWINBENCH_SOURCE_DIR "/scenarios/" + name + ".toml", sets);
 }
 
-double CpuSecondsOfCheck(const std::string& name) {
-  const double begin_s = perf::Seconds();
-  OutlookAtOnce(Shipped(name));
-  return perf::Seconds() - begin_s;
+/// Of a processor that others use: the least of three goes, if the first takes long.
+double LeastCpuSeconds(const std::function<void()>& go) {
+  double least_s = kNaN;
+  for (int again = 0; again < 3 && !(least_s < 1.0); ++again) {
+    const double begin_s = perf::Seconds();
+    go();
+    least_s = std::fmin(least_s, perf::Seconds() - begin_s);
+  }
+  return least_s;
 }
 
 TEST(Check, TakesLessThanASecond) {
   const std::vector<std::string> longest = {"circular_motion", "encoder_coast", "hob_drive_orders"};  // of all, which are timed by night
-  for (const std::string& name : test::IsNight() ? ShippedScenarios() : longest) {
-    double least_s = CpuSecondsOfCheck(name);
-    for (int again = 0; again < 2 && least_s >= 1.0; ++again) least_s = std::min(least_s, CpuSecondsOfCheck(name));  // others use the processor
-    EXPECT_LT(least_s, 1.0) << name;
-  }
-}
-
-TEST(Check, OfASlowGearTrainTakesLessThanASecondToo) {
-  const Scenario slow = Shipped("hob_transmission", {"hob_procedure.turns=1", "hob_procedure.hob_speeds_rev_min=[0.5]"});
-  double least_s = 1.0;
-  for (int again = 0; again < 3 && least_s >= 1.0; ++again) {
-    const double begin_s = perf::Seconds();
-    ReadingsOfTwin(Quick(slow));
-    least_s = perf::Seconds() - begin_s;
-  }
-  EXPECT_LT(least_s, 1.0);
+  for (const std::string& name : test::IsNight() ? ShippedScenarios() : longest)
+    EXPECT_LT(LeastCpuSeconds([&name] { OutlookAtOnce(Shipped(name)); }), 1.0) << name;
+  const Scenario slow_train = Shipped("hob_transmission", {"hob_procedure.turns=1", "hob_procedure.hob_speeds_rev_min=[0.5]"});
+  EXPECT_LT(LeastCpuSeconds([&slow_train] { ReadingsOfTwin(Quick(slow_train)); }), 1.0);
 }
 
 /// Phases and azimuths go with amplitudes that may be mere noise: their u is no promise.
