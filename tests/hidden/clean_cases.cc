@@ -67,27 +67,6 @@ void AddToVoltages(const NoiseShape& shape, double sample_noise_V, std::uint64_t
   }
 }
 
-void AddToAngles(const NoiseShape& shape, double noise_rad, std::uint64_t seed, std::vector<Reading>& readings) {
-  Series series(shape, seed, "angle");
-  for (Reading& r : readings) r.measured_rad += noise_rad * series.Next();
-}
-
-void AddToAutocollimator(const NoiseShape& shape, double noise_rad, std::uint64_t seed,
-                         std::vector<Reading>& readings) {
-  Series x(shape, seed, "x"), y(shape, seed, "y");
-  for (Reading& r : readings) {
-    r.autocollimator_yaw_rad += noise_rad * x.Next();
-    r.autocollimator_tilt_rad += noise_rad * y.Next();
-  }
-}
-
-/// Where a bench states the noise of a reading; none is on it where the twin is to stay silent.
-double& StatedNoise_rad(Scenario& scenario) {
-  if (scenario.bench == kTurntableBench) return TurntableOf(scenario).autocollimator.noise_rad;
-  return scenario.bench == kHobBench ? HobOf(scenario).table_encoder.noise_rad
-                                     : EncoderOf(scenario).device.noise_rad;
-}
-
 std::vector<Reading> RotaryReadings(const NoiseShape& shape, Scenario actual, std::uint64_t seed) {
   const double sample_noise_V = std::exchange(RotaryOf(actual).amplifier.noise_V, 0.0);
   std::vector<Reading> readings = TakeReadings(actual);
@@ -95,25 +74,21 @@ std::vector<Reading> RotaryReadings(const NoiseShape& shape, Scenario actual, st
   return readings;
 }
 
-std::vector<Reading> AngleReadings(const NoiseShape& shape, Scenario actual, std::uint64_t seed) {
-  const double noise_rad = std::exchange(StatedNoise_rad(actual), 0.0);
-  std::vector<Reading> readings = TakeReadings(actual);
-  (actual.bench == kTurntableBench ? AddToAutocollimator : AddToAngles)(shape, noise_rad, seed, readings);
-  return readings;
-}
-
-/// Everything that a scenario of the two machine tools states as noise.
+/// Everything that a scenario states as noise of the channels; none is on them where the twin is to stay silent.
 std::vector<double*> StatedNoises(Scenario& scenario) {
-  if (scenario.bench == kCircularBench) {
-    CircularSettings& s = CircularOf(scenario);
-    return {&s.machine.noise_m, &s.bar.noise_m, &s.encoder.noise_rad, &s.grid.noise_m};
-  }
-  FreeformSettings& s = FreeformOf(scenario);
-  return {&s.qpd.noise_V, &s.ccd.noise_px};
+  if (scenario.bench == kTurntableBench) return {&TurntableOf(scenario).autocollimator.noise_rad};
+  if (scenario.bench == kHobBench) return {&HobOf(scenario).table_encoder.noise_rad};
+  if (scenario.bench == kEncoderBench) return {&EncoderOf(scenario).device.noise_rad};
+  if (scenario.bench == kFreeformBench) return {&FreeformOf(scenario).qpd.noise_V, &FreeformOf(scenario).ccd.noise_px};
+  CircularSettings& s = CircularOf(scenario);
+  return {&s.machine.noise_m, &s.bar.noise_m, &s.encoder.noise_rad, &s.grid.noise_m};
 }
 
 /// Standard deviation of what each channel of a reading shows.
 Eigen::VectorXd Deviations(const Scenario& scenario, const Reading& r) {
+  if (scenario.bench == kTurntableBench) return Eigen::Vector2d::Constant(TurntableOf(scenario).autocollimator.noise_rad);
+  if (scenario.bench == kHobBench) return Eigen::VectorXd::Constant(1, HobOf(scenario).table_encoder.noise_rad);
+  if (scenario.bench == kEncoderBench) return Eigen::VectorXd::Constant(1, EncoderOf(scenario).device.noise_rad);
   if (scenario.bench == kFreeformBench) {
     const FreeformSettings& s = FreeformOf(scenario);
     return Eigen::Vector3d(s.qpd.noise_V, s.qpd.noise_V, s.ccd.noise_px);
@@ -125,20 +100,27 @@ Eigen::VectorXd Deviations(const Scenario& scenario, const Reading& r) {
   return Eigen::Vector2d(std::hypot(s.machine.noise_m, radial_m), std::hypot(s.machine.noise_m, tangential_m));
 }
 
+/// Names cases' random streams: they stay what they were.
+std::string StreamOf(const std::string& bench, Eigen::Index channel) {
+  if (bench == kTurntableBench) return channel == 0 ? "x" : "y";
+  return bench == kHobBench || bench == kEncoderBench ? "angle" : "channel " + std::to_string(channel);
+}
+
 /// Noise of this shape on readings that are taken without; the scenario states what the shape says.
-Case MachineToolClean(const NoiseShape& shape, Scenario actual, Case clean, std::uint64_t seed) {
+Case WithNoise(const NoiseShape& shape, Scenario actual, Case clean, std::uint64_t seed) {
   const Scenario noisy = actual;
   for (double* noise : StatedNoises(actual)) *noise = 0.0;
   clean.readings = TakeReadings(actual);
   const Eigen::Index channels = Deviations(noisy, clean.readings.front()).size();
   Eigen::MatrixXd noise(std::ssize(clean.readings), channels);
   for (Eigen::Index c = 0; c < channels; ++c) {
-    Series series(shape, seed, "channel " + std::to_string(c));
+    Series series(shape, seed, StreamOf(actual.bench, c));
     for (Eigen::Index i = 0; i < noise.rows(); ++i)
       noise(i, c) = Deviations(noisy, clean.readings[static_cast<std::size_t>(i)])[c] * series.Next();
   }
   AddTo(actual.bench, noise, clean.readings);
   for (double* stated : StatedNoises(clean.scenario)) *stated *= shape.stated;
+  if (shape.stated != 1.0 && actual.bench == kEncoderBench) EncoderOf(clean.scenario).device.noise_known = true;
   return clean;
 }
 
@@ -146,17 +128,9 @@ Case MakeClean(Design design, const NoiseShape& shape, std::uint64_t seed) {
   Case clean;
   clean.hidden.noise = shape.name;
   clean.scenario = Believed(design);
-  Scenario actual = Drawn(design, seed);
-  if (design == Design::kRotary) {
-    clean.readings = RotaryReadings(shape, actual, seed);
-    return clean;
-  }
-  if (design == Design::kCircles || design == Design::kFreeform)
-    return MachineToolClean(shape, actual, clean, seed);
-  clean.readings = AngleReadings(shape, actual, seed);
-  if (shape.stated != 1.0 && clean.scenario.bench == kEncoderBench)
-    EncoderOf(clean.scenario).device.noise_known = true;
-  StatedNoise_rad(clean.scenario) = shape.stated * StatedNoise_rad(actual);
+  const Scenario actual = Drawn(design, seed);
+  if (design != Design::kRotary) return WithNoise(shape, actual, clean, seed);
+  clean.readings = RotaryReadings(shape, actual, seed);
   return clean;
 }
 
