@@ -13,7 +13,7 @@ using twinbench::test::EncoderScenario;
 LinearRun SweepsOf(std::vector<Family>& families) {
   Scenario scenario = EncoderScenario("sweep");
   EncoderOf(scenario).encoder_procedure.mounting_rad = {0.0, 1.3};
-  EncoderOf(scenario).encoder_procedure.interval_s = 0.9;
+  EncoderOf(scenario).encoder_procedure.interval_s = 1.8;
   const EncoderRun encoder =
       RunOf(twinbench::test::ReadingsWith(scenario, twinbench::test::EncoderEffect("periodic")), scenario);
   families = Families(encoder);
