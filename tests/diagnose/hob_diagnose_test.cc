@@ -119,10 +119,10 @@ INSTANTIATE_TEST_SUITE_P(
 std::vector<Reading> OnceATurnOfTheHob(double error_arcsec, std::uint64_t seed) {
   Stream noise(seed, "once_a_turn");
   std::vector<Reading> readings;
-  constexpr int kRows = 2 * 40 * 36;
+  constexpr int kRows = 2 * 40 * 18;
   for (int i = 0; i < 2 * kRows; ++i) {
     Reading r{.reading = i, .pass = i < kRows ? 0 : 1, .direction = i < kRows ? 1 : -1, .position = i % kRows,
-              .reference_rad = (i < kRows ? i : 2 * kRows - 1 - i) * 10.0 * deg, .velocity_rad_s = kNaN,
+              .reference_rad = (i < kRows ? i : 2 * kRows - 1 - i) * 20.0 * deg, .velocity_rad_s = kNaN,
               .head_rad = 0.0};
     r.measured_rad = r.reference_rad / 40.0 + arcsec * (error_arcsec * std::cos(r.reference_rad - 0.7) + 0.2 * noise.Normal());
     readings.push_back(r);
