@@ -31,7 +31,7 @@ std::vector<Called> AllCalls() {
       {"compensate", {"turned"}, {"none"}, {"table"}},
       {"uncertainty", {"made"}, {"none"}, {"covariance"}},
       {"budget", {"small.toml", "--of", "separation"}, {"bad.toml"}, {"figures"}},
-      {"plan", {"s.toml"}, {"bad.toml"}, {"advice", "next"}},
+      {"plan", {"s.toml", "--cpu", "0.1"}, {"bad.toml"}, {"advice", "next"}},
       {"investigate", {"s.toml", "--twin", "s.toml", "--runs", "1", "--faint", "0", "-o", "inquiry"}, {"s.toml", "-o", "inquiry"}, {"steps"}},
       {"diagnose", {"made"}, {"bad.csv", "--scenario", "s.toml"}, {"verdict", "causes"}},
       {"report", {"made", "--svg", "pictures"}, {"none"}, {"source", "pictures"}},

@@ -208,7 +208,7 @@ TEST_F(OnTerminal, ProgressIsOneLineWithTheTimeLeft) {
 
 TEST_F(OnTerminal, WhatTakesLongSaysWhatItDoesAndLeavesNoTraceOfIt) {
   Write("small.toml", kSmall);
-  const std::string seen = Seen({"plan", "small.toml", "--cpu", "3"}, "NO_COLOR=1");
+  const std::string seen = Seen({"plan", "small.toml", "--cpu", "2"}, "NO_COLOR=1");
   EXPECT_THAT(seen, testing::ContainsRegex("\r\033.K[a-z].*, 0:0[1-9]\r\033.K"));
   EXPECT_THAT(Call({"plan", "small.toml", "--cpu", "0.5"}).err, Not(HasSubstr(kEscape)));
 }
