@@ -30,8 +30,8 @@ SMALL = {
     "turntable_autocollimator": {"turntable_procedure.positions": 12},
     "encoder_comparison": {"encoder_procedure.turns": 1},
     "hob_transmission": {"hob_procedure.samples_per_turn": 90, "mechanics.fidelity": "kinematic"},
-    "circular_motion": {"circular_procedure.points": 72, "circular_procedure.stops": 18},
-    "freeform_five_axis": {"freeform_procedure.poses": 45},
+    "circular_motion": {"circular_procedure.points": 36, "circular_procedure.stops": 6, "circular_procedure.feeds_mm_min": [1000.0]},
+    "freeform_five_axis": {"freeform_procedure.poses": 25},
 }
 
 
