@@ -265,9 +265,9 @@ TEST(SeparateDeviceUncertainty, CoversOrdersThatTheStopsDoNotTell) {
   const Coverage two = CoverageOfFalling(150, {.mounting_rad = {0.0, 122.0 * deg}, .noise_arcsec = 0.05});
   EXPECT_NEAR(two.device, 0.7, 0.6);
   EXPECT_NEAR(two.reference, 0.7, 0.6) << "what two mountings fold in different ways is no error of the reference";
-  EXPECT_NEAR(CoverageOfFalling(150, {.stops = 360, .noise_arcsec = 0.05}).device, 0.8, 0.5) << "orders above 64";
+  EXPECT_NEAR(CoverageOfFalling(150, {.passes = {1, -1}, .stops = 360, .noise_arcsec = 0.05}).device, 0.8, 0.5) << "orders above 64";
   // The stops tell orders up to 179, and the readings show none above 64.
-  EXPECT_NEAR(CoverageOfFalling(64, {.stops = 360, .noise_arcsec = 0.05}).device, 1.0, 0.15);
+  EXPECT_NEAR(CoverageOfFalling(64, {.passes = {1, -1}, .stops = 360, .noise_arcsec = 0.05}).device, 1.0, 0.15);
 }
 
 TEST(SweepsThatFitNoMemory, AreRefusedWhenTheScenarioIsRead) {
