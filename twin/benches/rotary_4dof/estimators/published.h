@@ -30,9 +30,6 @@ Eigen::MatrixXd PublishedMatrix(int n);
 /// [t; r] by Gaussian elimination for each column of the two tests, n rows each.
 Eigen::MatrixXd SolvePublished(const Eigen::MatrixXd& test_1, const Eigen::MatrixXd& test_2);
 
-/// The same two tests by least squares over all 2n equations (with sum r = 0), for comparison.
-Eigen::MatrixXd SolveTwoTestsLeastSquares(const Eigen::MatrixXd& test_1, const Eigen::MatrixXd& test_2);
-
 /// The method on measured motions: the first two set-ups whose shifts differ by one step, means over the passes.
 /// Readings at a stop that has none in one of the two tests make the result NaN, with a note: the elimination has
 /// no redundancy to spare. Uncertainty: propagated from the motions' covariances; not included: everything in the

@@ -28,14 +28,4 @@ Eigen::MatrixXd SolvePublished(const Eigen::MatrixXd& test_1, const Eigen::Matri
   return SolveSquare(PublishedMatrix(static_cast<int>(test_1.rows())), RightHandSide(test_1, test_2));
 }
 
-Eigen::MatrixXd SolveTwoTestsLeastSquares(const Eigen::MatrixXd& test_1, const Eigen::MatrixXd& test_2) {
-  const auto n = static_cast<int>(test_1.rows());
-  Eigen::MatrixXd A(2 * n + 1, 2 * n);
-  A << PublishedMatrix(n), Eigen::MatrixXd::Zero(1, 2 * n);
-  A(2 * n, n - 1) = A(2 * n, n) = 1.0;  // the row that the elimination drops
-  Eigen::MatrixXd right(2 * n + 1, test_1.cols());
-  right << RightHandSide(test_1, test_2), test_2.bottomRows(1);
-  return SolveLeastSquares(A, right);
-}
-
 }  // namespace twinbench::separate
