@@ -88,18 +88,18 @@ INSTANTIATE_TEST_SUITE_P(BothClampings, FullCircleOracle,
 
 constexpr int kSeeds = 200;
 
+Scenario RandomTables(const std::string& clamping, const std::vector<std::string>& more) {
+  const std::string tables =
+      "bench = \"rotary_4dof\"\nmechanics.fidelity = \"kinematic\"\n"
+      "target.random = { ex_arcsec = 4, ey_arcsec = 4, ez_arcsec = 5, dx_um = 2, dy_um = 2, dz_um = 1 }\n"
+      "reference.random = { ex_arcsec = 8, ey_arcsec = 8, ez_arcsec = 15, dx_um = 3, dy_um = 3, dz_um = 2 }\n";
+  return Altered(ParseScenario(tables, "tables.toml", "", {"procedure.clamping=" + clamping}), more);
+}
+
+/// Without a calibration gains are exact, so that only the readings scatter.
 Scenario NoisyScenario(const std::string& clamping) {
-  Scenario scenario = test::RotaryScenario();
-  const double as = units::arcsec, um = units::um;
-  RotaryOf(scenario).target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
-  RotaryOf(scenario).reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
-  RotaryOf(scenario).procedure.clamping = clamping;
-  RotaryOf(scenario).procedure.phases = {"full_circle"};  // gains are exact here, so that only the readings scatter
-  RotaryOf(scenario).procedure.positions = 12;
-  RotaryOf(scenario).procedure.shifts = {0, 1, 4, 6};
-  RotaryOf(scenario).procedure.passes = {1, -1};
-  RotaryOf(scenario).adc.every_sample = false;
-  return scenario;
+  return RandomTables(clamping, {"procedure.phases=[\"full_circle\"]", "procedure.positions=12", "procedure.shifts=[0, 1, 4, 6]",
+                                 "procedure.passes=[1, -1]", "adc.every_sample=false"});
 }
 
 /// Values of the components in one vector, in the order of TableEstimate::cov.
@@ -170,10 +170,7 @@ double LargestMeanChi2(Scenario scenario) {
 }
 
 Scenario FewPositions() {
-  Scenario scenario = NoisyScenario("reseat");
-  RotaryOf(scenario).procedure.positions = 9;
-  RotaryOf(scenario).procedure.shifts = {0, 1, 2};
-  return scenario;
+  return Altered(NoisyScenario("reseat"), {"procedure.positions=9", "procedure.shifts=[0, 1, 2]"});
 }
 
 /// The block takes 16 ms and the hum 20 ms; the tables stop after whole hundredths of a second, so that the hum's
@@ -220,29 +217,17 @@ void ExpectErrorsReturn(const test::TwinRun& run, double angle_rad, double lengt
   }
 }
 
-Scenario RandomTables(const std::string& clamping, std::uint64_t seed) {
-  Scenario scenario = test::RotaryScenario();
-  scenario.noise_free = true;
-  scenario.seed = seed;
-  RotaryOf(scenario).procedure.clamping = clamping;
-  const double as = units::arcsec, um = units::um;
-  RotaryOf(scenario).target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
-  RotaryOf(scenario).reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
-  return scenario;
-}
-
 class NoiseFree : public ::testing::TestWithParam<std::tuple<const char*, int>> {};
 
 TEST_P(NoiseFree, TheRigorousEstimatorReturnsTheInjectedErrorsAlsoBehindRealisticMountings) {
   const auto [clamping, seed] = GetParam();
-  Scenario scenario = RandomTables(clamping, static_cast<std::uint64_t>(seed));
+  const Scenario scenario = RandomTables(clamping, {"noise_free=true", "seed=" + std::to_string(seed)});
   // The issue of this project: 0.02 arcsec and 0.02 um rms. Second-order terms alone would be 0.001 arcsec.
   const double limit_rad = 0.02 * units::arcsec, limit_m = 0.02 * units::um;
   ExpectErrorsReturn(test::RunTwin(scenario), limit_rad, limit_m);
   // Not random from reading to reading, so noise_free does not take it: the mounting of the body.
-  RotaryOf(scenario).mount_tilt_rad = {30.0 * units::arcsec, -20.0 * units::arcsec};
-  RotaryOf(scenario).centring_m = {20.0 * units::um, -15.0 * units::um};
-  ExpectErrorsReturn(test::RunTwin(scenario), limit_rad, limit_m);
+  const Scenario mounted = Altered(scenario, {"reference.mount_tilt_arcsec=[30, -20]", "reference.centring_um=[20, -15]"});
+  ExpectErrorsReturn(test::RunTwin(mounted), limit_rad, limit_m);
 }
 
 INSTANTIATE_TEST_SUITE_P(ClampingsAndSeeds, NoiseFree,
@@ -267,10 +252,8 @@ std::vector<std::string> RunSeeds(const Scenario& scenario, std::size_t count, i
 
 TEST(SameSeed, GivesTheSameBitsOnAnyNumberOfThreads) {
   for (const char* fidelity : {"kinematic", "linear"}) {
-    Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
-    RotaryOf(scenario).mechanics.fidelity = fidelity;
-    RotaryOf(scenario).procedure.positions = 12;
-    RotaryOf(scenario).procedure.shifts = {0, 1};
+    const Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"), {std::string("mechanics.fidelity=") + fidelity,
+                                                                                    "procedure.positions=12", "procedure.shifts=[0, 1]"});
     const auto alone = RunSeeds(scenario, 6, 1);
     EXPECT_EQ(alone, RunSeeds(scenario, 6, 2)) << fidelity;
     EXPECT_EQ(alone, RunSeeds(scenario, 6, 5)) << fidelity;
@@ -279,20 +262,16 @@ TEST(SameSeed, GivesTheSameBitsOnAnyNumberOfThreads) {
 }
 
 TEST(SameSeed, GivesTheSameBitsInFullDynamics) {
-  Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
-  RotaryOf(scenario).mechanics.fidelity = "bullet";
-  RotaryOf(scenario).procedure.phases = {"full_circle"};
-  RotaryOf(scenario).procedure.positions = 4;
-  RotaryOf(scenario).procedure.shifts = {0, 1};
-  RotaryOf(scenario).procedure.passes = {1};
+  const Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"),
+                                         {"mechanics.fidelity=bullet", "procedure.phases=[\"full_circle\"]", "procedure.positions=4",
+                                          "procedure.shifts=[0, 1]", "procedure.passes=[1]"});
   EXPECT_EQ(RunSeeds(scenario, 2, 1), RunSeeds(scenario, 2, 2));
 }
 
 TEST(OneCauseOneStream, SwitchingOneNoiseOffDoesNotChangeAnother) {
-  Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"), {"mechanics.fidelity=kinematic"});
-  RotaryOf(scenario).procedure.phases = {"full_circle"};
-  RotaryOf(scenario).procedure.shifts = {0};
-  RotaryOf(scenario).procedure.passes = {1};
+  Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"),
+                                   {"mechanics.fidelity=kinematic", "procedure.phases=[\"full_circle\"]", "procedure.shifts=[0]",
+                                    "procedure.passes=[1]"});
   const auto with = test::RunTwin(scenario).readings;
   scenario.environment.sensor_noise_K = 0.0;
   const auto without = test::RunTwin(scenario).readings;

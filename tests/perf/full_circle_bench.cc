@@ -31,18 +31,13 @@ class CountingSink : public ReadingSink {
 };
 
 Scenario PaperTest(const std::string& fidelity, bool every_sample) {
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).mechanics.fidelity = fidelity;
-  RotaryOf(scenario).optics.fidelity = "closed";
-  RotaryOf(scenario).adc.samples = 1000;
-  RotaryOf(scenario).adc.every_sample = every_sample;
-  RotaryOf(scenario).procedure.phases = {"full_circle"};
-  RotaryOf(scenario).procedure.shifts = {0, 1};
-  RotaryOf(scenario).procedure.passes = {1};
-  const double as = units::arcsec, um = units::um;
-  RotaryOf(scenario).target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
-  RotaryOf(scenario).reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
-  return scenario;
+  const std::string tables =
+      "bench = \"rotary_4dof\"\noptics.fidelity = \"closed\"\nadc.samples = 1000\n"
+      "target.random = { ex_arcsec = 4, ey_arcsec = 4, ez_arcsec = 5, dx_um = 2, dy_um = 2, dz_um = 1 }\n"
+      "reference.random = { ex_arcsec = 8, ey_arcsec = 8, ez_arcsec = 15, dx_um = 3, dy_um = 3, dz_um = 2 }\n"
+      "[procedure]\nphases = [\"full_circle\"]\nshifts = [0, 1]\npasses = [1]\n";
+  return ParseScenario(tables, "paper.toml", "",
+                       {"mechanics.fidelity=" + fidelity, std::string("adc.every_sample=") + (every_sample ? "true" : "false")});
 }
 
 int ValidReadings(const Scenario& scenario) {

@@ -83,9 +83,7 @@ TEST(Verification, UsesAnglesTheCalibrationDidNotUse) {
 }
 
 TEST(Stability, ReadsTheRestingBenchAtItsInterval) {
-  Scenario scenario = With({"stability"});
-  RotaryOf(scenario).procedure.stability_s = 60.0;
-  RotaryOf(scenario).procedure.stability_interval_s = 10.0;
+  const Scenario scenario = Altered(With({"stability"}), {"procedure.stability_s=60", "procedure.stability_interval_s=10"});
   const auto readings = CarriedOut(scenario).readings;
   ASSERT_EQ(readings.size(), 6u);
   EXPECT_NEAR(ToSeconds(readings[5].time - readings[4].time), 10.0, 0.002) << "a block takes 1.6 ms";

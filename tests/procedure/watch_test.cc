@@ -155,13 +155,8 @@ TEST(WatchedMove, NoticesAStepThatWasLost) {
 }
 
 Scenario TwoSetups() {
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).procedure.phases = {"full_circle"};
-  RotaryOf(scenario).procedure.positions = 36;
-  RotaryOf(scenario).procedure.shifts = {0, 1};
-  RotaryOf(scenario).procedure.passes = {-1};
-  RotaryOf(scenario).procedure.run_up_steps = 0.5;
-  return scenario;
+  return Altered(test::RotaryScenario(), {"procedure.phases=[\"full_circle\"]", "procedure.positions=36", "procedure.shifts=[0, 1]",
+                                          "procedure.passes=[-1]", "procedure.run_up_steps=0.5"});
 }
 
 /// Its moves when only the A/D of this bench fails, once, at the reading with this number.

@@ -23,8 +23,7 @@ TEST(AngleSchedule, GoesThroughTheSameStopsInBothDirections) {
 }
 
 TEST(AngleSchedule, OfASweepIsTheMotionOfATableWithConstantAcceleration) {
-  Scenario scenario = EncoderScenario("sweep");
-  EncoderOf(scenario).encoder_procedure.passes = {1, -1};
+  const Scenario scenario = Altered(EncoderScenario("sweep"), {"encoder_procedure.passes=[1, -1]"});
   const auto readings = procedure::AngleSchedule(EncoderOf(scenario).encoder_procedure);
   for (std::size_t i = 1; i < readings.size(); ++i) {
     const Reading &a = readings[i - 1], &b = readings[i];
@@ -41,9 +40,7 @@ TEST(AngleSchedule, OfASweepIsTheMotionOfATableWithConstantAcceleration) {
 }
 
 TEST(AngleSchedule, TurnsTheDeviceOnTheShaftAtEverySetUp) {
-  Scenario scenario = EncoderScenario();
-  EncoderOf(scenario).encoder_procedure.mounting_rad = {0.0, 90.0 * deg};
-  const auto readings = RunEncoderTwin(scenario).readings;
+  const auto readings = RunEncoderTwin(Altered(EncoderScenario(), {"encoder_procedure.mounting_deg=[0, 90]"})).readings;
   ASSERT_EQ(readings.size(), 2u * 576u);
   EXPECT_EQ(readings[576].setup, 1);
   EXPECT_NEAR(readings[576].measured_rad - readings[576].reference_rad, 90.0 * deg, 1e-12);
@@ -114,11 +111,8 @@ TEST(EncoderTwin, TellsItsTruth) {
 }
 
 TEST(EncoderTwin, ReadsItsRingWithSeveralHeadsAtOneInstant) {
-  Scenario scenario = EncoderScenario();
-  EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 90.0 * deg};
-  EncoderOf(scenario).encoder_procedure.mounting_rad = {0.0, 10.0 * deg};
-  scenario.effects = {EncoderEffect("eccentricity", {{"amplitude", 0.1 * deg}})};
-  const auto readings = RunEncoderTwin(scenario).readings;
+  const Scenario heads = Altered(EncoderScenario(), {"encoder_procedure.heads_deg=[0, 90]", "encoder_procedure.mounting_deg=[0, 10]"});
+  const auto readings = ReadingsWith(heads, EncoderEffect("eccentricity", {{"amplitude", 0.1 * deg}}));
   ASSERT_EQ(readings.size(), 2u * 2u * 576u);
   for (std::size_t i = 0; i < readings.size(); i += 2) {
     const Reading &first = readings[i], &second = readings[i + 1];
@@ -131,9 +125,8 @@ TEST(EncoderTwin, ReadsItsRingWithSeveralHeadsAtOneInstant) {
 }
 
 TEST(EncoderTwin, HasOneNoiseOfTheReferenceForAllHeadsOfAnInstant) {
-  Scenario scenario = Noisy();
-  EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 90.0 * deg, 100.0 * deg};
-  EncoderOf(scenario).encoder_procedure.reference_noise_rad = 1.0 * deg;
+  const Scenario scenario =
+      Altered(Noisy(), {"encoder_procedure.heads_deg=[0, 90, 100]", "encoder_procedure.reference_noise_arcsec=3600"});
   const auto readings = RunEncoderTwin(scenario).readings;
   const auto exact = procedure::AngleSchedule(EncoderOf(scenario).encoder_procedure);
   double squares = 0.0;
@@ -146,11 +139,8 @@ TEST(EncoderTwin, HasOneNoiseOfTheReferenceForAllHeadsOfAnInstant) {
 }
 
 TEST(EncoderTwin, HasTheGraduationOfItsBenchInEveryRun) {
-  Scenario scenario = EncoderScenario();
-  DeviceSettings& device = EncoderOf(scenario).device;
-  device.graduation_rad = 2.0 * units::arcsec;
-  device.graduation_fall = 0.5;
-  device.graduation_orders = 100;
+  Scenario scenario =
+      Altered(EncoderScenario(), {"device.graduation_arcsec=2", "device.graduation_fall=0.5", "device.graduation_orders=100"});
   const auto curve = [](const Scenario& s) {
     return sim::EncoderTwin(s).Truth().at("device").at("ez_arcsec").get<std::vector<double>>();
   };

@@ -26,10 +26,12 @@ Scenario Machine() {
 }
 
 /// All orders are the scenario's to say.
-Scenario WithoutFreeOrders() {
-  Scenario s = Machine();
-  HobOf(s).transmission.free_orders = 0;
-  return s;
+Scenario WithoutFreeOrders(const std::vector<std::string>& but = {}) {
+  return Altered(Altered(Machine(), {"transmission.free_orders=0"}), but);
+}
+
+Scenario WithoutErrors() {
+  return WithoutFreeOrders({"transmission.harmonics=[]", "table_encoder.eccentricity_um=0"});
 }
 
 /// The free orders by the angle of the motor, which the hob's encoder shows.
@@ -92,32 +94,25 @@ TEST(HobFollow, KnowsTheKeysOfTheScenario) {
       {"hob_procedure.hob_speeds_rev_min=[48, 29]", "transmission.feed_forward=0.95",
        "effect=[{ name = \"hysteresis\", lag_arcsec = 4, settles_over_deg = 5 }]"}};
   for (const auto& keys : changes) {
-    const Scenario s = Altered(WithoutFreeOrders(), keys);
+    const Scenario s = WithoutFreeOrders(keys);
     EXPECT_LT(Off_arcsec(s), s.effects.empty() ? kSame_arcsec : kTurned_arcsec) << keys[0];
   }
 }
 
 TEST(HobFollow, GoesWhereACompensationLeads) {
-  Scenario s = WithoutFreeOrders();
-  HobOf(s).transmission.harmonics.clear();
-  HobOf(s).table_encoder.eccentricity_m = 0.0;
+  Scenario s = WithoutErrors();
   HobOf(s).transmission.compensation = CompensationTable{{0.0, 120.0 * deg, 240.0 * deg}, {0.0, 6.0 * arcsec, -3.0 * arcsec}};
   EXPECT_LT(Off_arcsec(s), 1.5e-4) << "6 arcsec beside the place, on a slope of 9 arcsec in 120 deg";
 }
 
 // Inertia is left out; at 50 r/min of the hob the line of the worm lies at 3.4 Hz, the torsion at 80 Hz.
 TEST(HobFollow, DiffersFromBulletByWhatInertiaDoesToTheLines) {
-  Scenario s = WithoutFreeOrders();
-  HobOf(s).transmission.friction_Nm = 100.0;
-  HobOf(s).mechanics.fidelity = "bullet";
-  HobOf(s).hob_procedure.heads_rad = {0.0};
-  EXPECT_LT(Off_arcsec(s), 0.02);
+  const std::vector<std::string> bodies = {"transmission.friction_Nm=100", "mechanics.fidelity=bullet", "hob_procedure.heads_deg=[0]"};
+  EXPECT_LT(Off_arcsec(WithoutFreeOrders(bodies)), 0.02);
 }
 
 TEST(HobFollow, SlopesAreClosedForms) {
-  Scenario s = WithoutFreeOrders();
-  HobOf(s).transmission.harmonics.clear();
-  HobOf(s).table_encoder.eccentricity_m = 0.0;
+  const Scenario s = WithoutErrors();
   const std::vector<Reading> readings = test::RunBench(s).readings;
   const auto follow = sim::FollowHob(s, readings);
   const auto slope = [&](const char* point) { return model::Slope(*follow, model::PointNamed(*follow, point)); };
@@ -143,13 +138,7 @@ TEST(HobFollow, SlopesAreClosedForms) {
 }
 
 /// A machine without errors: one head, one turn each way, 180 samples a turn.
-Scenario QuietMachine() {
-  Scenario s = WithoutFreeOrders();
-  HobOf(s).transmission.harmonics.clear();
-  HobOf(s).table_encoder.eccentricity_m = 0.0;
-  HobOf(s).hob_procedure.heads_rad = {0.0};
-  return s;
-}
+Scenario QuietMachine() { return Altered(WithoutErrors(), {"hob_procedure.heads_deg=[0]"}); }
 
 std::vector<Reading> HobReadings(const Scenario& scenario) { return test::RunBench(scenario).readings; }
 
@@ -231,11 +220,8 @@ TEST(HobTwin, InterferometerSeesWhatTheTableDoesAndNotWhatItsCountersGetWrong) {
 }
 
 TEST(HobTwin, CountsFromTheMarkIfToldSo) {
-  Scenario s = QuietMachine();
-  HobOf(s).hob_procedure.heads_rad = {50.0 * deg};
-  const auto from_origin = HobReadings(s);
-  HobOf(s).hob_procedure.encoder_zero = "reference_mark";
-  const auto from_mark = HobReadings(s);
+  const Scenario s = Altered(QuietMachine(), {"hob_procedure.heads_deg=[50]"});
+  const auto from_origin = HobReadings(s), from_mark = HobReadings(Altered(s, {"hob_procedure.encoder_zero=reference_mark"}));
   EXPECT_NEAR(from_origin[0].measured_rad - from_mark[0].measured_rad, 50.0 * deg, 1e-12);
 }
 

@@ -1,6 +1,4 @@
-#include "tests/core/input_error.h"
 #include "tests/support/angle_benches.h"
-#include "tests/support/kept_text.h"
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
 
 // A polygon on the turntable: each face is nulled by turning the table, and the encoder is read.
@@ -10,20 +8,11 @@ namespace {
 using units::arcsec, units::deg;
 
 /// Twelve faces without errors, three clampings, without noise.
-Scenario QuietPolygon() {
-  Scenario s;
-  s.bench = kTurntableBench;
-  s.noise_free = true;
-  TurntableSettings& own = TurntableOf(s);
-  own.polygon.faces = 12;
-  own.collimator.deadband_rad = 1e-3 * arcsec;
-  own.turntable_procedure.phases = {"full_circle"};
-  own.turntable_procedure.positions = 12;
-  own.turntable_procedure.polygon_offsets_rad = {0.0, 17.0 * deg, 250.0 * deg};
-  own.turntable_procedure.tilts_rad = {0.0};
-  own.turntable_procedure.eccentricities_m = {0.0};
-  own.turntable_procedure.passes = {1};
-  return s;
+Scenario QuietPolygon(const std::vector<std::string>& but = {}) {
+  return ParseScenario("bench = \"turntable_autocollimator\"\nnoise_free = true\npolygon.faces = 12\n"
+                       "autocollimator.deadband_arcsec = 0.001\n[turntable_procedure]\nphases = [\"full_circle\"]\npositions = 12\n"
+                       "polygon_offsets_deg = [0.0, 17.0, 250.0]\ntilts_arcsec = [0.0]\neccentricities_um = [0.0]\npasses = [1]\n",
+                       "quiet.toml", "", but);
 }
 
 double Nominal_rad(const Scenario& s, const Reading& r) {
@@ -58,10 +47,7 @@ TEST(PolygonTwin, ReadsTheErrorOfTheTurntableWhereAFaceIsNulledAndThatOfTheFaceW
 }
 
 TEST(PolygonTwin, ReadsAFaceThatCannotBeNulledAsItIs) {
-  Scenario s = QuietPolygon();
-  s.noise_free = false;
-  TurntableOf(s).autocollimator.noise_rad = 0.0;
-  TurntableOf(s).turntable.repeatability_sd[2] = 2.0 * arcsec;
+  const Scenario s = QuietPolygon({"noise_free=false", "autocollimator.noise_arcsec=0", "turntable.repeatability.ez_arcsec=2"});
   int within = 0;
   for (const Reading& r : test::RunBench(s).readings) {
     EXPECT_EQ(r.status, ReadingStatus::kOk);
@@ -71,19 +57,14 @@ TEST(PolygonTwin, ReadsAFaceThatCannotBeNulledAsItIs) {
 }
 
 TEST(PolygonTwin, ComesToEveryFaceFromTheSideOfItsPass) {
-  Scenario s = QuietPolygon();
-  TurntableOf(s).turntable_procedure.passes = {1, -1};
-  s.effects = {{"backlash", "", {{"width", 3.0 * arcsec}}, "", {}}};
+  const Scenario s = QuietPolygon({"turntable_procedure.passes=[1, -1]", "effect=[{name=\"backlash\", width_arcsec=3}]"});
   const auto readings = test::RunBench(s).readings;
   // Behind by half of the gap: forward too little, backward too much.
   for (const Reading& r : readings) EXPECT_NEAR(Value_arcsec(s, r), -1.5 * r.direction, kSecondOrder_arcsec);
 }
 
 TEST(PolygonTwin, ShowsTheEncodersStepsAndNoise) {
-  Scenario s = QuietPolygon();
-  s.noise_free = false;
-  TurntableOf(s).autocollimator.noise_rad = 0.0;
-  TurntableOf(s).encoder.step_rad = 0.5 * arcsec;
+  Scenario s = QuietPolygon({"noise_free=false", "autocollimator.noise_arcsec=0", "encoder.step_arcsec=0.5"});
   for (const Reading& r : test::RunBench(s).readings) {
     const double steps = r.target_rad / (0.5 * arcsec);
     EXPECT_NEAR(steps, std::round(steps), 1e-4);
@@ -98,9 +79,7 @@ TEST(PolygonTwin, ShowsTheEncodersStepsAndNoise) {
 }
 
 TEST(PolygonTwin, ShowsThePyramidOfAFaceInY) {
-  Scenario s = QuietPolygon();
-  TurntableOf(s).polygon.pyramid_rms_rad = 4.0 * arcsec;
-  const auto readings = test::RunBench(s).readings;
+  const auto readings = test::RunBench(QuietPolygon({"polygon.pyramid_rms_arcsec=4"})).readings;
   double squares = 0.0;
   for (const Reading& r : readings) {
     EXPECT_NEAR(r.autocollimator_tilt_rad, readings[static_cast<std::size_t>(r.position)].autocollimator_tilt_rad,
@@ -113,13 +92,8 @@ TEST(PolygonTwin, ShowsThePyramidOfAFaceInY) {
 }
 
 TEST(PolygonTwin, WalksOverItsFacesWhereItIsEccentric) {
-  Scenario s = QuietPolygon();
-  TurntableOf(s).mirror.width_m = 20e-3;
-  TurntableOf(s).mirror.height_m = 20e-3;
-  TurntableOf(s).collimator.aperture_m = 10e-3;
-  TurntableOf(s).mirror.flatness_m = 100e-9;
-  TurntableOf(s).turntable_procedure.eccentricities_m = {1e-3};
-  TurntableOf(s).turntable_procedure.tilt_azimuths_rad = {30.0 * deg};
+  const Scenario s = QuietPolygon({"mirror.width_mm=20", "mirror.height_mm=20", "mirror.flatness_nm=100", "autocollimator.aperture_mm=10",
+                                   "turntable_procedure.eccentricities_um=[1000]", "turntable_procedure.tilt_azimuths_deg=[30]"});
   // 8 h e / H^2 = 2e-6 rad; a hollow face that stands off to the right is met left of its middle and leans to the
   // right.
   for (const Reading& r : test::RunBench(s).readings) {
@@ -129,23 +103,17 @@ TEST(PolygonTwin, WalksOverItsFacesWhereItIsEccentric) {
 }
 
 TEST(PolygonTwin, IsFollowed) {
-  Scenario s = QuietPolygon();
-  TurntableSettings& own = TurntableOf(s);
-  own.turntable.harmonics = {{Component::kEx, 2.0, 2.0 * arcsec, 1.0}};
-  own.collimator.roll_rad = 5e-3;
-  own.mirror.flatness_m = 1e-6;
-  own.turntable_procedure.eccentricities_m = {0.1e-3};
-  own.turntable_procedure.tilts_rad = {20.0 * arcsec};
-  own.turntable_procedure.passes = {1, -1};
-  own.turntable.backlash_rad = 3.0 * arcsec;
-  s.effects = {{"settling", "", {{"amplitude", 2.0 * arcsec}, {"time_constant", 1.0}}, "", {}},
-               {"slip", "x", {{"step", 2.0 * arcsec}, {"at_reading", 20.0}}, "", {}}};
+  Scenario s = QuietPolygon(
+      {"autocollimator.roll_mrad=5", "mirror.flatness_nm=1000", "turntable_procedure.eccentricities_um=[100]",
+       "turntable.backlash_arcsec=3", "turntable_procedure.tilts_arcsec=[20]", "turntable_procedure.passes=[1, -1]",
+       "effect=[{name=\"settling\", amplitude_arcsec=2, time_constant_s=1}, {name=\"slip\", where=\"x\", step_arcsec=2, at_reading=20}]"});
+  TurntableOf(s).turntable.harmonics = {{Component::kEx, 2.0, 2.0 * arcsec, 1.0}};
   const test::BenchRun run = test::RunBench(s);
   const auto follow = sim::FollowTurntable(s, run.readings);
   Eigen::VectorXd tilt_rad(std::ssize(run.readings));
   for (Eigen::Index i = 0; i < tilt_rad.size(); ++i) {
     const Reading& r = run.readings[static_cast<std::size_t>(i)];
-    const double rotor_rad = r.target_rad - 0.5 * r.direction * own.turntable.backlash_rad;
+    const double rotor_rad = r.target_rad - 0.5 * r.direction * TurntableOf(s).turntable.backlash_rad;
     tilt_rad[i] = 2.0 * arcsec * std::cos(2.0 * rotor_rad + 1.0);
   }
   const Eigen::MatrixXd predicted_rad = follow->Predict({{"turntable.ex", tilt_rad}});

@@ -1,6 +1,5 @@
 #include "twin/sim/restlessness.h"
 
-#include "tests/core/input_error.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/twin/table_stack.h"
@@ -10,11 +9,7 @@ namespace {
 
 using units::um, units::arcsec;
 
-Scenario Bodies(const std::string& fidelity) {
-  Scenario scenario = Quiet();
-  RotaryOf(scenario).mechanics.fidelity = fidelity;
-  return scenario;
-}
+Scenario Bodies(const std::string& fidelity) { return Altered(Quiet(), {"mechanics.fidelity=" + fidelity}); }
 
 TEST(VibrationCriterion, HasThePublishedVelocities) {
   for (const auto& [name, velocity_um_s] : {std::pair{"VC-A", 50.0},
@@ -51,10 +46,8 @@ TEST(BaseVibration, HasTheStatedVelocityInEveryBandAndDirection) {
 
 TEST(ShakenStack, SwaysAtRestAsItsAnswersAndTheSpectrumSay) {
   for (const std::string fidelity : {"kinematic", "linear", "bullet"}) {
-    Scenario s = Bodies(fidelity);
-    RotaryOf(s).mechanics.vibration = "listed";
-    RotaryOf(s).mechanics.vibration_frequency_Hz = {10.0, 63.0};
-    RotaryOf(s).mechanics.vibration_velocity_m_s = {20.0 * um, 5.0 * um};
+    const Scenario s = Altered(Bodies(fidelity), {"mechanics.vibration=listed", "mechanics.vibration_frequency_Hz=[10, 63]",
+                                                  "mechanics.vibration_velocity_um_s=[20, 5]"});
     EventQueue queue;
     Axes axes(RotaryTableStack(s), queue);
     double expected = 0.0;  // mean square of the target's radial deflection along x
@@ -77,10 +70,8 @@ TEST(ShakenStack, SwaysAtRestAsItsAnswersAndTheSpectrumSay) {
 }
 
 TEST(ShakenStack, IsTheSameHoweverTimeIsCut) {
-  Scenario s = Bodies("bullet");
-  RotaryOf(s).mechanics.vibration = "VC-C";
-  RotaryOf(s).mechanics.payload_mass_kg = 1.5;
-  RotaryOf(s).mechanics.payload_radius_m = 0.040;
+  const Scenario s =
+      Altered(Bodies("bullet"), {"mechanics.vibration=VC-C", "mechanics.payload_mass_kg=1.5", "mechanics.payload_radius_mm=40"});
   std::vector<double> found_m;
   for (const int looks : {1, 13, 700}) {
     EventQueue queue;

@@ -89,11 +89,9 @@ TEST(RotaryFollow, SaysWhatThePlainTwinShows) {
 }
 
 TEST(RotaryFollow, SaysWhatARichTwinShowsReclampedAndThroughAWedgedWindowToo) {
-  Scenario reclamped = RichBench(), wedged = RichBench();
-  RotaryOf(reclamped).procedure.clamping = "reclamp";
-  RotaryOf(wedged).psd_a.window = true;
-  RotaryOf(wedged).psd_a.window_wedge_rad = 0.010;
-  for (const Scenario& s : {RichBench(), reclamped, wedged}) EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m);
+  const Scenario rich = RichBench(), reclamped = Altered(rich, {"procedure.clamping=reclamp"}),
+                 wedged = Altered(rich, {"psd_a.window=true", "psd_a.window_wedge_mrad=10"});
+  for (const Scenario& s : {rich, reclamped, wedged}) EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m);
 }
 
 /// A lopsided beam as a camera would have seen it.
@@ -131,15 +129,11 @@ TEST(RotaryFollow, KnowsTheDynamicsOfTheLinearStackAndItsFriction) {
 }
 
 TEST(RotaryFollow, SaysWhatBodiesByBulletShow) {
-  Scenario s = RichBench();
-  RotaryOf(s).mechanics.fidelity = "bullet";
-  RotaryOf(s).procedure.positions = 4;
-  RotaryOf(s).procedure.shifts = {0, 1};
+  const Scenario s = Altered(RichBench(), {"mechanics.fidelity=bullet", "procedure.positions=4", "procedure.shifts=[0, 1]"});
   EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-9);
-  RotaryOf(s).target.backlash_rad = RotaryOf(s).reference.backlash_rad = 0.0;
-  RotaryOf(s).mechanics.cable_stiffness_Nm_rad = {0.3, 0.2};
-  RotaryOf(s).mechanics.encoder_subdivision_rad = {0.3 * units::arcsec, 0.2 * units::arcsec};
-  EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-10);
+  const Scenario cabled = Altered(s, {"target.backlash_arcsec=0", "mechanics.cable_stiffness_Nm_rad=[0.3, 0.2]",
+                                      "mechanics.encoder_subdivision_arcsec=[0.3, 0.2]"});
+  EXPECT_LT(Apart_m(test::RunTwin(cabled)), 1e-10);
 }
 
 class FollowedEffect : public testing::TestWithParam<EffectEntry> {

@@ -11,53 +11,31 @@ using units::arcsec;
 
 struct QuickBench {
   std::string name;
-  void (*shorten)(Scenario&);
+  std::vector<std::string> sets;
   double least;  // that every effect does to some reading, in SI
 };
 
+/// A front that is no plane is so beside its middle; stops are not on whole periods; what repeats with whole lines between samples
+/// would be hidden.
 const QuickBench kQuickBenches[] = {
     {kRotaryBench,
-     [](Scenario& s) {
-       s = test::SmallNoiseFree();
-       s.environment.drift_K_h = 1.0;
-       RotaryOf(s).laser.position_m.x() = units::mm;   // a front that is no plane is so beside its middle
-       RotaryOf(s).mechanics.encoder_periods = 36001;  // stops are not on whole periods
-       RotaryOf(s).target.random_rms[2] = RotaryOf(s).reference.random_rms[0] = 5.0 * arcsec;
-     },
+     {"environment.drift_K_h=1", "laser.position_mm=[1, 200, 0]", "mechanics.encoder_periods=36001", "mechanics.fidelity=kinematic",
+      "procedure.positions=12", "procedure.shifts=[0, 4]", "target.random.ez_arcsec=5", "reference.random.ex_arcsec=5"},
      1e-4},  // 50 nm on the PSD
-    {kEncoderBench,
-     [](Scenario& s) {
-       s.environment.drift_K_h = 10.0;
-       EncoderOf(s).encoder_procedure.kind = "sweep";
-       EncoderOf(s).device.lines = 90;
-     },
-     1e-4 * units::deg},
+    {kEncoderBench, {"environment.drift_K_h=10", "encoder_procedure.kind=sweep", "device.lines_per_turn=90"}, 1e-4 * units::deg},
     {kTurntableBench,
-     [](Scenario& s) {
-       s.environment.drift_K_h = 0.5;
-       TurntableOf(s).turntable_procedure.phases = {"calibration", "full_circle"};
-       TurntableOf(s).turntable_procedure.positions = 12;
-       TurntableOf(s).turntable_procedure.tilts_rad = {60.0 * arcsec, 100.0 * arcsec};
-       TurntableOf(s).turntable_procedure.eccentricities_m = {0.0};
-       TurntableOf(s).turntable_procedure.passes = {1, -1};
-     },
+     {"environment.drift_K_h=0.5", "turntable_procedure.phases=[\"calibration\", \"full_circle\"]", "turntable_procedure.positions=12",
+      "turntable_procedure.eccentricities_um=[0]"},
      1e-3 * arcsec},
     {kHobBench,
-     [](Scenario& s) {
-       HobOf(s).hob_procedure.heads_rad = {0.0};
-       HobOf(s).hob_procedure.turns = 1;
-       HobOf(s).hob_procedure.samples_per_turn = 180;
-       HobOf(s).table_encoder.noise_rad = 0.3 * arcsec;
-       HobOf(s).hob_encoder.lines = 8192;  // what repeats with whole lines between samples would be hidden
-     },
+     {"hob_procedure.heads_deg=[0]", "hob_procedure.turns=1", "hob_procedure.samples_per_turn=180", "table_encoder.noise_arcsec=0.3",
+      "hob_encoder.lines=8192"},
      1e-3 * arcsec}};
 
 class EveryTwin : public testing::TestWithParam<QuickBench> {
  protected:
   static Scenario Short(bool noise_free) {
-    Scenario s;
-    s.bench = GetParam().name;
-    GetParam().shorten(s);
+    Scenario s = ParseScenario("bench = \"" + GetParam().name + "\"\n", "quick.toml", "", GetParam().sets);
     s.noise_free = noise_free;
     return s;
   }

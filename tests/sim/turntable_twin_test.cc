@@ -9,17 +9,10 @@ namespace {
 using units::arcsec, units::deg;
 
 /// A bench without errors and noise: 12 positions, one set-up, one pass.
-Scenario QuietTurntable() {
-  Scenario s;
-  s.bench = kTurntableBench;
-  s.noise_free = true;
-  TurntableOf(s).multitooth.tooth_rms_rad = 0.0;
-  TurntableOf(s).turntable_procedure.phases = {"full_circle"};
-  TurntableOf(s).turntable_procedure.positions = 12;
-  TurntableOf(s).turntable_procedure.tilts_rad = {0.0};
-  TurntableOf(s).turntable_procedure.eccentricities_m = {0.0};
-  TurntableOf(s).turntable_procedure.passes = {1};
-  return s;
+Scenario QuietTurntable(const std::vector<std::string>& but = {}) {
+  return ParseScenario("bench = \"turntable_autocollimator\"\nnoise_free = true\nmultitooth.tooth_rms_arcsec = 0.0\n[turntable_procedure]\n"
+                       "phases = [\"full_circle\"]\npositions = 12\ntilts_arcsec = [0.0]\neccentricities_um = [0.0]\npasses = [1]\n",
+                       "quiet.toml", "", but);
 }
 
 std::vector<Reading> TurntableReadings(const Scenario& scenario) { return test::RunBench(scenario).readings; }
@@ -57,9 +50,7 @@ TEST(TurntableTwin, ReadsTheIndexErrorOfTheTurntablePlusThatOfTheTooth) {
 }
 
 TEST(TurntableTwin, ShowsATiltOfTheMultitoothTableOnceATurnInY) {
-  Scenario s = QuietTurntable();
-  TurntableOf(s).turntable_procedure.tilts_rad = {100.0 * arcsec};
-  TurntableOf(s).turntable_procedure.tilt_azimuths_rad = {40.0 * deg};
+  const Scenario s = QuietTurntable({"turntable_procedure.tilts_arcsec=[100]", "turntable_procedure.tilt_azimuths_deg=[40]"});
   for (const Reading& r : TurntableReadings(s)) {
     // The axis leans towards the azimuth, so the normal of a mirror that faces that way looks down.
     const double azimuth_rad = 40.0 * deg + r.target_rad;
@@ -69,20 +60,15 @@ TEST(TurntableTwin, ShowsATiltOfTheMultitoothTableOnceATurnInY) {
 }
 
 TEST(TurntableTwin, ReadsTheMeanOfItsFramesInTheirMiddleWithLessNoise) {
-  Scenario s = QuietTurntable();
-  const Reading once = TurntableReadings(s).back();
-  TurntableOf(s).collimator.frames = 21;
-  TurntableOf(s).collimator.frame_s = 0.1;
+  const Reading once = TurntableReadings(QuietTurntable()).back();
+  Scenario s = QuietTurntable({"autocollimator.frames=21", "autocollimator.frame_s=0.1"});
   // The last of twelve has eleven whole readings of 2 s before it and half its own.
   EXPECT_NEAR(ToSeconds(TurntableReadings(s).back().time - once.time), 11.5 * 2.0, 0.2)
       << "the drives look for rest by their own ticks";
-  s.environment.drift_K_h = 100.0;
-  s.environment.sensor_noise_K = 0.0;
+  s = Altered(s, {"environment.drift_K_h=100", "environment.sensor_noise_mK=0"});
   const Reading warmer = TurntableReadings(s).back();
   EXPECT_NEAR(warmer.temperature_degC, 20.0 + 100.0 * ToSeconds(warmer.time) / 3600.0, 1e-9) << "a second is 28 mK";
-  s.noise_free = false;
-  TurntableOf(s).turntable_procedure.positions = 360;
-  TurntableOf(s).collimator.frames = 16;
+  s = Altered(s, {"noise_free=false", "turntable_procedure.positions=360", "autocollimator.frames=16"});
   double squares = 0.0;
   for (const Reading& r : TurntableReadings(s)) squares += std::pow(r.autocollimator_yaw_rad, 2);
   // 360 readings: 3.7 % of the deviation; four of these.
@@ -90,8 +76,7 @@ TEST(TurntableTwin, ReadsTheMeanOfItsFramesInTheirMiddleWithLessNoise) {
 }
 
 TEST(TurntableTwin, EccentricityWalksTheBeamOverAMirrorThatIsNotFlat) {
-  Scenario s = QuietTurntable();
-  TurntableOf(s).turntable_procedure.eccentricities_m = {1e-3};
+  Scenario s = QuietTurntable({"turntable_procedure.eccentricities_um=[1000]"});
   for (const double flatness_m : {0.0, 79e-9}) {
     TurntableOf(s).mirror.flatness_m = flatness_m;
     double largest_arcsec = 0.0;
@@ -102,10 +87,7 @@ TEST(TurntableTwin, EccentricityWalksTheBeamOverAMirrorThatIsNotFlat) {
 }
 
 TEST(TurntableTwin, ComesToEveryPositionFromItsSideAndShowsBacklash) {
-  Scenario s = QuietTurntable();
-  TurntableOf(s).turntable.backlash_rad = 3.0 * arcsec;
-  TurntableOf(s).turntable_procedure.passes = {1, -1};
-  const auto readings = TurntableReadings(s);
+  const auto readings = TurntableReadings(QuietTurntable({"turntable.backlash_arcsec=3", "turntable_procedure.passes=[1, -1]"}));
   for (const Reading& forward : readings) {
     for (const Reading& backward : readings) {
       if (forward.direction < 0 || backward.direction > 0 || forward.position != backward.position) continue;
@@ -115,11 +97,8 @@ TEST(TurntableTwin, ComesToEveryPositionFromItsSideAndShowsBacklash) {
 }
 
 TEST(TurntableTwin, SweepsTheTurntableAloneForTheCalibration) {
-  Scenario s = QuietTurntable();
-  TurntableOf(s).turntable_procedure.phases = {"calibration"};
-  TurntableOf(s).turntable_procedure.sweep_points = 5;
-  TurntableOf(s).autocollimator.gain_error = 0.01;
-  const auto readings = TurntableReadings(s);
+  const auto readings = TurntableReadings(QuietTurntable(
+      {"turntable_procedure.phases=[\"calibration\"]", "turntable_procedure.sweep_points=5", "autocollimator.gain_error=0.01"}));
   ASSERT_EQ(readings.size(), 5u);
   for (const Reading& r : readings) {
     EXPECT_EQ(r.phase, Phase::kCalibration);
@@ -130,9 +109,7 @@ TEST(TurntableTwin, SweepsTheTurntableAloneForTheCalibration) {
 }
 
 TEST(TurntableTwin, ChecksBetweenThePositionsOnly) {
-  Scenario s = QuietTurntable();
-  TurntableOf(s).turntable_procedure.phases = {"verification"};
-  TurntableOf(s).turntable_procedure.verification_positions = 20;
+  const Scenario s = QuietTurntable({"turntable_procedure.phases=[\"verification\"]", "turntable_procedure.verification_positions=20"});
   for (const Reading& r : TurntableReadings(s)) {
     EXPECT_EQ(r.phase, Phase::kVerification);
     EXPECT_NE(std::lround(r.target_rad / deg) % 30, 0) << "a position of the full circle";
@@ -146,9 +123,7 @@ TEST(CheckTeeth, AreWholeTeethOffTheGridEvenlySpread) {
 }
 
 TEST(TurntableTwin, ShowsNothingBeyondTheRange) {
-  Scenario s = QuietTurntable();
-  TurntableOf(s).turntable.harmonics = {{Component::kEz, 1.0, 500.0 * arcsec, 0.0}};
-  const auto readings = TurntableReadings(s);
+  const auto readings = TurntableReadings(QuietTurntable({"turntable.harmonics=[{order=1, amplitude_arcsec=500}]"}));
   EXPECT_EQ(readings[0].status, ReadingStatus::kClippedSpot) << "500 arcsec at a range of 410";
   EXPECT_TRUE(std::isnan(readings[0].autocollimator_yaw_rad));
   EXPECT_EQ(readings[3].status, ReadingStatus::kOk);
@@ -268,13 +243,10 @@ TEST(TurntableFollow, GoesWhereACompensationLeads) {
 
 // Settled means within a hundredth of an arcsecond.
 TEST(TurntableFollow, DiffersFromBulletByLessThanTheServosWindow) {
-  Scenario s = Careful();
-  TurntableOf(s).mechanics.fidelity = "bullet";
-  TurntableOf(s).turntable_procedure.phases = {"full_circle"};
-  TurntableOf(s).turntable_procedure.tilts_rad = {60.0 * arcsec};
-  TurntableOf(s).turntable_procedure.shifts = {0};
-  TurntableOf(s).turntable_procedure.tilt_azimuths_rad = {0.0};
-  EXPECT_LT(TurntableOff_arcsec(s), 0.02);
+  const std::vector<std::string> one_circle = {"turntable_procedure.phases=[\"full_circle\"]", "turntable_procedure.tilts_arcsec=[60]",
+                                               "turntable_procedure.shifts_teeth=[0]", "turntable_procedure.tilt_azimuths_deg=[0]",
+                                               "mechanics.fidelity=bullet"};
+  EXPECT_LT(TurntableOff_arcsec(Altered(Careful(), one_circle)), 0.02);
 }
 
 /// d reading / d point: readings x 2, at the errors of the run.
@@ -286,10 +258,8 @@ Eigen::MatrixXd SlopeAt(const Scenario& scenario, const char* point) {
 
 // A roll g shows x' = x cos g + y sin g, y' = y cos g - x sin g; a scale stretches both.
 TEST(TurntableFollow, SlopesAreThoseOfARolledAndStretchedCrosshair) {
-  Scenario s = Careful();
-  TurntableOf(s).autocollimator.gain_error = 0.01;
-  TurntableOf(s).turntable_procedure.tilts_rad = {0.0};
-  TurntableOf(s).turntable.harmonics = TurntableOf(s).multitooth_table.harmonics = {};
+  const Scenario s = Altered(Careful(), {"autocollimator.gain_error=0.01", "turntable_procedure.tilts_arcsec=[0]", "turntable.harmonics=[]",
+                                         "multitooth.harmonics=[]"});
   const double scale = 1.01, g = 5e-3;
   const Eigen::MatrixXd x = SlopeAt(s, "turntable.ez"), y = SlopeAt(s, "turntable.ex");
   // In a sweep of 200 arcsec the tangent is steeper than the angle by 4e-6.
@@ -302,9 +272,7 @@ TEST(TurntableFollow, SlopesAreThoseOfARolledAndStretchedCrosshair) {
 }
 
 TEST(TurntableFollow, HasPointsForWhatItsErrorsAreMadeOf) {
-  Scenario s = Careful();
-  TurntableOf(s).turntable_procedure.tilts_rad = {0.0};
-  TurntableOf(s).collimator.roll_rad = 0.0;
+  const Scenario s = Altered(Careful(), {"turntable_procedure.tilts_arcsec=[0]", "autocollimator.roll_mrad=0"});
   const test::BenchRun run = test::RunBench(s);
   const auto follow = sim::FollowTurntable(s, run.readings);
   const Eigen::MatrixXd shown = model::Slope(*follow, model::PointNamed(*follow, "autocollimator.y"));
