@@ -1,4 +1,4 @@
-#include "tests/support/angle_benches.h"
+#include "tests/scenarios/as_shipped.h"
 #include "tests/support/night.h"
 
 #include "twin/benches/hob_transmission/bench.h"
@@ -10,7 +10,7 @@ namespace {
 
 using separate::hob::HobAnalysis, separate::hob::OrderStatus, separate::turntable::TurntableAnalysis, units::arcsec;
 
-test::BenchRun Shipped(const std::string& file, const std::vector<std::string>& overrides = {}) {
+test::BenchRun Shipped(const std::string& file, const std::vector<std::string>& overrides) {
   return test::RunBench(LoadScenario(test::ScenarioPath(file), overrides));
 }
 
@@ -48,7 +48,7 @@ double MeanChi2(const separate::turntable::AngleSeries& series, const nlohmann::
 }
 
 TEST(TurntableAutocollimator, IsCompensatedToTwoArcsecAtTheCheckPositionsAndFindsTheRollOfTheCrosshair) {
-  const TurntableAnalysis a = Analysed(Shipped("turntable_autocollimator.toml"));
+  const TurntableAnalysis a = Analysed(test::AsShipped("turntable_autocollimator.toml"));
   EXPECT_NEAR(a.before.peak_to_valley_rad / arcsec, 17.82, 0.9) << "the paper's turntable; noise of both ends 0.25";
   ASSERT_TRUE(a.check);
   EXPECT_EQ(a.check->after.count, 144);
@@ -99,7 +99,7 @@ TEST(TurntableAutocollimator, KnowsItsTeethNoBetterThanItsScenarioSaysTheyErr) {
 }
 
 TEST(TurntableShifts, SeparateTurntableAndTeethWithinTheirUncertainties) {
-  const test::BenchRun run = Shipped("turntable_shifts.toml");
+  const test::BenchRun& run = test::AsShipped("turntable_shifts.toml");
   const TurntableAnalysis a = Analysed(run);
   EXPECT_EQ(a.separation->status, separate::turntable::IndexingStatus::kSeparated);
   // 36 values: mean 1, deviation sqrt(2 / 36) = 0.24; four of these.
@@ -109,8 +109,8 @@ TEST(TurntableShifts, SeparateTurntableAndTeethWithinTheirUncertainties) {
 
 TEST(TurntableShifts, AreScoredByWhatTheyTellApart) {
   for (const char* shifts : {"[0, 60, 120, 300]", "[0, 180, 0, 180]", "[0, 5, 65, 60]", "[0, 120, 240, 0]"}) {
-    const test::BenchRun run = test::RunBench(LoadScenario(
-        test::ScenarioPath("turntable_shifts.toml"), {std::string("turntable_procedure.shifts_teeth=") + shifts, "mechanics.fidelity=kinematic"}));
+    const test::BenchRun run =
+        Shipped("turntable_shifts.toml", {std::string("turntable_procedure.shifts_teeth=") + shifts, "mechanics.fidelity=kinematic"});
     const auto score = benches::turntable::ScoreRun(run.scenario, run.readings, run.truth, Estimator::kRigorous).json;
     for (const char* table : {"turntable", "multitooth"})
       EXPECT_LT(score.at(table).at("ez").at("mean_chi2").get<double>(), 4.0) << table << " " << shifts;
@@ -123,15 +123,9 @@ HobAnalysis Analysed(const test::BenchRun& run, Estimator estimator) {
   return separate::hob::AnalyseHob(run.readings, run.scenario, estimator);
 }
 
-/// As the scenario says, carried out once.
-const test::BenchRun& AsItSays() {
-  static const test::BenchRun run = Shipped("hob_transmission.toml");
-  return run;
-}
-
 /// What the interferometer shows at stops holds its calibrator's error in full; its uncertainty says so.
 TEST(HobTransmission, ShowsThirteenAndTenArcsecFindsTheEncoderAndAgreesAtRestWithinWhatTheInterferometerErrs) {
-  const HobAnalysis a = Analysed(AsItSays(), Estimator::kPublished);
+  const HobAnalysis a = Analysed(test::AsShipped("hob_transmission.toml"), Estimator::kPublished);
   for (const auto& position : a.positions) {
     const double expected = position.setup == 0 ? 13.0 : 10.0;
     EXPECT_NEAR(separate::hob::Amplitude(position.series.At(1)) / arcsec, expected, 0.3) << position.setup;
@@ -146,8 +140,8 @@ TEST(HobTransmission, ShowsThirteenAndTenArcsecFindsTheEncoderAndAgreesAtRestWit
   EXPECT_LT(first.normalised_error, 1.0);
 }
 
-TEST(HobTransmission, FindsTheEncoderOverTenSeedsAndAgreesAtRestToTheNoiseWithAPerfectCalibrator) {
-  for (int seed = 1; seed <= 10; ++seed) {
+TEST(HobTransmission, FindsTheEncoderOverSeedsAndAgreesAtRestToTheNoiseWithAPerfectCalibrator) {
+  for (int seed = 1; seed <= test::ByNight(10, 4); ++seed) {
     const HobAnalysis a =
         Analysed(Shipped("hob_transmission.toml", {"seed=" + std::to_string(seed), "mechanics.fidelity=kinematic",
                                                    "interferometer.calibrator=[]", "interferometer.u_calibrator_arcsec=0"}),
@@ -185,7 +179,7 @@ TEST(HobTransmission, FindsTheGearsErrorsHoweverSoftWornOrFastItIs) {
 
 TEST(HobTransmission, AgreesInMotionWithAnInterferometerThatErrsItself) {
   const HobAnalysis a =
-      Analysed(Shipped("hob_transmission.toml", {"interferometer.stops=0"}), Estimator::kPublished);
+      Analysed(Shipped("hob_transmission.toml", {"interferometer.stops=0", "mechanics.fidelity=kinematic"}), Estimator::kPublished);
   const auto& one_place = a.encoder_against_one_place.front();
   ASSERT_EQ(one_place.order, 1);
   // 0.3 arcsec of its calibrator, in full with one place of the head; over two nearly opposite ones a tenth of it.
@@ -197,7 +191,7 @@ TEST(HobTransmission, AgreesInMotionWithAnInterferometerThatErrsItself) {
 }
 
 TEST(HobTransmission, HasALineAtOrder22AndTheSameHigherOrdersInBothPositions) {
-  const HobAnalysis a = Analysed(AsItSays(), Estimator::kRigorous);
+  const HobAnalysis a = Analysed(test::AsShipped("hob_transmission.toml"), Estimator::kRigorous);
   for (const auto& direction : a.directions)
     EXPECT_TRUE(std::ranges::count(direction.lines, 22)) << "once a turn of the hob";
   for (const auto& order : a.separation->orders) {
@@ -208,7 +202,7 @@ TEST(HobTransmission, HasALineAtOrder22AndTheSameHigherOrdersInBothPositions) {
 }
 
 TEST(HobThreeHeads, TellAllOrdersOfTheEncoderFromThoseOfTheMachine) {
-  const test::BenchRun run = Shipped("hob_three_heads.toml");
+  const test::BenchRun& run = test::AsShipped("hob_three_heads.toml");
   const HobAnalysis a = Analysed(run, Estimator::kRigorous);
   for (const int order : {1, 2, 6}) {
     EXPECT_EQ(a.separation->At(order).status, OrderStatus::kSeparated) << order;

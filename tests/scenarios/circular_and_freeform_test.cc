@@ -1,6 +1,6 @@
 #include <Eigen/QR>
 
-#include "tests/support/angle_benches.h"
+#include "tests/scenarios/as_shipped.h"
 #include "twin/benches/circular_motion/analysis.h"
 #include "twin/report/evaluation.h"
 
@@ -20,7 +20,7 @@ const Evaluated& Circles(const std::string& file) {
   static std::map<std::string, Evaluated> evaluated;
   const auto found = evaluated.find(file);
   if (found != evaluated.end()) return found->second;
-  const test::BenchRun run = test::RunCircles(LoadScenario(test::ScenarioPath(file)));
+  const test::BenchRun& run = test::AsShipped(file);
   return evaluated[file] = {run, Analyse(run.scenario, run.readings, Estimator::kRigorous)};
 }
 
@@ -219,13 +219,10 @@ const EvaluatedFreeform& Freeform(const std::string& file) {
   static std::map<std::string, EvaluatedFreeform> evaluated;
   const auto found = evaluated.find(file);
   if (found != evaluated.end()) return found->second;
-  const Scenario scenario = LoadScenario(test::ScenarioPath(file));
-  const Bench& bench = BenchOf(scenario);
-  const nlohmann::json truth = bench.make_twin(scenario)->Truth();
-  const std::vector<Reading> readings = test::ReadingsOf(scenario);
-  const report::Evaluation e = bench.evaluate(scenario, readings, Estimator::kRigorous);
+  const auto& [scenario, readings, truth] = test::AsShipped(file);
+  const report::Evaluation e = BenchOf(scenario).evaluate(scenario, readings, Estimator::kRigorous);
   return evaluated[file] = {e.results, e.separation,
-                            bench.score(scenario, readings, truth, Estimator::kRigorous).json};
+                            BenchOf(scenario).score(scenario, readings, truth, Estimator::kRigorous).json};
 }
 
 double OfScore(const EvaluatedFreeform& e, const char* key) {

@@ -21,9 +21,12 @@ PolygonAnalysis Closed(const std::vector<Reading>& readings, const Scenario& sce
   return separate::turntable::AnalysePolygon(readings, scenario, estimator);
 }
 
+report::ScoredRun Scored(const test::BenchRun& run, Estimator estimator = Estimator::kRigorous) {
+  return benches::turntable::ScoreRun(run.scenario, run.readings, run.truth, estimator);
+}
+
 /// Mean of (error / u)^2, as `score` has it.
-double MeanSquaredScore(const test::BenchRun& run, const char* curve, Estimator estimator = Estimator::kRigorous) {
-  const report::ScoredRun scored = benches::turntable::ScoreRun(run.scenario, run.readings, run.truth, estimator);
+double MeanSquare(const report::ScoredRun& scored, const char* curve) {
   double sum = 0.0;
   int count = 0;
   for (const report::ScoredValue& v : scored.values) {
@@ -44,8 +47,9 @@ TEST(TurntablePolygon, KnowsTheEncodersCurveToFourThousandthsOfAnArcsecond) {
     EXPECT_TRUE(a.closure->hidden.empty());
     expanded += 2.0 * std::sqrt(a.closure->turntable.cov_rad2.diagonal().mean()) / arcsec / kSeeds;
     reading += a.closure->noise.u_rad / arcsec / kSeeds;
-    encoder += MeanSquaredScore(run, "turntable") / kSeeds;
-    faces += MeanSquaredScore(run, "polygon") / kSeeds;
+    const report::ScoredRun scored = Scored(run);
+    encoder += MeanSquare(scored, "turntable") / kSeeds;
+    faces += MeanSquare(scored, "polygon") / kSeeds;
   }
   // 0.0297 arcsec stated, of which the encoder's step is no normal scatter but nearly so; 1200 degrees of freedom a
   // run.
@@ -70,7 +74,7 @@ TEST(TurntablePolygon, MayLeanByHundredsOfArcseconds) {
           {fmt::format("seed={}", seed), fmt::format("turntable_procedure.tilts_arcsec=[{}]", p.tilt_arcsec),
            fmt::format("turntable_procedure.tilt_azimuths_deg=[{}]", p.azimuth_deg), fmt::format("polygon.faces={}", p.faces),
            fmt::format("turntable_procedure.positions={}", p.faces)}));
-      encoder += MeanSquaredScore(run, "turntable") / seeds;
+      encoder += MeanSquare(Scored(run), "turntable") / seeds;
     }
     // 10 degrees of freedom a run.
     EXPECT_GT(encoder, 0.2) << p.tilt_arcsec;
@@ -85,8 +89,8 @@ TEST(TurntablePolygon, IsScoredByWhatItsClampingsSee) {
     // Twelve faces: orders 12 and 24 are in the constants. Five clampings: order 5 is the faces'.
     const test::BenchRun run = test::RunBench(PolygonScenario({"polygon.faces=12", "turntable_procedure.positions=12", orders, highest,
                                                                    "turntable_procedure.polygon_offsets_deg=[3, 75, 147, 219, 291]"}));
-    EXPECT_LT(MeanSquaredScore(run, "turntable"), 4.0) << highest;
-    EXPECT_LT(MeanSquaredScore(run, "polygon"), 4.0) << highest;
+    const report::ScoredRun scored = Scored(run);
+    for (const char* curve : {"turntable", "polygon"}) EXPECT_LT(MeanSquare(scored, curve), 4.0) << highest << " " << curve;
   }
 }
 
@@ -115,13 +119,13 @@ TEST(TurntablePolygon, StatesTheBiasOfClosureByMeans) {
   const PolygonAnalysis published = Closed(run.readings, uneven, Estimator::kPublished);
   const double of_noise_arcsec = 0.03 * std::sqrt(10.0 / 480.0);
   EXPECT_GT(published.method_bias_rad / arcsec, 10.0 * of_noise_arcsec);
-  EXPECT_LT(MeanSquaredScore(run, "turntable", Estimator::kPublished), 2.0);
+  EXPECT_LT(MeanSquare(Scored(run, Estimator::kPublished), "turntable"), 2.0);
   for (const auto& term : published.closure->encoder.terms) {
     const HarmonicSettings& truth =
         TurntableOf(uneven).turntable.harmonics[static_cast<std::size_t>(term.order - 1)];
     EXPECT_LT(std::abs(term.amplitude_rad - truth.amplitude), 3.0 * term.u_amplitude_rad) << term.order;
   }
-  EXPECT_LT(MeanSquaredScore(run, "turntable"), 2.5) << "10 degrees of freedom";
+  EXPECT_LT(MeanSquare(Scored(run), "turntable"), 2.5) << "10 degrees of freedom";
 }
 
 TEST(TurntablePolygon, SaysWhatItsUncertaintyIsMadeOf) {
