@@ -1,6 +1,5 @@
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
-#include "twin/core/reading.h"
 #include "twin/core/scenario_uncertainty.h"
 #include "twin/core/schema_table.h"
 #include "twin/core/toml_reader.h"

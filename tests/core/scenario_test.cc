@@ -2,7 +2,6 @@
 
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
-#include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/bench_format.h"

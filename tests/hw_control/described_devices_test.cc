@@ -5,7 +5,6 @@
 #include "tests/hw_control/fake_controller.h"
 #include "tests/support/faults.h"
 #include "tests/support/kept_text.h"
-#include "twin/benches/rotary_4dof/settings.h"
 
 /// Instruments by their ready dialogues, each against a counterpart of its own on a serial line, and what a
 /// dialogue can say besides.

@@ -1,4 +1,3 @@
-#include "hw_bridge/serve/esp_commands.h"
 #include "hw_bridge/serve/esp_machine_conversation.h"
 #include "hw_bridge/serve/scpi_commands.h"
 #include "tests/hw_serve/serving.h"

@@ -1,4 +1,3 @@
-#include "tests/core/input_error.h"
 #include "tests/import/importing.h"
 #include "twin/benches/evaluated.h"
 #include "twin/import/import.h"

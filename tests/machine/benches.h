@@ -2,8 +2,6 @@
 
 #include "tests/support/faults.h"
 #include "tests/support/memory_log.h"
-#include "twin/benches/circular_motion/settings.h"
-#include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/registry.h"
 #include "twin/procedure/machine_options.h"
 

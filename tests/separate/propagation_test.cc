@@ -4,7 +4,6 @@
 #include "twin/benches/rotary_4dof/estimators/harmonic_u.h"
 #include "twin/benches/rotary_4dof/estimators/prediction.h"
 #include "twin/core/errors.h"
-#include "twin/core/linear_algebra.h"
 
 namespace twinbench::separate {
 namespace {

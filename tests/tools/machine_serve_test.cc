@@ -1,6 +1,5 @@
 #include "tests/tools/served_program.h"
 #include "twin/core/run_record.h"
-#include "twin/core/stream.h"
 
 /// `serve` and `measure` of every bench; serve_test.cc has what only the rotary one does.
 namespace twinbench::test {

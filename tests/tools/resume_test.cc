@@ -2,7 +2,6 @@
 
 #include "tests/tools/program_here.h"
 #include "tools/twinbench/measured_run.h"
-#include "twin/procedure/attempts.h"
 
 /// Runs that are broken off at any moment and taken up again by another process.
 namespace twinbench::test {
