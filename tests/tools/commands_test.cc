@@ -16,7 +16,6 @@ using Commands = SmallProgram;
 TEST_F(Commands, ANewScenarioSaysWhatTheDefaultsSay) {
   for (const std::string& bench : BenchNames()) {
     Succeed({"new", bench, "-o", bench + ".toml"});
-    EXPECT_THAT(Succeed({"check", bench + ".toml"}), HasSubstr(": fine. Bench " + bench));
     EXPECT_EQ(WriteScenario(LoadScenario(At(bench + ".toml"))),
               WriteScenario(ParseScenario("bench = \"" + bench + "\"\n", "defaults", "", {})));
   }
@@ -75,21 +74,23 @@ TEST_F(Commands, ACheckForetellsThatARunComesToNothingOrLosesReadings) {
 }
 
 TEST_F(Commands, WithoutAnyNoiseEveryBenchIsCheckedRunAndScored) {
+  const std::string room = "environment.sensor_noise_mK=0";
   const std::map<std::string, std::vector<std::string>> none = {
-      {"rotary_4dof", {"amplifier.noise_mV=0", "procedure.positions=12", "procedure.shifts=[0, 1, 5]", "mechanics.fidelity=kinematic"}},
-      {"turntable_autocollimator", {"autocollimator.noise_arcsec=0"}},
-      {"circular_motion", {"machine.noise_um=0", "bar.noise_um=0", "bar.resolution_um=0", "grid.noise_um=0", "encoder.noise_arcsec=0",
+      {"rotary_4dof",
+       {room, "amplifier.noise_mV=0", "procedure.positions=12", "procedure.shifts=[0, 1, 5]", "mechanics.fidelity=kinematic"}},
+      {"turntable_autocollimator", {room, "autocollimator.noise_arcsec=0"}},
+      {"circular_motion", {room, "machine.noise_um=0", "bar.noise_um=0", "bar.resolution_um=0", "grid.noise_um=0", "encoder.noise_arcsec=0",
                            "circular_procedure.points=36", "circular_procedure.stops=6", "circular_procedure.feeds_mm_min=[1000]"}},
-      {"encoder_comparison", {"device.noise_deg=0"}},
+      {"encoder_comparison", {room, "device.noise_deg=0"}},
       {"hob_transmission", {"interferometer.noise_arcsec=0", "hob_procedure.turns=2", "hob_procedure.samples_per_turn=250"}},
-      {"freeform_five_axis", {"qpd.noise_mV=0", "ccd.noise_px=0", "freeform_procedure.poses=25"}}};
+      {"freeform_five_axis", {room, "qpd.noise_mV=0", "ccd.noise_px=0", "freeform_procedure.poses=25"}}};
   for (const auto& [bench, sets] : none) {
     Write(bench + ".toml", "bench = \"" + bench + "\"\n");
-    std::vector<std::string> without = {"--set", "environment.sensor_noise_mK=0"};
+    std::vector<std::string> without;
     for (const std::string& set : sets) without.insert(without.end(), {"--set", set});
-    for (const std::vector<std::string>& command : {std::vector<std::string>{"check", bench + ".toml"}, {"run", bench + ".toml", "-o", bench}})
-      EXPECT_NE(Call(With(command, without)).exit_code, 1) << bench << " " << command[0];
-    EXPECT_NE(Call({"score", bench}).exit_code, 1) << bench;
+    EXPECT_THAT(Succeed(With({"check", bench + ".toml"}, without)), HasSubstr(": fine. Bench " + bench));
+    Succeed(With({"run", bench + ".toml", "-o", bench}, without));
+    Succeed({"score", bench});
   }
 }
 
