@@ -11,7 +11,7 @@ const kRuns = ["rotary", "turntable", "circles", "diagnosed"];
 before(() => {
   makeRun("rotary", scenario("rotary_4dof"), "--images");
   makeRun("turntable", scenario("turntable_shifts"));
-  makeRun("circles", scenario("circular_motion"));
+  makeRun("circles", scenario("circular_motion"), "--set", "circular_procedure.points=90");
   const small = ["--set", "procedure.positions=12", "--set", "procedure.shifts=[0,1,5]", "--set", "procedure.passes=[1,-1]"];
   makeRun("diagnosed", scenario("rotary_4dof"), ...small, "--set", 'effect=[{name="psd_roll", where="psd_b", roll_mrad=20.0}]');
   twinbench("diagnose", "diagnosed", "--scenario", scenario("rotary_4dof"), ...small);
