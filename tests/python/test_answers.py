@@ -48,8 +48,8 @@ class BesideTheCommandLine(unittest.TestCase):
         self.assertEqual(stated.summary, printed)
         self.assertEqual(plain(dict(stated)), self.json_of("uncertainty", self.folder / "run"))
         quick = tb.run(small("rotary_4dof").changed({"procedure.positions": 6, "procedure.shifts": [0, 1], "procedure.sweep_points": 3})).save(self.folder / "quick")
-        drawn = tb.uncertainty(quick, trials=200, seed=3, threads=2)
-        self.assertEqual(plain(dict(drawn)), self.json_of("uncertainty", self.folder / "quick", "--monte-carlo", "--trials", "200", "--seed", "3"))
+        drawn = tb.uncertainty(quick, trials=1000, seed=3, threads=2)
+        self.assertEqual(plain(dict(drawn)), self.json_of("uncertainty", self.folder / "quick", "--monte-carlo", "--trials", "1000", "--seed", "3"))
 
     def test_a_budget_of_sources(self):
         scenario = tb.Scenario(SCENARIOS / "stability.toml", {"procedure.stability_s": 60.0, "adc.samples": 100})
