@@ -43,8 +43,7 @@ TEST(PredictSpots, IsNaNWhenTheOrderIsEvanescent) {
 const Vector4 kMotion(20 * units::arcsec, -15 * units::arcsec, 30 * units::arcsec, 4 * units::um);
 
 Reading OneReading(double noise_m = 0.3e-6) {
-  Detectors d;
-  d.noise_m = noise_m;
+  Detectors d{.noise_m = noise_m};
   return ReadingOf(PredictSpots(kMotion, Bench()), d, nullptr);
 }
 
@@ -70,8 +69,7 @@ TEST(Measure, NeverGivesANumberForAReadingThatHasNone) {
 
 TEST(Measure, StatesACovarianceThatMatchesTheScatter) {
   constexpr int kRuns = 500;
-  Detectors d;
-  d.noise_m = 0.3e-6;
+  Detectors d{.noise_m = 0.3e-6};
   Stream noise(1, "test.measure");
   double sum = 0.0;
   for (int run = 0; run < kRuns; ++run) {

@@ -13,8 +13,7 @@ TEST(Servo, IntegralStopsWhileTheTorqueIsAtItsLimit) {
 }
 
 TEST(LuGreFriction, SlipsAtTheCoulombTorqueAndSticksLikeASpring) {
-  FrictionParameters p;
-  p.coulomb_Nm = 0.2;
+  FrictionParameters p{.coulomb_Nm = 0.2};
   LuGreFriction slipping(p, 0.1);
   double torque = 0.0;
   for (int i = 0; i < 1000; ++i) torque = slipping.Torque(0.5, 1e-3);
@@ -27,8 +26,7 @@ TEST(LuGreFriction, SlipsAtTheCoulombTorqueAndSticksLikeASpring) {
 }
 
 TEST(LuGreFriction, IsStableForStepsFarLongerThanItsBristles) {
-  FrictionParameters p;
-  p.coulomb_Nm = 0.5;
+  FrictionParameters p{.coulomb_Nm = 0.5};
   LuGreFriction friction(p, 0.1);
   // One step slides 2000 presliding lengths. The bristle damping acts while they bend, in the first step only.
   friction.Torque(1.0, 0.1);

@@ -54,8 +54,7 @@ TEST(Compensate, GoesOnFromACompensationThatWasAtWork) {
 
 TEST(Compensate, RefusesWhatATableOfFewEntriesCannotFollow) {
   const SpectrumBench bench = BenchWith({{1, 7, 0.4}, {90, 1, 2.0}}, 0.1 * arcsec);
-  CompensationOptions options;
-  options.points = 200;
+  CompensationOptions options{.points = 200};
   const Compensation compensation = Compensate(bench.Read({EvenPositions(), Between(1)}), options);
   EXPECT_THAT(compensation.Orders(LineFate::kCompensated), ElementsAre(1));
   EXPECT_THAT(compensation.Orders(LineFate::kTooFine), ElementsAre(90));

@@ -138,13 +138,11 @@ TEST(SeparateHeads, SayWhyThereIsNoCurve) {
   std::vector<Reading> readings = Ring{}.Readings();
   for (Reading& r : readings) r.time = Time(FromSeconds(r.reading));
   EXPECT_KEPT(SeparateHeads(readings).not_separated);
-  Ring part;
-  part.stops = 360;
+  Ring part{.stops = 360};
   readings = part.Readings();
   readings.resize(300);
   EXPECT_KEPT(SeparateHeads(readings).not_separated);
-  Ring alike;
-  alike.heads_deg = {0.0, 360.0};
+  Ring alike{.heads_deg = {0.0, 360.0}};
   EXPECT_KEPT(SeparateHeads(alike.Readings()).not_separated);
 }
 
@@ -208,8 +206,7 @@ TEST(SeparateByTime, TellsTheRingFromTorqueAndFriction) {
 }
 
 TEST(SeparateByTime, CountsForTheRingWhatOneSpeedDoesNotTell) {
-  Coast bench;
-  bench.speeds_rad_s = {30.0};
+  Coast bench{.speeds_rad_s = {30.0}};
   const TimeReversal found = SeparateByTime(bench.Readings());
   ASSERT_EQ(found.not_separable.size(), 1u);
   EXPECT_TRUE(found.torque.orders.empty());
@@ -246,8 +243,7 @@ TEST(SeparateByTime, CoversTheRingOverSeedsAndTellsTheNoiseOfATime) {
 }
 
 TEST(SeparateByTime, SaysWhyThereIsNoCurve) {
-  Coast bench;
-  bench.turns = 3;
+  Coast bench{.turns = 3};
   EXPECT_KEPT(SeparateByTime(bench.Readings()).not_separated);
   EXPECT_KEPT(DynamicReversal({}).not_separated);
 }

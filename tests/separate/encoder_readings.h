@@ -65,8 +65,7 @@ struct Comparison {
   void AddPass(int setup, int pass, int direction, Stream& stream, std::vector<Reading>& readings) const {
     const int count = static_cast<int>(std::lround(stops * turns));
     for (int k = 0; k < count; ++k) {
-      Reading r;
-      r.reading = static_cast<int>(readings.size());
+      Reading r{.reading = static_cast<int>(readings.size())};
       r.time = Time(FromSeconds(r.reading));
       r.setup = setup;
       r.pass = pass;

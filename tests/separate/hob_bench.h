@@ -46,8 +46,7 @@ inline HobSample SampleAt(const HobMachine& machine, const Mounting& at, double 
                           Stream& noise) {
   const double head_rad = at.head_deg * units::deg;
   const double error_rad = ValueOf(machine.transmission, th_rad) + drift_rad;
-  HobSample s{.setup = at.setup, .pass = at.pass, .direction = at.direction};
-  s.head_rad = head_rad;
+  HobSample s{.setup = at.setup, .pass = at.pass, .direction = at.direction, .head_rad = head_rad};
   s.table_encoder_rad =
       th_rad + ValueOf(machine.encoder, th_rad - head_rad) + machine.noise_arcsec * kArcsec * noise.Normal();
   s.hob_encoder_rad = 0.3 + (th_rad - error_rad) / kTestRatio;  // the hob's count starts anywhere
@@ -77,9 +76,7 @@ inline std::vector<HobSample> Samples(const HobMachine& machine, const std::vect
 }
 
 inline TransmissionOptions OrdersUpTo(int max_order) {
-  TransmissionOptions options;
-  options.max_order = max_order;
-  return options;
+  return TransmissionOptions{.max_order = max_order};
 }
 
 /// One set-up a head, four turns forward.

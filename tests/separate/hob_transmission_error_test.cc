@@ -315,8 +315,7 @@ TEST(MeasurePositions, RefusesAnglesThatWrapWrongRatiosHeadsThatMoveOrAreMissing
   for (HobSample& s : wrapped) s.table_encoder_rad = std::fmod(s.table_encoder_rad, kTestTurn_rad);
   moved[7].head_rad += 1e-3;
   missing[7].head_rad = kNaN;
-  TransmissionOptions wrong;
-  wrong.table_turns_per_hob_turn = 2.0 / 43.0;
+  TransmissionOptions wrong{.table_turns_per_hob_turn = 2.0 / 43.0};
   EXPECT_KEPT(MessageOf([&] { MeasurePositions(Samples(Machine(), Heads({0.0})), wrong); }));
   const auto turned = Samples(Machine(), {{0, 10.0, 1, 0, 1}, {0, 11.0, -1, 1, 1}});
   const auto aimless = Samples(Machine(), {{0, 10.0, 0, 0, 1}});

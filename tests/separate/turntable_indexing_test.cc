@@ -23,9 +23,7 @@ std::vector<Seat> Seats(int n, const std::vector<int>& shifts) {
 }
 
 IndexingOptions NoiseOf(double u_rad) {
-  IndexingOptions options;
-  options.noise = Stated(u_rad);
-  return options;
+  return IndexingOptions{.noise = Stated(u_rad)};
 }
 
 IndexingOptions Options(double u_rad, double gamma_rad = 0.0) {

@@ -146,8 +146,7 @@ TEST(CheckModel, LeavesNothingOfAKnownCurveWithoutNoise) {
   Stream stream(1, "test.turntable");
   TrueBench bench = PublishedBench(0.0, stream);
   bench.tooth_rad.assign(360, 0.0);
-  IndexingOptions options;
-  options.noise = Stated(0.0);
+  IndexingOptions options{.noise = Stated(0.0)};
   const auto found = SeparateIndexing(ReadCircles(bench, TwoTilts(), 72, stream), options);
   auto stops = CheckStops(bench, TwoTilts()[0], 2, stream);
   stops[7].x_rad = kNaN;
@@ -167,8 +166,7 @@ TEST(CheckModel, ExpectsWhatIsLeftOfThePublishedTurntable) {
     for (int seed = 0; seed < kSeeds; ++seed) {
       Stream stream(static_cast<std::uint64_t>(seed), "test.turntable");
       const TrueBench bench = PublishedBench(u_rad, stream);
-      IndexingOptions options;
-      options.u_multitooth_rad = 0.3 * arcsec;
+      IndexingOptions options{.u_multitooth_rad = 0.3 * arcsec};
       const auto found = SeparateIndexing(ReadCircles(bench, TwoTilts(), 72, stream, passes), options);
       const HarmonicModel model = FitHarmonics(found.turntable, ChooseHighestOrder(found.turntable));
       const auto check = CheckModel(model, CheckStops(bench, TwoTilts()[0], passes, stream), found.roll,
