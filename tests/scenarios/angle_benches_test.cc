@@ -158,7 +158,8 @@ TEST(HobTransmission, FindsTheEncoderOverSeedsAndAgreesAtRestToTheNoiseWithAPerf
 TEST(HobTransmission, KnowsItsEncoderAtRestNoBetterThanInItsSteps) {
   for (const char* steps : {"table_encoder.interpolation=1", "table_encoder.interpolation=7",
                             "table_encoder.interpolation=50", "hob_encoder.lines=100"}) {
-    const test::BenchRun run = Shipped("hob_transmission.toml", {steps, "mechanics.fidelity=kinematic"});
+    const test::BenchRun run =
+        Shipped("hob_transmission.toml", {steps, "mechanics.fidelity=kinematic", "hob_procedure.turns=2", "hob_procedure.samples_per_turn=360"});
     const auto scored = benches::hob::ScoreRun(run.scenario, run.readings, run.truth, Estimator::kRigorous).json;
     const double chi2 = scored.at("interferometer at rest").at("amplitude").at("mean_chi2").get<double>();
     EXPECT_LT(chi2, 4.0) << steps;
