@@ -71,7 +71,7 @@ TEST_F(AutocollimatorSweep, IsDiagnosedInTheSenseThatItHas) {
 
 /// At even steps of 2 arcsec a period of 23.7 looks like one of 2.18, and what is shown has the ripple itself in it.
 TEST_F(AutocollimatorSweep, HasTheLongestOfThePeriodsThatLookAlike) {
-  for (const auto& [scale, period_arcsec] : {std::pair{-0.985, 23.7}, std::pair{1.0, 150.0}, std::pair{1.002, 1.0 / (1.0 / 1.7 - 0.5)}}) {
+  for (const auto& [scale, period_arcsec] : {std::pair{-0.985, 23.7}, std::pair{1.0, 23.7}, std::pair{1.0, 150.0}, std::pair{1.002, 1.0 / (1.0 / 1.7 - 0.5)}}) {
     Stream noise(7, "autocollimator.noise");
     std::string text = "generator [arcsec],autocollimator x [arcsec],autocollimator y [arcsec]\n";
     for (const double way : {1.0, -1.0})
