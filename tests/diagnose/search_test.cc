@@ -72,6 +72,7 @@ TEST(Scanner, GivesTheBayesFactorOfOneColumnInClosedForm) {
     mean += std::exp(-0.5 * std::log1p(d2) - half * std::log(1.0 - explained / power)) / 3.0;
   }
   EXPECT_NEAR(evidence.log_bayes(0, 0), std::log(mean), 1e-8);
+  EXPECT_EQ(Scanner(c.run, noise, projector, c.families, 3).Scan(Project(projector, {}, white), {}).log_bayes, evidence.log_bayes);
 }
 
 TEST(Search, PicksTwoCausesAtOnceUnlessFewerAreAllowed) {

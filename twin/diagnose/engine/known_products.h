@@ -13,7 +13,7 @@ namespace twinbench::diagnose {
 class KnownProducts {
  public:
   /// Keeps references.
-  KnownProducts(const LinearRun& run, const NoiseModel& noise, const std::vector<Bundle>& bundles, int threads)
+  KnownProducts(const LinearRun& run, const NoiseModel& noise, const std::vector<Bundle>& bundles, int threads = 1)
       : run_(run), noise_(noise), bundles_(bundles), threads_(threads) {}
 
   /// S'F'Y of every bundle with F the whitening: all its grid points one after the other x columns of Y.

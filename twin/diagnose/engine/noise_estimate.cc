@@ -70,18 +70,26 @@ Scatter FromNeighbours(const Schedule& s, const Eigen::VectorXd& y, const Eigen:
   return SpreadOf(second);
 }
 
-/// Set-up, direction, and the stop to a microradian.
-using Stop = std::tuple<int, int, long long>;
-
-Stop StopOf(const Schedule& s, int i) {
-  return {s.setup[i], s.direction[i], std::llround(s.reference_rad[i] / units::urad)};
+/// Readings of one set-up and direction whose angles differ by no more than `same_rad` are at one stop.
+std::vector<int> StopsOf(const Schedule& s, double same_rad) {
+  std::vector<int> order(s.Readings()), stop(s.Readings());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](int i) { return std::tuple(s.setup[i], s.direction[i], s.reference_rad[i]); });
+  int begin = order.empty() ? 0 : order.front(), number = 0;
+  for (const int i : order) {
+    const bool is_here = s.setup[i] == s.setup[begin] && s.direction[i] == s.direction[begin] &&
+                         s.reference_rad[i] - s.reference_rad[begin] <= same_rad;
+    if (!is_here) begin = i, ++number;
+    stop[i] = number;
+  }
+  return stop;
 }
 
-Scatter FromRepeats(const Schedule& s, const Eigen::VectorXd& y, const Eigen::VectorXd& variance) {
-  std::map<Stop, int> seen;
+Scatter FromRepeats(const Schedule& s, const std::vector<int>& stop, const Eigen::VectorXd& y, const Eigen::VectorXd& variance) {
+  std::map<int, int> seen;
   std::vector<int> first(s.Readings(), -1);  // of the pass before that took the same stop
   for (int i = 0; i < s.Readings(); ++i) {
-    const auto [found, is_new] = seen.try_emplace(StopOf(s, i), i);
+    const auto [found, is_new] = seen.try_emplace(stop[i], i);
     if (!is_new && s.pass[found->second] != s.pass[i]) first[i] = found->second;
   }
   std::vector<double> differences;
@@ -95,11 +103,11 @@ Scatter FromRepeats(const Schedule& s, const Eigen::VectorXd& y, const Eigen::Ve
 }
 
 /// Where no pass goes from stop to stop: what is not the same at a stop that was reached in one direction again.
-Scatter AtOneStop(const Schedule& s, const Eigen::VectorXd& y, const Eigen::VectorXd& variance) {
-  std::map<Stop, std::vector<int>> at;
-  for (int i = 0; i < s.Readings(); ++i) at[StopOf(s, i)].push_back(i);
+Scatter AtOneStop(const std::vector<int>& stop, const Eigen::VectorXd& y, const Eigen::VectorXd& variance) {
+  std::map<int, std::vector<int>> at;
+  for (int i = 0; i < std::ssize(stop); ++i) at[stop[i]].push_back(i);
   double squares = 0.0, count = 0.0;
-  for (const auto& [stop, readings] : at) {
+  for (const auto& [number, readings] : at) {
     double weights = 0.0, mean = 0.0;
     for (const int i : readings) weights += 1.0 / variance[i];
     for (const int i : readings) mean += y[i] / variance[i] / weights;
@@ -137,13 +145,14 @@ bool IsInAnyOrder(const Schedule& s) {
 
 }  // namespace
 
-double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residual_rad,
-                         const Eigen::VectorXd& relative) {
+double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residual_rad, const Eigen::VectorXd& relative,
+                         double same_rad) {
   const Eigen::VectorXd variance =
       relative.size() > 0 ? relative.cwiseAbs2() : Eigen::VectorXd::Ones(residual_rad.size()).eval();
+  const std::vector<int> stop = StopsOf(schedule, same_rad);
   double estimate_rad = SmallerOrMean(FromNeighbours(schedule, residual_rad, variance),
-                                      FromRepeats(schedule, residual_rad, variance));
-  if (!std::isfinite(estimate_rad)) estimate_rad = AtOneStop(schedule, residual_rad, variance).sd;
+                                      FromRepeats(schedule, stop, residual_rad, variance));
+  if (!std::isfinite(estimate_rad)) estimate_rad = AtOneStop(stop, residual_rad, variance).sd;
   if (IsInAnyOrder(schedule)) {
     for (const bool by_direction : {true, false})
       estimate_rad = std::min(estimate_rad, OnAxis(schedule, residual_rad, variance, by_direction).sd);

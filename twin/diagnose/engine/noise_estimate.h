@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "twin/core/rounding.h"
+#include "twin/core/units.h"
 #include "twin/diagnose/engine/linear_run.h"
 
 namespace twinbench::diagnose {
@@ -15,9 +16,11 @@ namespace twinbench::diagnose {
 ///
 /// @param relative  Deviation of each reading in units of the one that is estimated, of readings that are means of
 ///                  unlike many; empty: all are alike.
+/// @param same_rad  By how much angles differ at one stop. Of angles that an encoder shows it is more than their noise: else only
+///                  readings of the same noise are at the same stop.
 ///
 /// Standard uncertainty with n readings: about 1 / sqrt(n) of the value (600 readings: 4 %).
 double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residual_rad,
-                         const Eigen::VectorXd& relative = {});
+                         const Eigen::VectorXd& relative = {}, double same_rad = units::urad);
 
 }  // namespace twinbench::diagnose

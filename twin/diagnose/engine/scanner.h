@@ -73,7 +73,7 @@ class Scanner {
   /// Keeps references: run, projector and families must outlive the scanner; the noise model is copied, for an
   /// analysis that has both may be moved.
   Scanner(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
-          const std::vector<Family>& families, int threads);
+          const std::vector<Family>& families, int threads = 1);
 
   Evidence Scan(const Projected& data, const Deflation& deflation) const;
 
