@@ -357,7 +357,7 @@ TEST(Mangled, AnAutocollimatorWhoseAxesAreExchangedIsRefusedAndOneOfOtherSignsDo
     for (Reading& r : reversed) r.autocollimator_yaw_rad *= -1.0, r.autocollimator_tilt_rad *= -1.0;
     EXPECT_EQ(Said(good, scenario), "-");
     EXPECT_THAT(Said(exchanged, scenario), HasSubstr("cannot be: autocollimator_x_arcsec shows what the scenario says of"));
-    EXPECT_THAT(Said(reversed, scenario), HasSubstr("doubtful: autocollimator_y_arcsec goes the other way"));
+    EXPECT_THAT(InLines(DoubtsAbout(reversed, scenario)), HasSubstr("doubtful: autocollimator_y_arcsec goes the other way"));
   }
 }
 
@@ -369,12 +369,27 @@ TEST(Mangled, ANulledFaceIsDoubtedInAnotherUnitAndATableOfFacesIsNot) {
   const TurntableProcedureSettings& procedure = TurntableOf(scenario).turntable_procedure;
   for (Reading& r : of_table) {
     r.autocollimator_yaw_rad *= 1e3;
-    r.target_rad = procedure.Of(procedure.polygon_offsets_rad, r.setup) - r.reference_rad;
+    r.target_rad = procedure.Of(procedure.polygon_offsets_rad, r.setup) - r.reference_rad + (r.position == 0 ? units::turn : 0.0);
     r.extra.clear();
   }
   EXPECT_EQ(Said(good, scenario), "-");
   EXPECT_THAT(Said(far, scenario), HasSubstr("as far from zero as it is brought"));
   EXPECT_THAT(Said(of_table, scenario), Not(HasSubstr("as far from zero")));
+}
+
+TEST(Mangled, WhatANulledFaceHasLeftIsDoubtedWhereTheTurntableDoesNotStandBesideIt) {
+  const Scenario scenario = LoadScenario(test::ScenarioPath("turntable_polygon.toml"), {});
+  const Rows good = test::ReadingsOf(scenario);
+  const auto said = [&](const std::function<double(std::size_t)>& x) {
+    Rows mangled = good;
+    for (std::size_t i = 0; i < good.size(); ++i) mangled[i].autocollimator_yaw_rad = x(i);
+    return Said(mangled, scenario);
+  };
+  const auto x = [&](std::size_t i) { return good[i % good.size()].autocollimator_yaw_rad; };
+  EXPECT_EQ(said([&](std::size_t i) { return x(i); }), "-");
+  for (const auto& mangled : std::vector<std::function<double(std::size_t)>>{
+           [&](std::size_t i) { return x(7919 * i); }, [&](std::size_t i) { return 1e-3 * x(i); }, [&](std::size_t i) { return -x(i); }})
+    EXPECT_THAT(said(mangled), HasSubstr("as far as its axis from one reading of a place to the next"));
 }
 
 /// As a controller shows an axis that comes to one place again and again: its own last digits are no other place.

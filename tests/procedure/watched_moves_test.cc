@@ -142,11 +142,15 @@ class ZeroedTable : public RotaryTable {
     if (as_sent) as_sent();
   }
   bool Settles(Duration) override { return true; }
-  TableState State() override { return {0.0, zero_rad, true, false, true, 0, ""}; }
+  TableState State() override {
+    if (std::exchange(is_silent, false)) throw DeviceFault(FaultKind::kTimeout, "table", "no answer");
+    return {0.0, zero_rad, true, false, true, 0, ""};
+  }
   void Stop() override {}
   void Home() override {}
   std::function<void()> as_sent;
   double zero_rad = 0.0;
+  bool is_silent = false;
 };
 
 /// Two tables that are sent 30 deg one after the other.
@@ -185,6 +189,121 @@ TEST(WatchedTables, LookAnewBehindAWayAndBehindAStop) {
   pair.reference.zero_rad = 0.0;  // by hand, while nobody watches
   pair.SendBoth();
   EXPECT_TRUE(pair.watched.target().Settles(FromSeconds(1.0)));
+}
+
+/// Two axes that are where they were sent at once, or where somebody says. Switched off and on they count from another zero.
+class Switched : public fuzz::PlainMachine {
+ public:
+  explicit Switched(Clock& clock) : clock_(clock) {}
+  const std::vector<MachineAxis>& Axes() const override { return axes_; }
+  void StartMove(const std::vector<double>& to, double) override { ++moves, at = to, clock_.Wait(FromSeconds(1.0)); }
+  void StartArc(const Arc&) override {}
+  bool Settles(Duration) override { return true; }
+  void Stop() override {}
+  void Home() override { at = {0.0, 0.0}; }
+  std::vector<AxisState> State() override {
+    if (std::exchange(is_silent, false)) throw DeviceFault(FaultKind::kTimeout, "machine", "no answer");
+    std::vector<AxisState> states(2);
+    for (std::size_t k : {0, 1}) states[k].commanded = states[k].encoder = at[k];
+    return states;
+  }
+  std::vector<double> at = {0.0, 0.0};
+  bool is_silent = false;
+  int moves = 0;
+
+ private:
+  Clock& clock_;
+  std::vector<MachineAxis> axes_ = {{"a", true}, {"b", true}};
+};
+
+class ZerosOfAMachine : public testing::Test {
+ protected:
+  void Stand(const std::vector<double>& at) {
+    watched_.StartMove(at, 0.0);
+    watched_.Settles(FromSeconds(1.0));
+    for (int look = 0; look < 3; ++look) Look();
+  }
+  bool Look() { return watched_.State()[0].referenced; }
+  void Cut() {
+    machine_.is_silent = true;
+    EXPECT_EQ(test::KindOf([&] { watched_.State(); }), FaultKind::kTimeout);
+  }
+  fuzz::PlainClock clock_;
+  std::vector<AxisLimits> limits_;
+  Switched machine_{clock_};
+  WatchedMachine watched_{machine_, clock_, limits_};
+};
+
+TEST_F(ZerosOfAMachine, ThatCountsAnewBehindABrokenConnectionAreLostUntilTheyAreFound) {
+  Stand({1.0, -1.0});
+  Cut();
+  EXPECT_TRUE(Look());
+  Cut();
+  machine_.at = {0.0, 0.0};
+  EXPECT_FALSE(Look());
+  machine_.moves = 0;
+  EXPECT_EQ(test::KindOf([&] { watched_.StartMove({1.0, -1.0}, 0.0); }), FaultKind::kRestarted);
+  EXPECT_EQ(machine_.moves, 0);
+  watched_.Home();
+  EXPECT_TRUE(Look());
+  Stand({1.0, -1.0});
+}
+
+TEST_F(ZerosOfAMachine, AreLostOnAWayOnlyWhereItDoesNotLead) {
+  for (const auto& [shown, is_known] : {std::pair(1.5, true), {2.0, true}, {0.0, false}, {3.0, false}}) {
+    watched_.Home();
+    Stand({1.0, -1.0});
+    watched_.StartMove({2.0, -2.0}, 500.0);
+    machine_.at = {1.2, -1.2};
+    EXPECT_TRUE(Look());
+    Cut();
+    watched_.Stop();
+    machine_.at = {shown, -shown};
+    EXPECT_EQ(Look(), is_known) << shown;
+  }
+}
+
+TEST_F(ZerosOfAMachine, AreLostWithoutABreakWhereNoAxisGoesThatFastAndNotWhereAHandMayHaveMovedIt) {
+  Stand({1.0, -1.0});
+  clock_.Wait(FromSeconds(10.0));
+  machine_.at[0] = 0.0;
+  EXPECT_TRUE(Look());
+  Stand({1.0, -1.0});
+  machine_.at[0] = 0.0;
+  EXPECT_FALSE(Look());
+}
+
+TEST_F(ZerosOfAMachine, AreLostBehindABreakOnACircleThatTheyAreNotOn) {
+  Stand({0.05, 0.0});
+  watched_.StartArc({});
+  machine_.at = {0.0, 0.05};
+  Cut();
+  EXPECT_TRUE(Look());
+  Cut();
+  machine_.at = {0.0, 0.0};
+  EXPECT_FALSE(Look());
+}
+
+TEST(WatchedTables, CountFromAnotherZeroWhereBothStandElsewhereAtOnceOrOneBehindABreak) {
+  for (const bool both : {true, false}) {
+    for (const bool is_cut : {true, false}) {
+      PairOfTables pair;
+      const auto look = [&] { return pair.watched.target().State().referenced; };
+      pair.target.zero_rad = pair.reference.zero_rad = 30.0 * units::deg;
+      pair.SendBoth();
+      for (RotaryTable* table : {&pair.watched.target(), &pair.watched.reference()}) table->Settles(FromSeconds(1.0));
+      for (int k = 0; k < 3; ++k) look(), pair.watched.reference().State();
+      pair.bench.clock.Wait(FromSeconds(60.0));
+      pair.reference.is_silent = is_cut;
+      EXPECT_EQ(test::KindOf([&] { pair.watched.reference().State(); }).has_value(), is_cut);
+      pair.target.zero_rad = 0.0;
+      if (both) pair.reference.zero_rad = 0.0;
+      EXPECT_EQ(look(), !both && !is_cut);
+      pair.watched.target().Home();
+      EXPECT_TRUE(look());
+      EXPECT_EQ(pair.watched.reference().State().referenced, !both);
+    }
+  }
 }
 
 }  // namespace

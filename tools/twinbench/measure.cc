@@ -96,6 +96,7 @@ void CarryOutOn(RotaryBench devices, const Scenario& scenario, RunRecord& record
                 const std::string& kind, LivePage& page) {
   const bool is_real = IsRealBench(kind, devices.simulation);
   procedure::WatchedTables watched(devices, options.target, options.reference);
+  if (options.lost_zeros) watched.LoseZeros();
   RotaryBench bench = {devices.clock,
                        is_real ? watched.target() : devices.target,
                        is_real ? watched.reference() : devices.reference,
@@ -131,6 +132,7 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
   const auto bench =
       OpenedAgain(resumed ? file.attempts : 1, [&] { return OpenAnyBench(file, scenario, since_begin); });
   if (resumed) {
+    options.lost_zeros = MayHaveLostZeros(begun);
     TakeUp(begun, bench->Identity());
     options.kept = begun.readings;
     options.calls_done = begun.record->Calls();

@@ -109,6 +109,7 @@ procedure::MachineOptions Carefully(const hw::MachineFile& file, const hw::OpenM
   options.hottest_degC = kHottestRoom_degC;
   options.stop_requested = StopWasAsked;
   options.kept = begun.readings;
+  options.lost_zeros = MayHaveLostZeros(begun);
   if (const auto* replay = dynamic_cast<const RecordedMachine*>(&bench)) {
     options.attempts = replay->Attempts();
     if (!replay->IsOfSimulation() && !options.kept.empty())
@@ -139,6 +140,8 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
   // A simulated bench is read as often as its run asks, so that it is that run.
   const bool is_real = IsRealBench(kind, devices.simulation);
   procedure::WatchedMachine watched(devices.machine, devices.clock, options.axes);
+  const bool turns_alone = std::ranges::all_of(devices.machine.Axes(), &MachineAxis::is_rotary);  // others are homed by hand
+  if (options.lost_zeros && turns_alone) watched.LoseZeros();
   InstrumentSet& instruments = is_real ? doubted : devices.instruments;
   MachineController& machine = is_real ? watched : devices.machine;
   MachineBench bench = {devices.clock, machine, instruments, devices.fixture, devices.simulation, devices.indexer};

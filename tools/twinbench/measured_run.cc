@@ -117,6 +117,15 @@ Duration SinceBegin(const BegunRun& begun, const ClockMark& now) {
   return std::max<Duration>(last.time_since_epoch(), elapsed.time);
 }
 
+bool MayHaveLostZeros(const BegunRun& begun) {
+  if (!begun.record) return false;
+  return std::ranges::any_of(begun.record->FailedAttempts(), [&](const FailedAttempt& failed) {
+    const bool may_be_others = failed.fault == FaultName(FaultKind::kImplausible) && failed.text.find("zero") != std::string::npos;
+    return failed.reading == static_cast<int>(begun.readings.size()) &&
+           (may_be_others || failed.text.find("lost its origin") != std::string::npos);
+  });
+}
+
 void TakeUp(const BegunRun& begun, const std::string& identity) {
   const std::string source = begun.record->provenance().source;
   if (source != identity)

@@ -40,6 +40,9 @@ std::unique_ptr<RunRecord> BeginRun(const Scenario& scenario, const RunFolder& f
 /// @param now  What this computer's clocks show.
 Duration SinceBegin(const BegunRun& begun, const ClockMark& now = ClockMarkNow());
 
+/// Whether its last attempts ended where the zeros of axes may be others, and none was kept behind these.
+bool MayHaveLostZeros(const BegunRun& begun);
+
 /// What was kept is not measured again; whatever was tried after it counts as an attempt that failed.
 /// @throws BenchError if the run was begun on another bench.
 void TakeUp(const BegunRun& begun, const std::string& identity);

@@ -90,6 +90,7 @@ std::vector<Expected> ShownByCollimator(const TurntableSettings& s, const std::v
   return {{.column = "autocollimator_x_arcsec",
            .noise = noise,
            .nulled = Nulled_rad(s, readings),
+           .nulled_noise = s.ReadingNoise_rad(),
            .by_axes = [](const Reading& r) { return r.target_rad; }},
           {.column = "autocollimator_y_arcsec", .noise = s.ReadingNoise_rad(), .course = tilt, .not_in = "autocollimator_x_arcsec",
            .by_axes = StandsStill}};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -109,6 +110,10 @@ void CheckGoesWith(const Channel& channel, const Expected& expected, std::vector
   }
 }
 
+double SumOfProducts(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
 constexpr double kNoNoise = 100.0;    // of the noise: nor one that was stated wrong
 constexpr double kAsAtRandom = 0.6;   // of what readings taken at random differ by
 constexpr double kAlone = 50.0;       // times its scatter: no noise has such tails
@@ -158,6 +163,41 @@ void CheckSize(const Channel& channel, const Expected& expected, std::vector<Fin
         {false, fmt::format("{} scatters {:.3g} times as much as the scenario says, at most: is it in another unit, or is "
                             "the noise that is stated not its own?",
                             name, noise / expected.noise)});
+}
+
+/// What lies between readings of one place, but for what those that follow each other in the same directions have in common: a reversal.
+std::vector<double> BesideReversal(const Channel& channel, const std::vector<Pair>& pairs, std::vector<double> between) {
+  std::map<std::pair<int, int>, std::vector<std::size_t>> alike;
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    alike[{channel.reading[pairs[k].first]->direction, channel.reading[pairs[k].second]->direction}].push_back(k);
+  for (const auto& [directions, rows] : alike) {
+    double mean = 0.0;
+    for (const std::size_t k : rows) mean += between[k] / static_cast<double>(rows.size());
+    for (const std::size_t k : rows) between[k] -= mean;
+  }
+  return between;
+}
+
+/// What is left where a channel was nulled by its axis is what the axis stands beside: from one reading of a place to another both go alike,
+/// and its noise makes less of that.
+void CheckNulled(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
+  constexpr double kTimesU = 6.0, kNone = 3.0;  // of a slope: of normal errors, of readings that are in two pairs, one in 10^6 is as large
+  const std::vector<Pair> repeats = Repeats(channel);
+  if (!(expected.nulled > 0.0) || repeats.size() < kFewestPairs) return;
+  std::vector<double> stood;
+  for (const Reading* reading : channel.reading) stood.push_back(expected.by_axes(*reading));
+  std::vector<double> went = Between(repeats, stood);
+  for (double& way : went) way = std::remainder(way, units::turn);
+  const std::vector<double> by_axis = BesideReversal(channel, repeats, went),
+                            shown = BesideReversal(channel, repeats, Between(repeats, channel.value));
+  const double count = static_cast<double>(repeats.size()), squares = SumOfProducts(shown, shown);
+  const double slope = SumOfProducts(shown, by_axis) / squares;
+  const double left = std::max(SumOfProducts(by_axis, by_axis) - slope * slope * squares, 0.0);
+  const double u = std::sqrt(left / count / squares), least = 1.0 - 2.0 * std::pow(expected.nulled_noise, 2) * count / squares;
+  if (slope > std::min(least - kTimesU * u, kNone * u) && slope < kAnotherSize + kTimesU * u) return;
+  findings.push_back({false, fmt::format("{} goes {:.2g} times as far as its axis from one reading of a place to the next: is it in another order "
+                                         "or unit, or of another sign?",
+                                         channel.column->name, 1.0 / slope)});
 }
 
 void CheckOrdered(const Channel& channel, const Expected& expected, std::vector<Finding>& findings) {
@@ -242,6 +282,7 @@ void CheckAgainst(const Expected& expected, const Channel& channel, std::vector<
   CheckGoesWith(channel, expected, findings);
   CheckSize(channel, expected, findings);
   CheckOrdered(channel, expected, findings);
+  CheckNulled(channel, expected, findings);
   CheckCopied(channel, expected, findings);
   const std::size_t before = findings.size();
   CheckSingleValues(channel, expected, findings);

@@ -13,6 +13,7 @@ namespace {
 constexpr double kFollows = 0.5;  // of the course, at most, is left where it is shown
 constexpr double kUnlike = 0.7;   // and at least where it is not
 constexpr double kLater = 0.3;    // of what is left at a reading's own place, at most, is left at the one before
+constexpr double kLaterOneWay = 0.1;
 constexpr double kSeen = 5.0;     // times the noise
 
 const Channel* Named(const std::string& column, const std::vector<Channel>& channels) {
@@ -26,9 +27,9 @@ bool GoesBothWays(const Channel& channel) {
 }
 
 /// The course of the reading before, as an instrument shows it that answers one reading late. One way round alone a tilt to
-/// another side would do the same.
+/// another side would do the same, if it were that of the very step.
 bool ComesLate(const Channel& channel, const Expected& claim, double left) {
-  if (!GoesBothWays(channel) || left < kSeen * claim.noise * std::sqrt(static_cast<double>(channel.size()))) return false;
+  if (left < kSeen * claim.noise * std::sqrt(static_cast<double>(channel.size()))) return false;
   std::map<const Reading*, double> before;
   for (std::size_t i = 1; i < channel.size(); ++i) {
     if (channel.reading[i]->setup == channel.reading[i - 1]->setup)
@@ -42,7 +43,7 @@ bool ComesLate(const Channel& channel, const Expected& claim, double left) {
   }
   Expected late = claim;
   late.course = [&before](const Reading& reading) { return before.at(&reading); };
-  return SpreadAbout(same_rows, late).left < kLater * left;
+  return SpreadAbout(same_rows, late).left < (GoesBothWays(channel) ? kLater : kLaterOneWay) * left;
 }
 
 }  // namespace

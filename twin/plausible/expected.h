@@ -17,6 +17,7 @@ struct Expected {
   double noise = 0.0;  // of one reading, white, standard deviation [SI]; 0: not stated, or less than a step of the instrument
   double step = 0.0;   // least step of the reading [SI]; 0: not known
   double nulled = 0.0;  // to which it is brought back before every reading [SI]; 0: it is not
+  double nulled_noise = 0.0;  // of what is left then
   /// What was made on purpose in it beside what is measured, but for a constant of each set-up: a tilt [SI]; NaN: not known.
   std::function<double(const Reading&)> course = {};
   std::string not_in = {};  // the column that shows nothing of that course

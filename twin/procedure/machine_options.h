@@ -17,6 +17,7 @@ struct MachineOptions {
   double coldest_degC = -std::numeric_limits<double>::infinity();  // a thermometer beyond these is broken
   double hottest_degC = std::numeric_limits<double>::infinity();
   bool may_home = true;  // whether axes that have lost their origin may be driven to find it
+  bool lost_zeros = false;  // a run that is resumed ended where they may be others
   RunLog* log = nullptr;                      // none: only readings are kept, and the first fault ends the run
   std::function<bool()> stop_requested = {};  // asked between moves, waits and readings
   std::function<void(const DeviceFault&)> hear_fault = {};  // before anything is done about it

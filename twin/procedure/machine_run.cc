@@ -75,6 +75,7 @@ bool IsBeyondProof(const DeviceFault& fault, const MachineRunState& state, const
 MachineRunState StateBehind(const MachineBench& bench, const MachineOptions& options) {
   MachineRunState state{options.kept, {}};
   if (!bench.simulation && !options.kept.empty()) state.mounted = options.kept.back().setup;
+  state.is_doubted = options.lost_zeros;
   return state;
 }
 

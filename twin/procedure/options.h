@@ -32,6 +32,7 @@ struct Options {
   double coldest_degC = -std::numeric_limits<double>::infinity();  // a thermometer beyond these is broken
   double hottest_degC = std::numeric_limits<double>::infinity();
   bool may_home = true;  // whether a table that has lost its origin may be driven to find it
+  bool lost_zeros = false;  // a run that is resumed ended where they may be others
   bool hand_ends_mounting = false;  // a person says when a mounting is done; else the scenario's remount_s passes
   bool looks_at_encoders = true;  // about every block; false: of a recording that knows no such looks
   RunLog* log = nullptr;                 // none: only readings are kept, and the first fault ends the run

@@ -62,12 +62,16 @@ void EnterInto(Reading& reading, const Stood& stood) {
   EnterPlace(reading, stood, "after", stood.after);
 }
 
+double FurthestIn(const MachineAxis& axis, double took_s) {
+  constexpr double kLeast = 1e-3;                                             // m or rad
+  constexpr double kFastest_rad_s = 10.0 * units::turn, kFastest_m_s = 10.0;  // no axis of such a bench goes so fast
+  return kLeast + took_s * (axis.is_rotary ? kFastest_rad_s : kFastest_m_s);
+}
+
 void RequireOnWay(const MachineAxis& axis, double from, double to, double at, double took_s) {
   constexpr double kShareOfWay = 0.5, kLeast = 1e-3;              // m or rad: what takes up play, and overshoots
-  constexpr double kFastest_rad_s = 10.0 * units::turn, kFastest_m_s = 10.0;  // no axis of such a bench goes so fast
   const double slack = kShareOfWay * std::abs(to - from) + kLeast;
-  const double most = kLeast + took_s * (axis.is_rotary ? kFastest_rad_s : kFastest_m_s);
-  const bool is_too_far = std::abs(at - from) > most;
+  const bool is_too_far = std::abs(at - from) > FurthestIn(axis, took_s);
   if (!(at < std::min(from, to) - slack) && !(at > std::max(from, to) + slack) && !is_too_far) return;
   throw DeviceFault(is_too_far ? FaultKind::kImplausible : FaultKind::kMoved, axis.name,
                     fmt::format("was at {:.6f} {} and {:.3g} s later at {:.6f}, on the way to {:.6f}, which no axis does: somebody set its zero anew",

@@ -33,6 +33,9 @@ bool WasAtRest(const Reading& reading);
 double StoodAt(const std::string& table, const TableState& state);
 double StoodAt(const MachineAxis& axis, const AxisState& state);
 
+/// In that time no axis goes further [m or rad].
+double FurthestIn(const MachineAxis& axis, double took_s);
+
 /// @param took_s  At most, since it stood at `from`.
 /// @throws DeviceFault kImplausible where an axis that has just been sent from one place to another stands further from its begin than
 ///         any axis goes in that time, kMoved where it stands beyond that way by half of it: as it was sent its zero was set anew, which

@@ -11,11 +11,12 @@
 
 namespace twinbench::procedure {
 
-/// What encoders show on a way that axes were sent, all at once [m or rad]. Which axes are slow, and for how long
+/// What encoders show on a way that axes were sent, all at once, and where they stand [m or rad]. Which axes are slow, and for how long
 /// they may be, is learned from the ways that came to their end.
 class WatchedWay {
  public:
-  explicit WatchedWay(std::vector<MachineAxis> axes) : axes_(std::move(axes)), fastest_(axes_.size(), 0.0) {}
+  explicit WatchedWay(std::vector<MachineAxis> axes)
+      : axes_(std::move(axes)), fastest_(axes_.size(), 0.0), has_lost_zero_(axes_.size(), false) {}
   /// They stood at `from` and were sent to `to`; `at` is where they are since then, at most `took` later.
   /// @throws what RequireOnWay throws.
   void Begins(const std::vector<double>& from, const std::vector<double>& to, const std::vector<double>& at,
@@ -29,8 +30,23 @@ class WatchedWay {
   /// @throws what TellSentElsewhere throws.
   void RequireOurs(const std::vector<double>& commanded);
   void HasEnded();
-  /// What moves does not go straight, or not at its own speed.
-  void IsAnother() { to_.clear(); }
+  /// What moves does not go at its own speed. @param to  Where it goes straight; none: it does not.
+  void IsAnother(std::vector<double> to = {});
+  /// From the first look on that shows no motion they stand.
+  void HasStopped() { has_stopped_ = true; }
+
+  /// An answer stayed out: whoever is asked next may have been switched off and on.
+  void IsCut() { is_cut_ = true; }
+  bool WasCut() const { return is_cut_; }
+  /// Every look. An axis that does not stand where it stood, or is not on its way, counts from another zero (HasLostZero) if its connection was cut
+  /// or no axis is that fast.
+  /// @return whether all do that stood: elsewhere than they did.
+  bool Seen(const std::vector<double>& at, Time now);
+  bool HasLostZero(std::size_t axis) const { return has_lost_zero_[axis]; }
+  void LoseZeros() { has_lost_zero_.assign(axes_.size(), true); }
+  void HasFoundZeros();
+  /// @throws DeviceFault kRestarted.
+  void RequireZeros() const;
   /// NaN: unknown.
   double To(std::size_t axis) const { return axis < to_.size() ? to_[axis] : kNaN; }
 
@@ -38,9 +54,16 @@ class WatchedWay {
   bool IsSlow(const std::vector<double>& at, double in_s);
   bool HasFarToGo(const std::vector<double>& at) const;
 
+  enum class Course { kUnknown, kStands, kGoes };
+
   std::vector<MachineAxis> axes_;
   std::vector<double> fastest_;  // m/s or rad/s, ever
   std::vector<double> to_, at_;  // of this way; none: nothing is known of it
+  Course course_ = Course::kUnknown;
+  std::vector<double> target_, seen_;  // where it leads, and where they were last
+  Time seen_at_{};
+  bool is_cut_ = false, has_stopped_ = false;
+  std::vector<bool> has_lost_zero_;
   bool has_our_targets_ = false;
   Time shown_{};
   double slow_s_ = 0.0, slowest_s_ = 0.0;  // since when, and for how long at most on this way
@@ -61,11 +84,15 @@ class WatchedMachine : public MachineController {
   /// @return false at once where a look shows what whoever watches must see.
   /// @throws what WatchedWay::RequireOurs and Shows throw, RequireOnCircle, and the machine.
   bool Settles(Duration within) override;
-  std::vector<AxisState> State() override { return inner_.State(); }
-  void Stop() override { inner_.Stop(); }
-  void Home() override { inner_.Home(); }
+  /// Where an axis counts from another zero, it says that it has lost its origin until it has found that again.
+  std::vector<AxisState> State() override;
+  void Stop() override;
+  void Home() override;
+  /// As a run that ended left them.
+  void LoseZeros() { way_.LoseZeros(); }
 
  private:
+  double OffCircle_m(const std::vector<AxisState>& states) const;
   /// @throws DeviceFault kFollowing of axes that have left the circle which they were sent round.
   void RequireOnCircle(const std::vector<AxisState>& states) const;
 
@@ -83,6 +110,8 @@ class WatchedTables {
   WatchedTables(RotaryBench& bench, const TableLimits& target, const TableLimits& reference);
   RotaryTable& target() { return target_; }
   RotaryTable& reference() { return reference_; }
+  /// As WatchedMachine.
+  void LoseZeros();
 
  private:
   class Table : public RotaryTable {
@@ -91,13 +120,18 @@ class WatchedTables {
         : inner_(inner), clock_(clock), limits_(limits), way_({{name, true}}), other_(other) {}
     void StartMove(double angle_rad) override;
     bool Settles(Duration within) override;
-    TableState State() override { return inner_.State(); }
+    /// As WatchedMachine. Where both stand elsewhere at once, both count from another zero: no hand moves both.
+    TableState State() override;
     void Stop() override;
-    void Home() override { inner_.Home(); }
+    void Home() override;
+    void LoseZero() { way_.LoseZeros(); }
 
    private:
+    /// Both may hang on one controller.
+    auto AskBoth(auto&& ask);
+    bool IsElsewhere(const TableState& state);
     /// Where it stands before either of the two is sent: a zero may be set as the first is.
-    void LookBefore() { from_rad_ = inner_.EncoderAngle_rad(); }
+    void LookBefore() { from_rad_ = EncoderAngle_rad(); }
     void LookAtStart();
     /// @return false where it shows what whoever watches must see.
     bool LookOnWay();
