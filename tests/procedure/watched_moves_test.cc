@@ -37,6 +37,18 @@ class WayOfAxis : public testing::Test {
   Time begin_{};
 };
 
+TEST_F(WayOfAxis, OneThatIsAtItsEndBehindABreakSoonerThanItGoesCountsFromThere) {
+  EXPECT_EQ(StallOf({}), std::nullopt);
+  for (const auto& [after_s, is_lost] : {std::pair(0.1, true), {4.0, false}}) {
+    way_.HasFoundZeros();
+    way_.Begins({0.0}, {kWay}, {0.0}, begin_, Duration(0));
+    way_.Seen({0.0}, begin_);
+    way_.IsCut();
+    way_.Seen({kWay}, begin_ + FromSeconds(after_s));
+    EXPECT_EQ(way_.HasLostZero(0), is_lost);
+  }
+}
+
 TEST_F(WayOfAxis, WithoutAnyWayBeforeItIsSlowForAsLongAsTheLimitsSay) {
   EXPECT_EQ(StallOf({.begins_s = 4.0}), std::nullopt);
   EXPECT_NEAR(StallOf({.fails_s = 2.0}).value_or(0.0), 2.0 + kStall_s, 2.0 * kLook_s);
@@ -301,7 +313,7 @@ TEST(WatchedTables, CountFromAnotherZeroWhereBothStandElsewhereAtOnceOrOneBehind
       EXPECT_EQ(look(), !both && !is_cut);
       pair.watched.target().Home();
       EXPECT_TRUE(look());
-      EXPECT_EQ(pair.watched.reference().State().referenced, !both);
+      EXPECT_EQ(pair.watched.reference().State().referenced, !both && !is_cut);
     }
   }
 }

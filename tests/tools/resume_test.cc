@@ -157,6 +157,22 @@ struct RunToTakeUp {
   tools::BegunRun begun;
 };
 
+TEST(BegunRun, MayHaveLostZerosWhereItsLastAttemptsSaySo) {
+  const TemporaryFolder folder;
+  tools::BegunRun begun{RunRecord::Create(folder.path(), {}), std::vector<Reading>(3)};
+  const auto behind = [&](int reading, const char* fault, const char* text) {
+    begun.record->AttemptFailed(reading, {}, fault, text);
+    return tools::MayHaveLostZeros(begun);
+  };
+  EXPECT_FALSE(behind(2, "refused", "target: has lost its origin"));  // and found it
+  EXPECT_FALSE(behind(3, "timeout", "target: no answer"));
+  EXPECT_FALSE(behind(3, "implausible", "thermometer: 90 degC"));
+  EXPECT_TRUE(behind(3, "implausible", "target: somebody set its zero anew"));
+  begun.readings.resize(4);
+  EXPECT_FALSE(tools::MayHaveLostZeros(begun));
+  EXPECT_TRUE(behind(4, "refused", "target: has lost its origin"));
+}
+
 TEST(ResumedTime, IsNotMovedByAWallClockThatWasSetBetweenKillAndResume) {
   for (const double set_s : {0.0, 86400.0, -86400.0}) {
     const RunToTakeUp run;

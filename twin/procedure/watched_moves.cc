@@ -7,17 +7,12 @@
 #include <utility>
 
 #include "twin/core/device_fault.h"
-#include "twin/procedure/stood.h"
 #include "twin/procedure/whereabouts.h"
 
 namespace twinbench::procedure {
 namespace {
 
 constexpr Duration kWatchedEvery = std::chrono::milliseconds(100);
-constexpr double kShareOfSpeed = 0.1;
-constexpr double kLittleMore_s = 0.25, kTimesKnown = 2.0;
-constexpr double kNear = 1e-3;  // m or rad: where axes settle, as slowly as they like
-constexpr double kSameFromLookToLook = 1e-5;
 
 std::vector<double> EachOf(const std::vector<AxisState>& states, double AxisState::*what) {
   std::vector<double> all;
@@ -52,95 +47,6 @@ bool SettlesWatched(auto& moves, Duration within, const std::function<bool()>& l
 }
 
 }  // namespace
-
-void WatchedWay::Begins(const std::vector<double>& from, const std::vector<double>& to,
-                        const std::vector<double>& at, Time now, Duration took) {
-  for (std::size_t k = 0; k < to.size(); ++k) RequireOnWay(axes_[k], from[k], to[k], at[k], ToSeconds(took));
-  to_ = target_ = to, at_ = at, shown_ = now;
-  course_ = Course::kGoes, has_stopped_ = false;
-  slow_s_ = slowest_s_ = 0.0;
-  has_our_targets_ = false;
-}
-
-void WatchedWay::RequireOurs(const std::vector<double>& commanded) {
-  bool has_all = !to_.empty();
-  for (std::size_t k = 0; k < to_.size(); ++k) {
-    const bool is_ours = std::abs(commanded[k] - to_[k]) <= kSameTarget;
-    if (has_our_targets_ && !is_ours && !std::isnan(commanded[k])) TellSentElsewhere(axes_[k], to_[k], commanded[k]);
-    has_all = has_all && is_ours;
-  }
-  has_our_targets_ = has_all;
-}
-
-bool WatchedWay::IsSlow(const std::vector<double>& at, double in_s) {
-  bool is_slow = true;
-  for (std::size_t k = 0; k < at.size(); ++k) {
-    const double speed = std::abs(at[k] - at_[k]) / in_s;
-    fastest_[k] = std::fmax(fastest_[k], speed);
-    is_slow = is_slow && !(speed > kShareOfSpeed * fastest_[k]);
-  }
-  return is_slow;
-}
-
-bool WatchedWay::HasFarToGo(const std::vector<double>& at) const {
-  for (std::size_t k = 0; k < at.size(); ++k)
-    if (std::abs(to_[k] - at[k]) > kNear) return true;
-  return false;
-}
-
-void WatchedWay::Shows(const std::vector<double>& at, Time now, double stall_s) {
-  const double in_s = ToSeconds(now - shown_);
-  if (to_.empty() || !(in_s > 0.0)) return;
-  slow_s_ = IsSlow(at, in_s) && HasFarToGo(at) ? slow_s_ + in_s : 0.0;
-  slowest_s_ = std::max(slowest_s_, slow_s_);
-  at_ = at, shown_ = now;
-  if (!(slow_s_ > std::fmin(stall_s, kLittleMore_s + kTimesKnown * known_slow_s_))) return;
-  std::string where;
-  for (std::size_t k = 0; k < at.size(); ++k)
-    where += fmt::format("{}{} at {:.6f} {}", k > 0 ? ", " : "", axes_[k].name, at[k] / axes_[k].to_SI(),
-                         axes_[k].unit());
-  throw DeviceFault(FaultKind::kStalled, axes_.size() == 1 ? axes_[0].name : "machine",
-                    fmt::format("stands or creeps on its way, {}, for {:.1f} s", where, slow_s_));
-}
-
-void WatchedWay::HasEnded() {
-  if (!to_.empty()) known_slow_s_ = std::fmax(known_slow_s_, slowest_s_);
-  to_.clear();
-  HasStopped();
-}
-
-void WatchedWay::IsAnother(std::vector<double> to) {
-  to_.clear();
-  course_ = to.empty() ? Course::kUnknown : Course::kGoes, has_stopped_ = false;
-  target_ = std::move(to);
-}
-
-bool WatchedWay::Seen(const std::vector<double>& at, Time now) {
-  const bool was_cut = std::exchange(is_cut_, false), stood = course_ == Course::kStands;
-  bool all_elsewhere = stood, moves = seen_.empty();
-  for (std::size_t k = 0; k < at.size() && !seen_.empty(); ++k) {
-    const double target = course_ == Course::kGoes ? target_[k] : seen_[k];
-    const bool is_elsewhere = at[k] < std::min(seen_[k], target) - kNear || at[k] > std::max(seen_[k], target) + kNear;
-    const bool is_too_fast = stood && std::abs(at[k] - seen_[k]) > FurthestIn(axes_[k], ToSeconds(now - seen_at_));
-    if (course_ != Course::kUnknown && is_elsewhere && (was_cut || is_too_fast)) has_lost_zero_[k] = true;
-    all_elsewhere = all_elsewhere && is_elsewhere;
-    moves = moves || std::abs(at[k] - seen_[k]) > kSameFromLookToLook;
-  }
-  if (has_stopped_ && !moves) course_ = Course::kStands;
-  seen_ = at, seen_at_ = now;
-  return all_elsewhere;
-}
-
-void WatchedWay::HasFoundZeros() {
-  has_lost_zero_.assign(axes_.size(), false);
-  seen_.clear();
-  IsAnother();
-}
-
-void WatchedWay::RequireZeros() const {
-  for (std::size_t k = 0; k < axes_.size(); ++k)
-    if (has_lost_zero_[k]) throw DeviceFault(FaultKind::kRestarted, axes_[k].name, "has lost its origin: it counts from another zero than before");
-}
 
 std::vector<AxisState> WatchedMachine::State() {
   std::vector<AxisState> states = Ask(way_, [&] { return inner_.State(); });
@@ -233,7 +139,9 @@ bool WatchedTables::Table::IsElsewhere(const TableState& state) {
 
 TableState WatchedTables::Table::State() {
   TableState state = AskBoth([&] { return inner_.State(); });
-  if (IsElsewhere(state) && other_.IsElsewhere(AskBoth([&] { return other_.inner_.State(); })))
+  const bool was_cut = way_.WasCut(), had_zero = !way_.HasLostZero(0);
+  const bool are_elsewhere = IsElsewhere(state) && other_.IsElsewhere(AskBoth([&] { return other_.inner_.State(); }));
+  if (are_elsewhere || (was_cut && had_zero && way_.HasLostZero(0)))
     for (Table* table : {this, &other_}) table->LoseZero();
   state.referenced = state.referenced && !way_.HasLostZero(0);
   return state;
