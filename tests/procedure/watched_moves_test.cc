@@ -296,6 +296,15 @@ TEST_F(ZerosOfAMachine, AreLostBehindABreakOnACircleThatTheyAreNotOn) {
   EXPECT_FALSE(Look());
 }
 
+TEST(WatchedTables, CountFromAnotherZeroWhereBothAreBesideTheirWay) {
+  PairOfTables pair;
+  pair.SendBoth();
+  for (const double at_deg : {1.0, 0.0}) {
+    pair.target.zero_rad = pair.reference.zero_rad = at_deg * units::deg;
+    EXPECT_EQ(pair.watched.target().State().referenced && pair.watched.reference().State().referenced, at_deg > 0.0);
+  }
+}
+
 TEST(WatchedTables, CountFromAnotherZeroWhereBothStandElsewhereAtOnceOrOneBehindABreak) {
   for (const bool both : {true, false}) {
     for (const bool is_cut : {true, false}) {

@@ -83,7 +83,7 @@ void WatchedWay::IsAnother(std::vector<double> to) {
 
 bool WatchedWay::Seen(const std::vector<double>& at, Time now) {
   const bool was_cut = std::exchange(is_cut_, false), stood = course_ == Course::kStands;
-  bool all_elsewhere = stood, moves = seen_.empty();
+  bool all_elsewhere = course_ != Course::kUnknown && !seen_.empty(), moves = seen_.empty();
   for (std::size_t k = 0; k < at.size() && !seen_.empty(); ++k) {
     const double target = course_ == Course::kGoes ? target_[k] : seen_[k];
     const bool is_elsewhere = at[k] < std::min(seen_[k], target) - kNear || at[k] > std::max(seen_[k], target) + kNear;

@@ -37,7 +37,7 @@ class WatchedWay {
   bool WasCut() const { return is_cut_; }
   /// Every look. Of an axis that counts from another zero (HasLostZero) two hold: it does not stand where it stood, or is not on its way; it has
   /// come there faster than it goes; its connection was cut, and then all on that controller do.
-  /// @return whether all do that stood: elsewhere than they did.
+  /// @return whether all are elsewhere than they stood, or than their way leads.
   bool Seen(const std::vector<double>& at, Time now);
   bool HasLostZero(std::size_t axis) const { return has_lost_zero_[axis]; }
   void LoseZeros() { has_lost_zero_.assign(axes_.size(), true); }
