@@ -361,6 +361,13 @@ TEST(Mangled, AnAutocollimatorWhoseAxesAreExchangedIsRefusedAndOneOfOtherSignsDo
   }
 }
 
+TEST(Mangled, AnAutocollimatorThatIsLateByOneIsDoubtedWhereAllPassesGoOneWay) {
+  const Scenario scenario = LoadScenario(test::ScenarioPath("turntable_autocollimator.toml"), {"turntable_procedure.passes=[1]"});
+  const Rows good = test::ReadingsOf(scenario);
+  EXPECT_EQ(Said(good, scenario), "-");
+  EXPECT_THAT(Said(Late(good, scenario), scenario), HasSubstr("answer one reading late"));
+}
+
 TEST(Mangled, ANulledFaceIsDoubtedInAnotherUnitAndATableOfFacesIsNot) {
   const Scenario scenario = LoadScenario(test::ScenarioPath("turntable_polygon.toml"), {});
   const Rows good = test::ReadingsOf(scenario);

@@ -83,10 +83,11 @@ void WatchedWay::IsAnother(std::vector<double> to) {
 
 bool WatchedWay::Seen(const std::vector<double>& at, Time now) {
   const bool was_cut = std::exchange(is_cut_, false), stood = course_ == Course::kStands;
+  const double near = stood ? 0.1 * kNear : kNear;
   bool all_elsewhere = course_ != Course::kUnknown && !seen_.empty(), moves = seen_.empty();
   for (std::size_t k = 0; k < at.size() && !seen_.empty(); ++k) {
     const double target = course_ == Course::kGoes ? target_[k] : seen_[k];
-    const bool is_elsewhere = at[k] < std::min(seen_[k], target) - kNear || at[k] > std::max(seen_[k], target) + kNear;
+    const bool is_elsewhere = at[k] < std::min(seen_[k], target) - near || at[k] > std::max(seen_[k], target) + near;
     const double in_s = ToSeconds(now - seen_at_), own = fastest_[k] > 0.0 ? kTimesKnown * fastest_[k] * in_s : INFINITY;
     const bool is_too_fast = std::abs(at[k] - seen_[k]) > (stood ? FurthestIn(axes_[k], in_s) : kNear + own);
     const bool is_suspect = is_elsewhere + is_too_fast + was_cut > 1;
