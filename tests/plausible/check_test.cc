@@ -399,6 +399,12 @@ TEST(Mangled, WhatANulledFaceHasLeftIsDoubtedWhereTheTurntableDoesNotStandBeside
     EXPECT_THAT(said(mangled), HasSubstr("as far as its axis from one reading of a place to the next"));
 }
 
+TEST(Mangled, WhatANulledFaceHasLeftIsNoSingleValueWithinItsDeadband) {
+  const std::vector<std::string> wide = {"autocollimator.deadband_arcsec=0.3", "encoder.noise_arcsec=0.1"};
+  const Scenario scenario = LoadScenario(test::ScenarioPath("turntable_polygon.toml"), wide);
+  EXPECT_EQ(Said(test::ReadingsOf(scenario), scenario), "-");
+}
+
 /// As a controller shows an axis that comes to one place again and again: its own last digits are no other place.
 TEST(Plausible, AnAxisThatOnlyStandsAtOnePlaceIsNotElsewhere) {
   std::vector<Reading> readings = Readings(12);

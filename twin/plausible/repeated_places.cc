@@ -137,7 +137,7 @@ void CheckRepeatedPlaces(const Expected& expected, const Channel& channel, const
     if (std::isfinite(one)) sizes.push_back(std::abs(one));
   if (sizes.size() < kFewestToJudge) return;
   const double usual =
-      std::max({RobustDeviation(std::move(sizes)), expected.noise, expected.step, StepOf(channel)});
+      std::max({RobustDeviation(std::move(sizes)), expected.noise, expected.step, expected.nulled, StepOf(channel)});
   if (!(usual > LeastScatterOf(channel))) return;
   double times = kTimesOthers;
   std::size_t worst = channel.size();
