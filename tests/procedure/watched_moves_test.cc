@@ -210,16 +210,17 @@ class Switched : public fuzz::PlainMachine {
   const std::vector<MachineAxis>& Axes() const override { return axes_; }
   void StartMove(const std::vector<double>& to, double) override { ++moves, at = to, clock_.Wait(FromSeconds(1.0)); }
   void StartArc(const Arc&) override {}
-  bool Settles(Duration) override { return true; }
+  bool Settles(Duration) override { return !jogged_to; }
   void Stop() override {}
   void Home() override { at = {0.0, 0.0}; }
   std::vector<AxisState> State() override {
     if (std::exchange(is_silent, false)) throw DeviceFault(FaultKind::kTimeout, "machine", "no answer");
     std::vector<AxisState> states(2);
-    for (std::size_t k : {0, 1}) states[k].commanded = states[k].encoder = at[k];
+    for (std::size_t k : {0, 1}) states[k].encoder = at[k], states[k].commanded = jogged_to.value_or(at[k]);
     return states;
   }
   std::vector<double> at = {0.0, 0.0};
+  std::optional<double> jogged_to;
   bool is_silent = false;
   int moves = 0;
 
@@ -273,6 +274,15 @@ TEST_F(ZerosOfAMachine, AreLostOnAWayOnlyWhereItDoesNotLead) {
     machine_.at = {shown, -shown};
     EXPECT_EQ(Look(), is_known) << shown;
   }
+}
+
+TEST_F(ZerosOfAMachine, AreKnownWhereSomebodyElseMovesItOnItsWay) {
+  Stand({1.0, -1.0});
+  watched_.StartMove({2.0, -2.0}, 0.0);
+  machine_.jogged_to = 0.2;
+  EXPECT_EQ(test::KindOf([&] { watched_.Settles(FromSeconds(1.0)); }), FaultKind::kMoved);
+  machine_.at = {0.2, 0.2};
+  EXPECT_TRUE(Look());
 }
 
 TEST_F(ZerosOfAMachine, AreLostWithoutABreakWhereNoAxisGoesThatFastAndNotWhereAHandMayHaveMovedIt) {

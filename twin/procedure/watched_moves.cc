@@ -39,9 +39,9 @@ auto Ask(WatchedWay& way, auto&& ask) {
 
 /// Lets `within` pass and looks in between.
 /// @param look  false: no more.
-bool SettlesWatched(auto& moves, Duration within, const std::function<bool()>& look) {
+bool SettlesWatched(Duration within, const std::function<bool(Duration)>& settles, const std::function<bool()>& look) {
   for (Duration left = within;; left -= kWatchedEvery) {
-    if (moves.Settles(std::min(left, kWatchedEvery))) return true;
+    if (settles(std::min(left, kWatchedEvery))) return true;
     if (!look() || left <= kWatchedEvery) return false;
   }
 }
@@ -107,7 +107,8 @@ void WatchedMachine::StartTurning(std::size_t axis, double speed_rad_s, Duration
 }
 
 bool WatchedMachine::Settles(Duration within) {
-  const auto look = [this] {
+  const auto settle = [this](Duration slice) { return Ask(way_, [&] { return inner_.Settles(slice); }); };
+  const bool settles = SettlesWatched(within, settle, [this] {
     const std::vector<AxisState> states = State();
     for (std::size_t k = 0; k < states.size(); ++k)
       if (IsForOthers(states[k], way_.To(k) - states[k].encoder)) return false;
@@ -115,8 +116,7 @@ bool WatchedMachine::Settles(Duration within) {
     RequireOnCircle(states);
     way_.Shows(EachOf(states, &AxisState::encoder), clock_.Now(), LimitsOf(limits_, 0).stall_s);
     return true;
-  };
-  const bool settles = Ask(way_, [&] { return SettlesWatched(inner_, within, look); });
+  });
   if (settles) way_.HasEnded();
   return settles;
 }
@@ -190,11 +190,10 @@ bool WatchedTables::Table::LookOnWay() {
 
 bool WatchedTables::Table::Settles(Duration within) {
   for (Table* table : {this, &other_}) table->LookAtStart();
-  const bool settles = AskBoth([&] {
-    return SettlesWatched(inner_, within, [this] {
-      other_.LookOnWay();  // whatever else it shows is told when it is waited for
-      return LookOnWay();
-    });
+  const auto settle = [this](Duration slice) { return AskBoth([&] { return inner_.Settles(slice); }); };
+  const bool settles = SettlesWatched(within, settle, [this] {
+    other_.LookOnWay();  // whatever else it shows is told when it is waited for
+    return LookOnWay();
   });
   if (settles) way_.HasEnded();
   return settles;
