@@ -216,10 +216,12 @@ class Switched : public fuzz::PlainMachine {
   std::vector<AxisState> State() override {
     if (std::exchange(is_silent, false)) throw DeviceFault(FaultKind::kTimeout, "machine", "no answer");
     std::vector<AxisState> states(2);
-    for (std::size_t k : {0, 1}) states[k].encoder = at[k], states[k].commanded = jogged_to.value_or(at[k]);
+    const std::vector<double> shown = std::exchange(garbled, {});
+    for (std::size_t k : {0, 1}) states[k].encoder = shown.empty() ? at[k] : shown[k], states[k].commanded = jogged_to.value_or(at[k]);
     return states;
   }
   std::vector<double> at = {0.0, 0.0};
+  std::vector<double> garbled;  // for one look
   std::optional<double> jogged_to;
   bool is_silent = false;
   int moves = 0;
@@ -274,6 +276,12 @@ TEST_F(ZerosOfAMachine, AreLostOnAWayOnlyWhereItDoesNotLead) {
     machine_.at = {shown, -shown};
     EXPECT_EQ(Look(), is_known) << shown;
   }
+}
+
+TEST_F(ZerosOfAMachine, AreKnownBehindOneGarbledAnswer) {
+  Stand({1.0, -1.0});
+  machine_.garbled = {0.0, -1.0};
+  EXPECT_TRUE(Look());
 }
 
 TEST_F(ZerosOfAMachine, AreKnownWhereSomebodyElseMovesItOnItsWay) {

@@ -49,7 +49,9 @@ bool SettlesWatched(Duration within, const std::function<bool(Duration)>& settle
 }  // namespace
 
 std::vector<AxisState> WatchedMachine::State() {
-  std::vector<AxisState> states = Ask(way_, [&] { return inner_.State(); });
+  const auto ask = [&] { return Ask(way_, [&] { return inner_.State(); }); };
+  std::vector<AxisState> states = ask();
+  if (way_.MayBeGarbled(EachOf(states, &AxisState::encoder), clock_.Now())) states = ask();
   if (way_.WasCut() && std::abs(OffCircle_m(states)) > kNear) way_.LoseZeros();
   way_.Seen(EachOf(states, &AxisState::encoder), clock_.Now());
   for (std::size_t k = 0; k < states.size(); ++k)
@@ -133,14 +135,20 @@ auto WatchedTables::Table::AskBoth(auto&& ask) {
   return Ask(way_, [&] { return Ask(other_.way_, ask); });
 }
 
+TableState WatchedTables::Table::Asked() {
+  const auto ask = [&] { return AskBoth([&] { return inner_.State(); }); };
+  const TableState state = ask();
+  return way_.MayBeGarbled({state.encoder_rad}, clock_.Now()) ? ask() : state;
+}
+
 bool WatchedTables::Table::IsElsewhere(const TableState& state) {
   return way_.Seen({state.encoder_rad}, clock_.Now());
 }
 
 TableState WatchedTables::Table::State() {
-  TableState state = AskBoth([&] { return inner_.State(); });
+  TableState state = Asked();
   const bool was_cut = way_.WasCut(), had_zero = !way_.HasLostZero(0);
-  const bool are_elsewhere = IsElsewhere(state) && other_.IsElsewhere(AskBoth([&] { return other_.inner_.State(); }));
+  const bool are_elsewhere = IsElsewhere(state) && other_.IsElsewhere(other_.Asked());
   if (are_elsewhere || (was_cut && had_zero && way_.HasLostZero(0)))
     for (Table* table : {this, &other_}) table->LoseZero();
   state.referenced = state.referenced && !way_.HasLostZero(0);

@@ -69,6 +69,7 @@ class WatchedTables {
    private:
     /// Both may hang on one controller.
     auto AskBoth(auto&& ask);
+    TableState Asked();
     bool IsElsewhere(const TableState& state);
     /// Where it stands before either of the two is sent: a zero may be set as the first is.
     void LookBefore() { from_rad_ = EncoderAngle_rad(); }

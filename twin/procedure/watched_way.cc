@@ -100,6 +100,11 @@ bool WatchedWay::Seen(const std::vector<double>& at, Time now) {
   return all_elsewhere;
 }
 
+bool WatchedWay::MayBeGarbled(const std::vector<double>& at, Time now) const {
+  WatchedWay then = *this;
+  return then.Seen(at, now) || then.has_lost_zero_ != has_lost_zero_;
+}
+
 void WatchedWay::HasFoundZeros() {
   has_lost_zero_.assign(axes_.size(), false);
   seen_.clear();

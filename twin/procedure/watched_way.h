@@ -39,6 +39,8 @@ class WatchedWay {
   /// come there faster than it goes; its connection was cut, and then all on that controller do.
   /// @return whether all are elsewhere than they stood, or than their way leads.
   bool Seen(const std::vector<double>& at, Time now);
+  /// Whether such a look would tell of other zeros: one garbled answer does, too.
+  bool MayBeGarbled(const std::vector<double>& at, Time now) const;
   bool HasLostZero(std::size_t axis) const { return has_lost_zero_[axis]; }
   void LoseZeros() { has_lost_zero_.assign(axes_.size(), true); }
   void HasFoundZeros();
