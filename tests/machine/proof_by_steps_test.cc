@@ -331,6 +331,17 @@ TEST(ProofByClosing, AZeroThatJumpsBetweenTwoPassesEndsTheMountingOnEveryBench) 
   EXPECT_EQ(run.kept, 11u);
 }
 
+/// As of an axis whose zero jumps while nobody looks.
+TEST(ProofByClosing, AZeroOfAFiveAxisMachineThatJumpsIsNoticedBehindTheTenthPoseOfAMounting) {
+  constexpr double kJump_V = 0.6;  // 20 um of X
+  const Scenario scenario = ShortFreeform();
+  const Changes jumps = [&](Reading& r, const Reading&) { In(r, scenario, "qpd_x_V") += kJump_V; };
+  EXPECT_EQ(RunWith(scenario, 0, 0, {}).fault, "");
+  const RunEnd run = RunWith(scenario, 3, 1000, jumps);
+  EXPECT_EQ(run.fault, "changed");
+  EXPECT_EQ(run.kept, 9u);
+}
+
 /// By the bench's clock, of a run whose readings are proved, with hands that take as long as the scenario says.
 double MinutesProved(const Scenario& scenario) {
   DrivenTwin twin(scenario);

@@ -1,14 +1,20 @@
 #include "twin/benches/proof_by_closing.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/expected.h"
+#include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/bench_format.h"
+#include "twin/core/device_fault.h"
+#include "twin/procedure/doubted_instruments.h"
 #include "twin/procedure/jumps.h"
 #include "twin/procedure/step_proof.h"
 
@@ -57,10 +63,42 @@ std::vector<ClaimedColumn> ClaimsOfTables(const Scenario& scenario) {
   return claims;
 }
 
+std::vector<ClaimedColumn> ClaimsOfProbe(const Scenario& scenario) {
+  constexpr double kShareOfVolts = 0.03, kShareOfPixels = 1e-3;  // that drifts and reversals may change: ten micrometres or so
+  std::vector<ClaimedColumn> claims;
+  for (const Expected& expected : ExpectedOf(scenario, {})) {
+    claims.push_back(ClaimOf(expected, scenario));
+    claims.back().repeats = (expected.column.ends_with("_V") ? kShareOfVolts : kShareOfPixels) *
+                            FormatOf(scenario.bench).range_of(scenario, expected.column);
+  }
+  return claims;
+}
+
+/// Poses close nothing: behind every tenth of a mounting the axes go back to its first.
+std::function<void(const Reading&)> ProofByFirstPose(MachineBench& bench, const Scenario& scenario,
+                                                     const procedure::MachineOptions& options) {
+  constexpr int kEvery = 10;
+  return [&bench, &options, claims = ClaimsOfProbe(scenario), first = std::optional<Reading>()](const Reading& reading) mutable {
+    const auto kept = std::ranges::find(options.kept, reading.setup, &Reading::setup);
+    if (!first || first->setup != reading.setup) first = kept == options.kept.end() ? reading : *kept;
+    if ((reading.reading - first->reading + 1) % kEvery != 0) return;
+    std::vector<double> by;
+    for (const Quantity& axis : benches::freeform::kCommanded) by.push_back(axis(*first) - axis(reading));
+    try {
+      procedure::RequireAsBefore(claims, procedure::ShownBeside(bench, by, options), *first);
+    } catch (const DeviceFault& fault) {
+      if (fault.kind() != FaultKind::kImplausible) throw;
+      throw DeviceFault(FaultKind::kChanged, "instruments",
+                        fmt::format("behind reading {} the axes went back to reading {}: {}", reading.reading, first->reading, fault.what()));
+    }
+  };
+}
+
 }  // namespace
 
 std::function<void(const Reading&)> ProofByClosing(MachineBench& bench, const Scenario& scenario,
                                                    const procedure::MachineOptions& options) {
+  if (scenario.bench == kFreeformBench) return ProofByFirstPose(bench, scenario, options);
   const double run_up_rad = RunUp_rad(scenario);
   if (!(run_up_rad > 0.0)) return [](const Reading&) {};
   const bool is_table = scenario.bench == kTurntableBench;

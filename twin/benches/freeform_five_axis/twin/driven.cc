@@ -92,13 +92,22 @@ class FreeformPhysics : public DrivenPhysics {
     return place;
   }
 
+  /// At another planned place of the mounting the plan says which cell it is: near a rim the beam may meet another first.
   Reading BesidePlan(const DrivenInstant& at) const {
+    const auto is_there = [&](const Reading& p) {
+      const std::vector<double> place = PlaceOf(p);
+      bool same = p.setup == at.setup;
+      for (std::size_t k = 0; k < kMachineAxes; ++k) same = same && std::abs(place[k] - at.commanded[k]) <= kSamePlace;
+      return same;
+    };
+    const auto planned = std::ranges::find_if(plan_, is_there);
     Reading r;
     r.reading = at.sample;
     r.setup = at.setup;
     r.direction = at.direction;
     for (std::size_t k = 0; k < kMachineAxes; ++k) kCommanded[k](r) = at.commanded[k];
     const Eigen::Vector2i cell = CellUnderBeam(at);
+    if (planned != plan_.end()) return kCellI(r) = kCellI(*planned), kCellJ(r) = kCellJ(*planned), r;
     kCellI(r) = cell.x();
     kCellJ(r) = cell.y();
     return r;
