@@ -119,6 +119,35 @@ class Rezeroed : public PassingMachine {
   std::vector<double> zero_;
 };
 
+/// Creeps off its circle behind the first, as its encoders say, until it is sent somewhere.
+class Creeping : public PassingMachine {
+ public:
+  Creeping(MachineController& inner, double by_m) : PassingMachine(inner), by_m_(by_m) {}
+  void StartArc(const Arc& arc) override { inner_.StartArc(arc), ++arcs_; }
+  void StartMove(const std::vector<double>& to, double feed_m_s) override { inner_.StartMove(to, feed_m_s), moves += arcs_ > 0; }
+  std::vector<AxisState> State() override {
+    std::vector<AxisState> states = inner_.State();
+    if (arcs_ > 0 && moves == 0)
+      for (AxisState& state : states) state.encoder += by_m_;
+    return states;
+  }
+  int moves = 0;
+
+ private:
+  double by_m_;
+  int arcs_ = 0;
+};
+
+TEST(SomebodyElse, WhoLetsAMachineCreepOffItsCircleDoesNotMakeTheNextOneSmaller) {
+  const auto moves_where_it_creeps = [](double by_m) {
+    DrivenTwin twin(ShortCircles());
+    Creeping machine(twin.bench.machine, by_m);
+    EXPECT_EQ(twin.FaultOn(AsHardware(twin.bench, machine, twin.bench.instruments)), "") << twin.said;
+    return machine.moves;
+  };
+  EXPECT_EQ(moves_where_it_creeps(5e-6), moves_where_it_creeps(0.0) + 1);
+}
+
 /// Instruments that show what they are said to, of a noise that nobody need state here.
 void DoubtOn(procedure::MachineOptions& options, const Scenario& scenario) {
   std::vector<procedure::ClaimedColumn> claims;

@@ -80,7 +80,7 @@ std::function<void(const Reading&)> ProofByFirstPose(MachineBench& bench, const 
   constexpr int kEvery = 10;
   return [&bench, &options, claims = ClaimsOfProbe(scenario), first = std::optional<Reading>()](const Reading& reading) mutable {
     const auto kept = std::ranges::find(options.kept, reading.setup, &Reading::setup);
-    if (!first || first->setup != reading.setup) first = kept == options.kept.end() ? reading : *kept;
+    if (!first || first->setup != reading.setup || first->reading == reading.reading) first = kept == options.kept.end() ? reading : *kept;
     if ((reading.reading - first->reading + 1) % kEvery != 0) return;
     std::vector<double> by;
     for (const Quantity& axis : benches::freeform::kCommanded) by.push_back(axis(*first) - axis(reading));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "twin/benches/circular_motion/columns.h"
@@ -84,7 +85,9 @@ class CircleDrive {
           FaultKind::kImplausible, "machine",
           fmt::format("stands {:.4g} mm off the circle with an instrument mounted; bring it back by hand",
                       off_m / units::mm));
-    if (std::abs(off_m) > kBesideTheCircle_m) {  // where somebody else has left it
+    const std::vector<double> stands = sequencer_.Where();
+    if (std::max(std::abs(off_m), std::abs(std::hypot(stands[0], stands[1]) - radius_m)) > kBesideTheCircle_m) {
+      // where somebody else has left it, or it has crept to
       const double back = radius_m / (radius_m + off_m);
       sequencer_.MoveTo({at[0] * back, at[1] * back});
     }
