@@ -265,7 +265,7 @@ TEST_F(ZerosOfAMachine, ThatCountsAnewBehindABrokenConnectionAreLostUntilTheyAre
 }
 
 TEST_F(ZerosOfAMachine, AreLostOnAWayOnlyWhereItDoesNotLead) {
-  for (const auto& [shown, is_known] : {std::pair(1.5, true), {2.0, true}, {0.0, false}, {3.0, false}}) {
+  for (const auto& [shown, is_known] : {std::pair(1.5, true), {2.0, true}, {0.0, false}, {2.0004, false}, {3.0, false}}) {
     watched_.Home();
     Stand({1.0, -1.0});
     watched_.StartMove({2.0, -2.0}, 500.0);

@@ -83,7 +83,7 @@ void WatchedWay::IsAnother(std::vector<double> to) {
 
 bool WatchedWay::Seen(const std::vector<double>& at, Time now) {
   const bool was_cut = std::exchange(is_cut_, false), stood = course_ == Course::kStands;
-  const double near = stood ? 0.1 * kNear : kNear;
+  const double near = stood || was_cut ? 0.1 * kNear : kNear;
   bool all_elsewhere = course_ != Course::kUnknown && !seen_.empty(), moves = seen_.empty();
   for (std::size_t k = 0; k < at.size() && !seen_.empty(); ++k) {
     const double target = course_ == Course::kGoes ? target_[k] : seen_[k];
