@@ -1,5 +1,6 @@
 #include "tests/diagnose/found_causes.h"
 #include "tests/diagnose/hob_chain.h"
+#include "tests/support/angle_benches.h"
 #include "tests/support/thresholds.h"
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/hob_transmission/settings.h"
@@ -260,6 +261,17 @@ TEST(HobRun, EstimatesANoiseThatNobodyTold) {
   // 8640 samples say 1 / sqrt(8640) = 1 %; what repeats of the steps' errors from turn to turn is not seen: 3 %.
   const double together = static_cast<double>(readings.size()) / run.Rows();
   EXPECT_NEAR(run.sigma[0] * std::sqrt(together) / truth_rad, 1.0, 0.06);
+}
+
+// Angles that an encoder shows have its noise: of those that lie near each other the errors lie in the same order.
+TEST(HobRun, EstimatesTheNoiseOfTheEncoderThatShowsTheAngle) {
+  const auto with_noise = [](const char* noise) {
+    return LoadScenario(twinbench::test::ScenarioPath("hob_transmission.toml"), {"hob_encoder.noise_arcsec=0", noise});
+  };
+  const std::vector<Reading> readings = twinbench::test::RunBench(with_noise("table_encoder.noise_arcsec=0.1")).readings;
+  const LinearRun run = RunOf(readings, with_noise("table_encoder.noise_arcsec=0"));
+  const double together = static_cast<double>(readings.size()) / run.Rows();
+  EXPECT_NEAR(run.sigma[0] * std::sqrt(together) / (0.1 * arcsec), 1.0, 0.06);
 }
 
 TEST(HobRun, LeavesOutSamplesThatLieFarOutsideButNoStep) {

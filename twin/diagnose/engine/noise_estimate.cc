@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -140,7 +141,8 @@ Scatter OnAxis(const Schedule& s, const Eigen::VectorXd& y, const Eigen::VectorX
 /// The axis goes to and fro so often that neighbours in time are not neighbours on it.
 bool IsInAnyOrder(const Schedule& s) {
   constexpr int kShort = 5;  // readings of a pass
-  return s.Readings() < kShort * (1 + std::ranges::max(s.pass) - std::ranges::min(s.pass));
+  const std::set<int> passes(s.pass.begin(), s.pass.end());
+  return s.Readings() < kShort * static_cast<int>(std::ssize(passes));
 }
 
 }  // namespace

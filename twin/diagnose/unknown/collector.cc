@@ -43,12 +43,13 @@ double LargestRms(const Eigen::MatrixXd& columns) {
   return std::sqrt(columns.colwise().squaredNorm().maxCoeff() / rows);
 }
 
-/// Coefficients of many columns say nothing by themselves: their amplitude is told as that of a wave of the rms that readings show.
+/// Coefficients of many columns say nothing by themselves: their amplitude is told as that of a wave that goes as far from its mean
+/// in the readings. The mean may be that of a zero which is free.
 void TellAsShown(Family& family) {
   family.describe = [words = family.describe, base = family.base](int g, const Eigen::VectorXd& x, const Eigen::VectorXd& shape) {
     const Eigen::MatrixXd series = base->series(g);
     const Eigen::MatrixXd shown = series * x.reshaped(series.cols(), x.size() / series.cols());
-    const double amplitude = std::sqrt(2.0 / static_cast<double>(shown.rows())) * shown.norm();
+    const double amplitude = std::sqrt(2.0 / static_cast<double>(shown.rows())) * (shown.rowwise() - shown.colwise().mean()).norm();
     return words(g, Eigen::VectorXd::Constant(1, amplitude), shape);
   };
 }
