@@ -40,7 +40,7 @@ Listener::~Listener() {
 void Listener::Accept() {
   acceptor_.async_accept([this](const asio::error_code& error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    error ? AcceptAfter(kAfterFailure) : Admit(std::move(socket), kForAPlace);
+    error ? AcceptAfter(kAfterFailure) : Admit(std::move(socket), WallClock::now() + kForAPlace);
   });
 }
 
@@ -51,13 +51,13 @@ void Listener::AcceptAfter(WallClock::duration pause) {
   });
 }
 
-void Listener::Admit(tcp::socket socket, WallClock::duration patience) {
+void Listener::Admit(tcp::socket socket, WallClock::time_point until) {
   const bool has_place = HasRoom() || MakeRoom();
   if (has_place) Begin(std::move(socket));
-  if (has_place || patience <= WallClock::duration::zero()) return Accept();
+  if (has_place || WallClock::now() >= until) return Accept();
   again_.expires_after(kTryAgain);
-  again_.async_wait([this, waiting = std::move(socket), patience](const asio::error_code& stopped) mutable {
-    if (!stopped) Admit(std::move(waiting), patience - kTryAgain);
+  again_.async_wait([this, waiting = std::move(socket), until](const asio::error_code& stopped) mutable {
+    if (!stopped) Admit(std::move(waiting), until);
   });
 }
 

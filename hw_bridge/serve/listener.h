@@ -26,8 +26,8 @@ class Listener {
  private:
   void Accept();
   void AcceptAfter(WallClock::duration pause);
-  /// @param patience  For a place to become free; after it the client is turned away.
-  void Admit(asio::ip::tcp::socket socket, WallClock::duration patience);
+  /// @param until  It waits for a place to become free; then the client is turned away.
+  void Admit(asio::ip::tcp::socket socket, WallClock::time_point until);
   void Begin(asio::ip::tcp::socket socket);
   bool HasRoom() const { return sessions_.size() < max_connections_; }
   bool MakeRoom();
