@@ -100,6 +100,52 @@ const Row kMotion[] = {
      {85, 86}}};
 INSTANTIATE_TEST_SUITE_P(Motion, EncoderAnswer, testing::ValuesIn(kMotion), NameOfRow);
 
+// There and back over 180 deg at one speed, turned at once between two readings: but for the few about the turns, a delay shows what
+// a loop shows.
+
+double Turned_deg(double t_s) { return 180.0 * std::abs(std::fmod(t_s / 4.8314 + 0.0962, 2.0) - 1.0); }
+
+/// @param error_deg  Of the device, from a reading of the reference to the next.
+Record TurnedAtOnce(const std::function<double(double t_s, double from_deg, double to_deg)>& error_deg, unsigned seed) {
+  Noise noise_deg(0.0275, seed);
+  Record record;
+  double last_deg = Turned_deg(0.0);
+  for (int i = 0, pass = 0, direction = -1; i < 3000; ++i) {
+    const double t_s = 0.01 * i, at_deg = Turned_deg(t_s);
+    if ((at_deg - last_deg) * direction < 0.0) direction = -direction, ++pass;
+    record.Add(t_s, at_deg, at_deg + error_deg(t_s, last_deg, at_deg) + noise_deg(), direction, pass);
+    last_deg = at_deg;
+  }
+  return record;
+}
+
+const Row kOneSpeed[] = {
+    {"APlayOfFourReadingsIsNoLatency",
+     [](unsigned seed) {
+       double follower_deg = Turned_deg(0.0);
+       return TurnedAtOnce(
+           [follower_deg](double, double, double to_deg) mutable {
+             follower_deg = std::clamp(follower_deg, to_deg - 0.745, to_deg + 0.745);
+             return follower_deg - to_deg;
+           },
+           seed);
+     },
+     {Found("backlash", "width", 1.49, 0.02), NotNamed({"latency", "hysteresis"})},
+     {91, 92}},
+    {"ALagThatTurnsWithTheMotionIsNoLatency",
+     [](unsigned seed) {
+       return TurnedAtOnce([](double, double from_deg, double to_deg) { return to_deg > from_deg ? -0.33 : 0.33; }, seed);
+     },
+     {NotNamed({"latency"}, 0.6), [](const Answer& a) { EXPECT_TRUE(a.Names("hysteresis", 0.3) || a.Names("backlash", 0.3)); }},
+     {93, 94}},
+    {"ALatencyMayAsWellBeALoop",
+     [](unsigned seed) {
+       return TurnedAtOnce([](double t_s, double, double to_deg) { return Turned_deg(t_s + 10.0 * 2 * 4.8314 - 0.00886) - to_deg; }, seed);
+     },
+     {Named("latency", 0.3), Size("latency", "delay", 0.00886, 0.0001), NotNamed({"backlash", "hysteresis"}, 0.6)},
+     {95, 96}}};
+INSTANTIATE_TEST_SUITE_P(OneSpeed, EncoderAnswer, testing::ValuesIn(kOneSpeed), NameOfRow);
+
 // Counters that lose counts, written down as they count.
 
 /// Of a counter, from the reading before to this one.

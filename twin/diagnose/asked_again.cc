@@ -51,20 +51,23 @@ struct Left {
   }
 };
 
-/// Where the twin shows no numbers nobody should go. The fit is not told that it failed: it would say so on the user's screen.
-Eigen::VectorXd Solve(const Left& left, const std::vector<EffectEntry>& catalogue, const Eigen::VectorXd& x) {
-  constexpr double kStep = 0.1;  // of what is known
-  const std::vector<Movable>& movable = left.scaled.movable;
-  if (movable.empty()) return x;
-  Bounds bounds{x, x};
-  for (Eigen::Index k = 0; k < x.size(); ++k) {
-    const Movable& moved = movable[static_cast<std::size_t>(k)];
-    const EffectSettings& effect = left.scaled.effects[moved.effect];
+Bounds BoundsOf(const Scaled& scaled, const std::vector<EffectEntry>& catalogue) {
+  Bounds bounds{Eigen::VectorXd(std::ssize(scaled.movable)), Eigen::VectorXd(std::ssize(scaled.movable))};
+  for (Eigen::Index k = 0; k < bounds.lower.size(); ++k) {
+    const Movable& moved = scaled.movable[static_cast<std::size_t>(k)];
+    const EffectSettings& effect = scaled.effects[moved.effect];
     const EffectParameter& p = EntryOf(catalogue, effect.name, moved.parameter);
     const double at = effect.parameters.at(moved.parameter);
     bounds.lower[k] = kBegin + (p.lower_SI - at) / moved.sd;
     bounds.upper[k] = kBegin + (p.upper_SI - at) / moved.sd;
   }
+  return bounds;
+}
+
+/// Where the twin shows no numbers nobody should go. The fit is not told that it failed: it would say so on the user's screen.
+Eigen::VectorXd Solve(const Left& left, const Bounds& bounds, const Eigen::VectorXd& x) {
+  constexpr double kStep = 0.1;  // of what is known
+  if (x.size() == 0) return x;
   const auto left_at = [&left](const Eigen::VectorXd& at, Eigen::Ref<Eigen::VectorXd> rows) {
     constexpr double kImpossible = 1e30;
     rows = left.Of(at);
@@ -89,15 +92,18 @@ Eigen::VectorXd WithoutFar(const Eigen::VectorXd& left, Eigen::VectorXd weight, 
   return weight;
 }
 
-/// Slopes by parameter, SI.
-Eigen::MatrixXd SlopesAt(const Shows& shows, const Scaled& scaled, const Eigen::VectorXd& x) {
+/// Slopes by parameter, SI. One that was driven to its bound, where the twin shows no numbers beyond, stays there: it has none.
+Eigen::MatrixXd SlopesAt(const Shows& shows, const Scaled& scaled, const Bounds& bounds, Eigen::Index rows, const Eigen::VectorXd& x) {
   constexpr double kStep = 1e-2;  // of what is known
-  Eigen::MatrixXd slopes(shows(scaled.At(x)).size(), 0);
-  for (std::size_t k = 0; k < scaled.movable.size(); ++k) {
-    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(x.size(), static_cast<Eigen::Index>(k));
-    const Eigen::VectorXd change = shows(scaled.At(x + step)) - shows(scaled.At(x - step));
-    slopes.conservativeResize(change.size(), static_cast<Eigen::Index>(k) + 1);
-    slopes.col(static_cast<Eigen::Index>(k)) = change / (2.0 * kStep * scaled.movable[k].sd);
+  constexpr double kAtBound = 1e-6;
+  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(rows, x.size());
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    if (x[k] < bounds.lower[k] + kAtBound || x[k] > bounds.upper[k] - kAtBound) continue;
+    Eigen::VectorXd above = x, below = x;
+    above[k] = std::min(x[k] + kStep, bounds.upper[k]);
+    below[k] = std::max(x[k] - kStep, bounds.lower[k]);
+    const double step = (above[k] - below[k]) * scaled.movable[static_cast<std::size_t>(k)].sd;
+    slopes.col(k) = (shows(scaled.At(above)) - shows(scaled.At(below))) / step;
   }
   return slopes;
 }
@@ -123,14 +129,15 @@ AskedAgain AskAgain(const Shows& shows, std::vector<EffectSettings> effects, con
   const Scaled scaled{std::move(effects), movable};
   Eigen::VectorXd weight = sigma.cwiseInverse();
   AskedAgain asked;
+  const Bounds bounds = BoundsOf(scaled, catalogue);
   const Left all{shows, scaled, rows, weight, projector};
-  Eigen::VectorXd x = Solve(all, catalogue, Eigen::VectorXd::Constant(std::ssize(movable), kBegin));
+  Eigen::VectorXd x = Solve(all, bounds, Eigen::VectorXd::Constant(std::ssize(movable), kBegin));
   weight = WithoutFar(all.Of(x), weight, asked.far);
   const Left near{shows, scaled, rows, weight, projector};
-  if (asked.far > 0) x = Solve(near, catalogue, x);
+  if (asked.far > 0) x = Solve(near, bounds, x);
   asked.effects = scaled.At(x);
   asked.left = rows - shows(asked.effects);
-  asked.slopes = SlopesAt(shows, scaled, x);
+  asked.slopes = SlopesAt(shows, scaled, bounds, rows.size(), x);
   asked.sd.resize(x.size());
   for (std::size_t k = 0; k < movable.size(); ++k) {
     const EffectSettings& effect = asked.effects[movable[k].effect];

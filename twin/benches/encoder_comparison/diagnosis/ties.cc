@@ -3,24 +3,47 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <string>
 
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
 
+/// Of a lag against a loop: how a shaft turned between two readings is not known.
+constexpr double kAsExactWhereItTurns = 1e-3;
+
+/// In a motion of one speed a delay is what play or hysteresis is, but where it turns.
+bool IsLagOrLoop(const std::string& effect) { return effect == "latency" || IsLoop(effect); }
+
+/// A cause with the size and shape with which it explains most of rows, alone; nothing if there is no such family.
+std::optional<Cause> Alone(const TwinFit& fit, const Cause& cause, const Eigen::VectorXd& rows) {
+  const Eigen::VectorXd& sigma = fit.Run().run.sigma;
+  std::optional<Cause> most;
+  for (const Family& family : fit.Families()) {
+    if (family.kind != Kind::kNamed || !IsOf(cause, family)) continue;
+    const int points = IsLagOrLoop(family.effect) ? family.grid : 1;
+    for (int point = 0; point < points; ++point) {
+      Cause at = CauseFrom(family, point, rows, sigma, fit.projector());
+      if (!most || at.rho > most->rho) most = std::move(at);
+    }
+    if (!IsLagOrLoop(family.effect)) break;
+  }
+  return most;
+}
+
 /// Puts the j-th member of the k-th tie into the twin instead of the first, with the size that the others leave it.
 /// @return false if it cannot be asked about.
 bool LetLead(const TwinFit& fit, std::size_t k, std::size_t j, const AskedAgain& asked,
              std::vector<LargeCause>& causes) {
   const LinearRun& plain = fit.Run().run;
-  const auto family = std::ranges::find_if(
-      fit.Families(), [&](const Family& f) { return f.kind == Kind::kNamed && IsOf(causes[k].causes[j], f); });
-  if (family == fit.Families().end()) return false;
-  const Eigen::VectorXd left = plain.residual - fit.Shown(EffectsWithout(k, asked.effects));
+  const std::optional<Cause> alone =
+      Alone(fit, causes[k].causes[j], plain.residual - fit.Shown(EffectsWithout(k, asked.effects)));
+  if (!alone) return false;
   const double explained = causes[k].explained;
-  causes[k].causes[j].parameters = CauseFrom(*family, 0, left, plain.sigma, fit.projector()).parameters;
+  causes[k].causes[j].parameters = alone->parameters;
   causes[k].causes.front().parameters.clear();  // it is not what is fitted
   causes[k] = LedBy(causes[k].causes, j, plain.bench);
   causes[k].explained = explained;
@@ -46,6 +69,14 @@ bool DifferInSecondOrder(const TwinFit& fit, const FittedCauses& wave, const Fit
   return bent.MayBe(fit.Shown(signals.asked.effects) - fit.Shown(wave.asked.effects));
 }
 
+/// A gap is crossed over its width, or more with a soft end; what goes over sooner, and not at once, is a lag of a motion of one speed.
+bool IsCrossedTooSoon(const FittedCauses& fitted, std::size_t k) {
+  constexpr double kSoon = 0.75;
+  if (k >= fitted.causes.size() || fitted.causes[k].effect.name != "backlash") return false;
+  const std::map<std::string, double>& gap = fitted.causes[k].effect.parameters;
+  return gap.at("crossed_over") > 0.0 && gap.at("crossed_over") < kSoon * std::abs(gap.at("width"));
+}
+
 /// By how much the power of what is left exceeds that of white noise that says as much.
 double NoiseOf(const TwinFit& fit, double power, double memory) {
   return memory * std::max(1.0, power / fit.projector().DegreesOfFreedom());
@@ -63,9 +94,13 @@ std::optional<FittedCauses> BetterLed(const TwinFit& fit, const FittedCauses& no
       std::optional<FittedCauses> other = LedByOther(fit, k, j, now);
       if (!other) continue;
       const double of_rest = NoiseOf(fit, std::min(other->power, now.power), memory);
-      const double noise = std::max(of_rest, kAsExact * now.causes[k].explained / kBetter);
+      const bool is_lag_or_loop = (now.causes[k].effect.name == "latency") != (now.causes[k].causes[j].effect == "latency");
+      const double as_exact = is_lag_or_loop ? kAsExactWhereItTurns : kAsExact;
+      const double noise = std::max(of_rest, as_exact * now.causes[k].explained / kBetter);
       const double more = other->Costs(noise) - now.Costs(noise);
       if (more < -0.5 * kBetter) return other;
+      if (IsLoop(now.causes[k].effect.name) && IsLoop(now.causes[k].causes[j].effect) && now.causes[k].causes[j].probability == 0.0) continue;
+      if (IsCrossedTooSoon(*other, k)) continue;
       if (more <= kBetter || DifferInSecondOrder(fit, now, *other, k)) ties.back().push_back(now.causes[k].causes[j]);
     }
   }
@@ -95,10 +130,7 @@ std::vector<Cause> RivalsOf(const TwinFit& fit, const FittedCauses& now, std::si
 }
 
 /// @param now  Gets more members in its ties, which share the probability of what ties already.
-void AddRivals(const TwinFit& fit, FittedCauses& now) {
-  constexpr double kNoNoise = 20.0;  // below, what is left says what is what
-  const double noise = NoiseOf(fit, now.power, fit.Memory(now.asked.left));
-  if (noise < kNoNoise) return;
+void AddRivals(const TwinFit& fit, double noise, FittedCauses& now) {
   for (std::size_t k = 0; k < now.causes.size(); ++k) {
     const double explained = fit.PowerWithout(k, now.asked) - now.power;
     std::vector<Cause> rivals = RivalsOf(fit, now, k, explained, noise);
@@ -115,13 +147,53 @@ void AddRivals(const TwinFit& fit, FittedCauses& now) {
   }
 }
 
+/// @param now  Gets as members of each lag or loop the others that explain nearly as much in its place.
+void AddLagsAndLoops(const TwinFit& fit, FittedCauses& now) {
+  constexpr double kNearly = 0.9;  // of what it explains
+  if (!fit.Run().context.Moves()) return;
+  for (std::size_t k = 0; k < now.causes.size(); ++k) {
+    if (!IsLagOrLoop(now.causes[k].effect.name)) continue;
+    const Eigen::VectorXd left = fit.Run().run.residual - fit.Shown(EffectsWithout(k, now.asked.effects));
+    const double explained = fit.PowerOf(left) - now.power;
+    for (const char* effect : {"latency", "backlash", "hysteresis"}) {
+      const auto has = [&](const LargeCause& cause) {
+        return cause.effect.name == effect || std::ranges::any_of(cause.causes, [&](const Cause& c) { return c.effect == effect; });
+      };
+      if (std::ranges::any_of(now.causes, has)) continue;
+      Cause named;
+      named.effect = effect;
+      std::optional<Cause> other = Alone(fit, named, left);
+      if (!other || other->rho * other->rho < kNearly * explained) continue;
+      other->probability = 0.0;  // shared out among those that stay
+      now.causes[k].causes.push_back(*std::move(other));
+    }
+  }
+}
+
+double SumOf(const std::vector<Cause>& members) {
+  double sum = 0.0;
+  for (const Cause& cause : members) sum += cause.probability;
+  return sum;
+}
+
+/// What has none yet is as probable as the most probable.
+void ShareOut(double all, std::vector<Cause>& members) {
+  const double most = std::ranges::max(members, {}, &Cause::probability).probability;
+  for (Cause& cause : members)
+    if (cause.probability == 0.0) cause.probability = most > 0.0 ? most : 1.0;
+  const double sum = SumOf(members);
+  for (Cause& cause : members) cause.probability *= all / sum;
+}
+
 }  // namespace
 
 bool SettleTies(const TwinFit& fit, FittedCauses& now) {
   constexpr int kMostRounds = 16;  // noise is judged anew each time: two might be better than each other
   std::vector<std::vector<Cause>> ties;
   bool is_changed = false;
-  AddRivals(fit, now);
+  constexpr double kNoNoise = 20.0;  // below, what is left says what is what
+  const double noise = NoiseOf(fit, now.power, fit.Memory(now.asked.left));
+  noise < kNoNoise ? AddLagsAndLoops(fit, now) : AddRivals(fit, noise, now);
   std::optional<FittedCauses> better = BetterLed(fit, now, ties);
   for (int round = 0; better && round < kMostRounds; ++round) {
     now = *std::move(better);
@@ -129,7 +201,7 @@ bool SettleTies(const TwinFit& fit, FittedCauses& now) {
     better = BetterLed(fit, now, ties);
   }
   for (std::size_t k = 0; k < now.causes.size(); ++k) {
-    if (ties[k].size() == 1 && now.causes[k].causes.size() > 1) ties[k].front().probability = tuning::kListed;
+    if (now.causes[k].causes.size() > 1) ShareOut(ties[k].size() == 1 ? tuning::kListed : SumOf(now.causes[k].causes), ties[k]);
     now.causes[k].causes = std::move(ties[k]);
   }
   return is_changed;
