@@ -137,7 +137,7 @@ TEST(HobDiagnosis, SaysTheSameOfWhatLooksTheSameHoweverLargeItIs) {
       "bench = \"hob_transmission\"\n[transmission]\ngear_teeth = 40\nhob_starts = 1\nworm_wheel_teeth = 0\n"
       "[hob_encoder]\nlines = 10000000\n[hob_procedure]\nheads_deg = [0]\n[interferometer]\nused = false\n",
       "test", "");
-  for (const double error_arcsec : {2.0, 15.0, 40.0}) {
+  for (const double error_arcsec : {2.0, 15.0, 30.0, 40.0, 60.0, 100.0}) {
     const Diagnosis found = Diagnose(OnceATurnOfTheHob(error_arcsec, 3), train, twinbench::test::QuickOptions()).diagnosis;
     EXPECT_EQ(found.verdict, Verdict::kTie) << error_arcsec;
     EXPECT_EQ(NamesIn(found), (std::set<std::string>{"gear_mesh", "hob_runout", "eccentricity hob"})) << error_arcsec;

@@ -60,10 +60,16 @@ void LevelOneWave(const SearchProblem& problem, const Deflation& others, const P
   const double most = std::ranges::max(same | std::views::transform(explained));
   const double pseudo = PseudoDegrees(problem.run), power = pseudo + data.power[0];  // as in the evidence
   const double half = 0.5 * (pseudo + problem.projector.DegreesOfFreedom() - others.Rank());
-  double named = kNever;  // log odds
+  const auto points = [&](int k) { return problem.scanner.Families()[static_cast<std::size_t>(k)].grid; };
+  double named = kNever, of_one_order = kNever;  // log odds; the most that speaks for one that has no orders to choose from
   for (const int k : same) {
     if (!problem.IsNamed(k)) continue;
     evidence.log_bayes(k, 0) += half * std::log((power - explained(k)) / (power - most));
+    if (points(k) == 1) of_one_order = std::max(of_one_order, evidence.log_bayes(k, 0));
+  }
+  for (const int k : same) {
+    if (!problem.IsNamed(k)) continue;
+    if (of_one_order > kNever) evidence.log_bayes(k, 0) = of_one_order - std::log(points(k));
     named = std::max(named, evidence.log_bayes(k, 0) + problem.log_priors[k]);
   }
   for (const int k : same) {
