@@ -209,6 +209,14 @@ TEST(CircularBodies, AreFittedWithAllTheirLostMotionAndAlmostAllTheirLag) {
   EXPECT_LT(WorstAgainstTruth_m(e, e.rigorous).maxCoeff(), 2.0 * um) << "the path itself is measured";
 }
 
+TEST(CircularBodies, AreScoredByWhatHoldsAtEveryFeed) {
+  const Evaluated& e = Circles("circular_bodies.toml");
+  const report::ScoredRun score = BenchOf(e.run.scenario).score(e.run.scenario, e.run.readings, e.run.truth, Estimator::kRigorous);
+  for (const report::ScoredValue& v : score.values)
+    EXPECT_NEAR(v.value, v.truth, 6.0 * v.u) << v.name << ": of some 300 values none is further off by chance";
+  EXPECT_GT(score.json.at("errors").at("machine.backlash_x_um").at("error").get<double>(), 0.5) << "told all the same";
+}
+
 // The answers that the scenarios of the freeform artefact promise.
 
 struct EvaluatedFreeform {

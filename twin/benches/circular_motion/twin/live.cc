@@ -143,14 +143,17 @@ CircleTwin CircleRun::TwinOf(const std::vector<Reading>& course, BodiesOnce& bod
 namespace {
 
 /// With bodies: in the words of the closed form, as far as these say it. Behind a reversal bodies follow a curve of
-/// their own.
-void TakeFromDrives(const FeedDrivesSettings& drives, nlohmann::json& errors) {
+/// their own: what they lose and lag depends on the feed, and no one number of either is true to an uncertainty ("nearly").
+void TakeFromDrives(const FeedDrivesSettings& drives, nlohmann::json& truth) {
   const DrivesInClosedForm form = InClosedForm(drives);
+  nlohmann::json& errors = truth["errors"];
   for (std::size_t k = 0; k < 2; ++k) {
     const std::string axis = k == 0 ? "x" : "y";
-    errors["machine.lag_" + axis + "_s"] = form.lag_s[k];
-    errors["machine.backlash_" + axis + "_um"] = form.backlash_m[k] / units::um;
+    const std::string lag = "machine.lag_" + axis + "_s", backlash = "machine.backlash_" + axis + "_um";
+    errors[lag] = form.lag_s[k];
+    errors[backlash] = form.backlash_m[k] / units::um;
     errors.erase("machine.spike_" + axis + "_um");
+    for (const std::string& key : {lag, backlash}) truth["nearly"].push_back(key);
   }
 }
 
@@ -162,7 +165,6 @@ nlohmann::json Errors(Scenario scenario) {
     if (number && (key.table == "machine" || key.table == "bar" || key.table == "encoder" || key.table == "grid"))
       errors[key.Path()] = **number / key.unit.to_SI;
   }
-  if (CircularOf(scenario).mechanics.HasBodies()) TakeFromDrives(CircularOf(scenario).drives, errors);
   return errors;
 }
 
@@ -193,6 +195,7 @@ nlohmann::json CircleRun::Truth() const {
                          {"path", nlohmann::json::array()},
                          {"effects", ToJson(scenario_.effects)},
                          {"seed", scenario_.seed}};
+  if (s.mechanics.HasBodies()) TakeFromDrives(s.drives, json);
   for (std::size_t k = 0; k < mounted_.size(); ++k)
     json["setups"].push_back(SetupJson(static_cast<int>(k), s.procedure.setups[k], s, mounted_[k]));
   for (std::size_t i = 0; i < course_.size(); ++i) {
