@@ -54,7 +54,8 @@ const std::vector<AtBounds>& AllAtBounds() {
         {"turntable_procedure.eccentricities_um=[-10000]"}}},
       {"circular_motion.toml",
        {"circular_procedure.points=36", "circular_procedure.stops=6", "circular_procedure.feeds_mm_min=[1000]"},
-       {{"encoder.ellipticity_arcsec=-3600"}, {"encoder.eccentricity_arcsec=3600"}, {"encoder.tilt_y_mrad=100"}, {"bar.cubic_per_mm2=1000"}}},
+       {{"encoder.ellipticity_arcsec=-3600"}, {"encoder.eccentricity_arcsec=3600"}, {"encoder.tilt_y_mrad=100"}, {"bar.cubic_per_mm2=1000"},
+        {"encoder.latency_s=-1"}, {"bar.latency_s=1"}, {"encoder.noise_arcsec=3600"}}},
       {"freeform_five_axis.toml",
        {"freeform_procedure.poses=25"},
        {{"qpd.noise_mV=1e-3", "ccd.noise_px=5e-6"}, {"qpd.noise_mV=1e-8", "ccd.noise_px=1e-10"}}},
@@ -80,6 +81,7 @@ TEST(Keys, RefuseWhatNoBenchCanBe) {
       {"turntable_autocollimator.toml", "turntable.random.ey_arcsec=3600"},
       {"circular_motion.toml", "machine.span_mm=1e-8"},
       {"hob_transmission.toml", "transmission.stiffness_Nm_mrad=0.1"},
+      {"hob_transmission.toml", "hob_procedure.ramp_s=0.001"},
   };
   for (const auto& [file, override_text] : refused)
     EXPECT_THROW(LoadScenario(test::ScenarioPath(file), {override_text}), InputError) << override_text;

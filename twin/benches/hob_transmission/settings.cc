@@ -82,7 +82,7 @@ void AddHobProcedure(Keys& keys, HobProcedureSettings& s) {
   t.Add("passes", kPure, {-1, 1}, &s.passes, "directions of the table, 1 or -1; at each speed");
   t.Add("turns", kPure, {1, 1000}, &s.turns, "of the table, a pass");
   t.Add("samples_per_turn", kPure, {4, 1000000}, &s.samples_per_turn, "of the table; divides table_encoder.lines");
-  t.Add("ramp", kSecond, Positive(3600), &s.ramp_s, "to reach the speed and to stop");
+  t.Add("ramp", kSecond, {0.01, 3600.0}, &s.ramp_s, "to reach the speed and to stop");
   t.Add("rest", kSecond, UpTo(86400), &s.rest_s, "behind every pass");
   t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a mounting takes");
   t.Add("fifo_samples", kPure, {1, kHuge}, &s.fifo_samples, "that the counter card holds");

@@ -156,13 +156,21 @@ double Longer_m(const CirclePoint& p, const CircleErrors& e) {
   return longer_m;
 }
 
-/// Along the radius, at the commanded angle: there the bar's length goes by the angle between the radius and itself. The length
-/// counts as it was set.
+/// How the spindle came from where it was so much before to where it is, by the errors that were found: most of it is the commanded circle.
+Vector2d Since_m(const CirclePoint& p, const CircleErrors& e, const CircleConstants& known, double before_s) {
+  if (before_s == 0.0 || p.rate_rad_s == 0.0) return {0.0, 0.0};
+  CircleMemo::Axes now, before;
+  return Position_m(p, e, known, 0.0, now) - Position_m(p, e, known, before_s, before);
+}
+
+/// Along the radius, at the angle commanded when the bar was read: there the bar's length goes by the angle between the radius and itself.
+/// The length counts as it was set.
 Vector2d FromRadialBar_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m, const CircleConstants& known) {
-  const double length_m = BarLength_m(p, e, {}) + Longer_m(p, e) - BallForm_m(e, p.commanded_rad);
-  const Vector2d offset_m = Turned({m.offset_m[0], m.offset_m[1]}, -p.commanded_rad);
+  const double then_rad = p.commanded_rad - p.rate_rad_s * known.bar_latency_s;
+  const double length_m = BarLength_m(p, e, {}) + Longer_m(p, e) - BallForm_m(e, then_rad);
+  const Vector2d offset_m = Turned({m.offset_m[0], m.offset_m[1]}, -then_rad);
   const double flat_m = std::sqrt(length_m * length_m - known.height_m * known.height_m - offset_m.y() * offset_m.y());
-  return Turned({flat_m - offset_m.x() - p.radius_m, 0.0}, p.commanded_rad);
+  return Turned({flat_m - offset_m.x(), 0.0}, then_rad) + Since_m(p, e, known, known.bar_latency_s) - p.Commanded_m();
 }
 
 /// The encoder errs, and is askew, by where the bar is, not by what is shown.
@@ -177,16 +185,29 @@ double TrueAzimuth_rad(const CirclePoint& p, const CircleErrors& e, const Circle
   return azimuth_rad;
 }
 
+/// How far the bar turned from when the encoder was read to when the bar was. Both are of the machine as it errs there: within a second of
+/// latency a circle is another one by micrometres.
+double BetweenReadings_rad(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m, const CircleConstants& known) {
+  if (e.encoder_latency_s == known.bar_latency_s) return 0.0;
+  const Vector2d offset_m(m.offset_m[0], m.offset_m[1]);
+  const auto azimuth_rad = [&](double before_s) {
+    CircleMemo::Axes memo;
+    return Azimuth_rad(offset_m + Position_m(p, e, known, before_s, memo));
+  };
+  const double turned_rad = p.rate_rad_s * (e.encoder_latency_s - known.bar_latency_s);
+  return turned_rad + std::remainder(azimuth_rad(known.bar_latency_s) - azimuth_rad(e.encoder_latency_s) - turned_rad, units::turn);
+}
+
 Vector2d FromBar_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
                    const CircleConstants& known) {
   const double longer_m = Longer_m(p, e);
   const double shown_rad = p.commanded_rad + p.tangential_m / p.radius_m - m.rotation_rad;
-  // Where it was when the bar was read.
-  const double azimuth_rad = TrueAzimuth_rad(p, e, known, shown_rad) + p.rate_rad_s * (e.encoder_latency_s - known.bar_latency_s);
+  const double azimuth_rad =
+      TrueAzimuth_rad(p, e, known, shown_rad) + BetweenReadings_rad(p, e, m, known);  // where it was when the bar was read
   const double length_m = BarLength_m(p, e, m) + longer_m - BallForm_m(e, azimuth_rad);
   const double flat_m = std::sqrt(length_m * length_m - known.height_m * known.height_m);
   const Vector2d then_m = Turned({flat_m, 0.0}, azimuth_rad) - Vector2d(m.offset_m[0], m.offset_m[1]);
-  return Turned(then_m, p.rate_rad_s * known.bar_latency_s) - p.Commanded_m();
+  return then_m + Since_m(p, e, known, known.bar_latency_s) - p.Commanded_m();
 }
 
 Vector2d FromGrid_m(const CirclePoint& p, const CircleMounting& m, const CircleConstants& known) {

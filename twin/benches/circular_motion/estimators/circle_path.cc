@@ -59,6 +59,12 @@ std::vector<Difference> Differences(const std::vector<CirclePath>& paths) {
   return all;
 }
 
+/// Of one reading, along the radius and across it. An angle that is off by d leaves R d^2 / 2 along the radius, whose rms is sqrt(3) R u^2 / 2.
+Eigen::Vector2d OwnUncertainty_m(const CirclePoint& p) {
+  const double bent_m = p.is_bar && p.has_angle ? 0.5 * std::sqrt(3.0) * p.u_tangential_m * p.u_tangential_m / p.radius_m : 0.0;
+  return {std::hypot(p.u_radial_m, bent_m), p.u_tangential_m};
+}
+
 }  // namespace
 
 std::vector<CirclePath> RigorousPaths(const std::vector<CirclePoint>& points, const CircleFit& fit,
@@ -66,7 +72,7 @@ std::vector<CirclePath> RigorousPaths(const std::vector<CirclePoint>& points, co
   return Paths(points, [&](const CirclePoint& p) {
     return PathPoint{p.commanded_rad,
                      Deviation_m(p, fit.errors, fit.MountingOf(p.setup), known),
-                     {p.u_radial_m, p.u_tangential_m},
+                     OwnUncertainty_m(p),
                      p.of_machine,
                      p.of_steps,
                      SlopeOfDeviation(p, fit, known),
