@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "tests/support/angle_benches.h"
+#include "twin/benches/expected.h"
 
 // What a scenario may say at all: where its keys are at their bounds, results hold their uncertainties; beyond, it is refused.
 namespace twinbench {
@@ -56,6 +57,9 @@ const std::vector<AtBounds>& AllAtBounds() {
        {"circular_procedure.points=36", "circular_procedure.stops=6", "circular_procedure.feeds_mm_min=[1000]"},
        {{"encoder.ellipticity_arcsec=-3600"}, {"encoder.eccentricity_arcsec=3600"}, {"encoder.tilt_y_mrad=100"}, {"bar.cubic_per_mm2=1000"},
         {"encoder.latency_s=-1"}, {"bar.latency_s=1"}, {"encoder.noise_arcsec=3600"}}},
+      {"hob_transmission.toml",
+       {"hob_procedure.turns=1", "hob_procedure.samples_per_turn=360"},
+       {{"hob_procedure.hob_speeds_rev_min=[1000.0]"}, {"hob_procedure.hob_speeds_rev_min=[200.0]"}}},
       {"freeform_five_axis.toml",
        {"freeform_procedure.poses=25"},
        {{"qpd.noise_mV=1e-3", "ccd.noise_px=5e-6"}, {"qpd.noise_mV=1e-8", "ccd.noise_px=1e-10"}}},
@@ -71,6 +75,13 @@ TEST(Keys, LeaveResultsWithinTheirUncertaintiesAtTheirBounds) {
       EXPECT_LT(LargestChi2(LoadScenario(test::ScenarioPath(bench.file), overrides)), 4.0) << bench.file << ": " << bounds.front();
     }
   }
+}
+
+TEST(Keys, LeaveDoubtsThatAreNumbers) {
+  const Scenario still = LoadScenario(test::ScenarioPath("turntable_polygon.toml"), {"autocollimator.noise_arcsec=1e-300"});
+  const std::string doubts = plausible::InLines(DoubtsAbout(test::RunBench(still).readings, still));
+  EXPECT_EQ(doubts.find("nan"), std::string::npos) << doubts;
+  EXPECT_EQ(doubts.find("inf times"), std::string::npos) << doubts;
 }
 
 TEST(Keys, RefuseWhatNoBenchCanBe) {

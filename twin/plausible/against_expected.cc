@@ -191,6 +191,7 @@ void CheckNulled(const Channel& channel, const Expected& expected, std::vector<F
   const std::vector<double> by_axis = BesideReversal(channel, repeats, went),
                             shown = BesideReversal(channel, repeats, Between(repeats, channel.value));
   const double count = static_cast<double>(repeats.size()), squares = SumOfProducts(shown, shown);
+  if (!(squares > 0.0 && SumOfProducts(by_axis, by_axis) > 0.0)) return;  // to the last digit the same: nothing goes with anything
   const double slope = SumOfProducts(shown, by_axis) / squares;
   const double left = std::max(SumOfProducts(by_axis, by_axis) - slope * slope * squares, 0.0);
   const double u = std::sqrt(left / count / squares), least = 1.0 - 2.0 * std::pow(expected.nulled_noise, 2) * count / squares;

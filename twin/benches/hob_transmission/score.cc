@@ -4,6 +4,7 @@
 #include <complex>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "twin/benches/hob_transmission/bench.h"
@@ -61,6 +62,18 @@ report::CurveScore CurveOf(const std::string& name, const HarmonicSeries& series
   return curve;
 }
 
+/// The order with which bodies swing by more than half the uncertainty of an order: the transmission that is read is that of this speed, and no truth
+/// of slow turning judges it.
+std::optional<double> SwingsAt(const report::CurveScore& curve, const nlohmann::json& harmonics) {
+  constexpr double kPart = 0.5;
+  double sum = 0.0;
+  for (const double u : curve.u) sum += u;
+  const double u_arcsec = sum / static_cast<double>(curve.u.size());
+  for (const nlohmann::json& h : harmonics)
+    if (h.value("swing_arcsec", 0.0) > kPart * u_arcsec) return h.at("order").get<double>();
+  return std::nullopt;
+}
+
 }  // namespace
 
 report::ScoredRun ScoreOf(const HobAnalysis& analysis, const nlohmann::json& truth) {
@@ -71,10 +84,15 @@ report::ScoredRun ScoreOf(const HobAnalysis& analysis, const nlohmann::json& tru
   for (const SeparatedOrder& order : analysis.separation->orders)
     if (order.status == OrderStatus::kSumOnly) lost.insert(order.order);
   std::vector<report::CurveScore> curves;
+  std::string swings;
   for (const DirectionResult& direction : analysis.directions) {
     const std::string name = fmt::format("transmission {:+d}", direction.direction);
     const auto transmission = TruthOf(truth.at("transmission"), direction.direction * ahead_rad);
     curves.push_back(CurveOf(name, direction.transmission, transmission, lost));
+    if (const std::optional<double> order = SwingsAt(curves.back(), truth.at("transmission"))) {
+      swings += fmt::format("{}: not scored, at this speed its bodies swing with order {:g}; truth is of slow turning\n", name, *order);
+      curves.pop_back();
+    }
   }
   curves.push_back(CurveOf("table encoder", analysis.encoder, encoder));
   if (analysis.two_positions) {
@@ -86,7 +104,7 @@ report::ScoredRun ScoreOf(const HobAnalysis& analysis, const nlohmann::json& tru
   if (analysis.is_interferometer_at_rest)
     curves.push_back(CurveOf("interferometer at rest", analysis.encoder_by_interferometer, encoder));
   return {ToJson(curves),
-          "against the truth: both parts of every order that is separable\n" + report::ScoreTable(curves),
+          "against the truth: both parts of every order that is separable\n" + report::ScoreTable(curves) + swings,
           report::PositionTable(curves), report::ValuesOf(curves)};
 }
 

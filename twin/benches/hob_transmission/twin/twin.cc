@@ -41,6 +41,14 @@ nlohmann::json RingHarmonics(const Counters& counters) {
   return harmonics;
 }
 
+/// What bodies make of an error more than turning slowly does: they swing along, as a mass on a spring of the chain's stiffness. Lowest order.
+double Swing_rad(const HobSettings& s, const mechanics::AngleHarmonic& h) {
+  if (s.mechanics.fidelity != "bullet") return 0.0;
+  const double fastest_rad_s = s.transmission.Ratio() * std::ranges::max(s.hob_procedure.hob_speeds_rad_s);
+  const double own_rad2_s2 = s.transmission.stiffness_Nm_rad / s.transmission.table_inertia_kg_m2;
+  return h.amplitude_rad * std::pow(h.order * fastest_rad_s, 2) / own_rad2_s2;
+}
+
 }  // namespace
 
 struct HobTwin::Impl : Clock, MachineController, InstrumentSet, MachineFixture, Simulation, NumberedRuns {
@@ -138,8 +146,11 @@ nlohmann::json HobTwin::Truth() const {
                          {"table_encoder", RingHarmonics(impl_->world->counters())},
                          {"effects", ToJson(impl_->scenario.effects)},
                          {"seed", impl_->scenario.seed}};
-  for (const mechanics::AngleHarmonic& h : impl_->world->Transmission())
+  for (const mechanics::AngleHarmonic& h : impl_->world->Transmission()) {
     json["transmission"].push_back(HarmonicJson(h.order, h.amplitude_rad, h.phase_rad));
+    if (const double swing_rad = Swing_rad(HobOf(impl_->scenario), h); swing_rad > 0.0)
+      json["transmission"].back()["swing_arcsec"] = swing_rad / units::arcsec;
+  }
   return json;
 }
 
