@@ -60,6 +60,9 @@ const std::vector<AtBounds>& AllAtBounds() {
       {"hob_transmission.toml",
        {"hob_procedure.turns=1", "hob_procedure.samples_per_turn=360"},
        {{"hob_procedure.hob_speeds_rev_min=[1000.0]"}, {"hob_procedure.hob_speeds_rev_min=[200.0]"}}},
+      {"encoder_coast.toml",
+       {"encoder_procedure.turns=4.0", "encoder_procedure.stamps_per_turn=256", "device.graduation_orders=100"},
+       {{"spindle.torque_deg_s2=3600"}, {"spindle.torque_deg_s2=36000"}, {"spindle.ripple_deg_s2=3600"}}},
       {"freeform_five_axis.toml",
        {"freeform_procedure.poses=25"},
        {{"qpd.noise_mV=1e-3", "ccd.noise_px=5e-6"}, {"qpd.noise_mV=1e-8", "ccd.noise_px=1e-10"}}},
@@ -93,6 +96,8 @@ TEST(Keys, RefuseWhatNoBenchCanBe) {
       {"circular_motion.toml", "machine.span_mm=1e-8"},
       {"hob_transmission.toml", "transmission.stiffness_Nm_mrad=0.1"},
       {"hob_transmission.toml", "hob_procedure.ramp_s=0.001"},
+      {"encoder_coast.toml", "encoder_procedure.stamps_per_turn=64"},
+      {"encoder_coast.toml", "device.graduation_orders=1000"},
   };
   for (const auto& [file, override_text] : refused)
     EXPECT_THROW(LoadScenario(test::ScenarioPath(file), {override_text}), InputError) << override_text;

@@ -86,6 +86,13 @@ void CheckCoast(const ScenarioText& text, const EncoderSettings& own) {
   if (p.heads_rad.size() > 1)
     throw InputError(text.Where("encoder_procedure.heads_deg", text.name() + ":1"), "encoder_procedure.heads_deg has several heads",
                      "one, where the spindle coasts");
+  constexpr int kMostOrders = 500;  // CoastOptions::max_order
+  const int highest = std::min(kMostOrders, (p.stamps - 1) / 2);
+  if (own.device.graduation_rad > 0.0 && own.device.graduation_orders > highest)
+    throw InputError(text.Where("device.graduation_orders", text.name() + ":1"),
+                     fmt::format("device.graduation_orders is {}, and {} lines per turn show orders up to {} (higher ones look like lower ones)",
+                                 own.device.graduation_orders, p.stamps, highest),
+                     fmt::format("at most {}, or more encoder_procedure.stamps_per_turn", highest));
   const SpindleSettings& d = own.spindle;
   for (const double speed_rad_s : p.speeds_rad_s) {
     const double loss = d.friction_rad_s2 / speed_rad_s + d.viscous_per_s + d.drag_per_rad * speed_rad_s;

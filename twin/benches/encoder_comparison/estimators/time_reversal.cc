@@ -1,10 +1,14 @@
 #include "twin/benches/encoder_comparison/estimators/time_reversal.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/encoder_comparison/estimators/swing_of_speed.h"
 #include "twin/benches/encoder_comparison/estimators/turn_orders.h"
 #include "twin/core/linear_algebra.h"
+#include "twin/core/units.h"
 
 namespace twinbench::separate::encoder {
 namespace {
@@ -50,6 +54,8 @@ void SayWhatIsNotTold(const TurnModel& model, TimeReversal& result) {
 }  // namespace
 
 TimeReversal SeparateByTime(const std::vector<Reading>& readings, const CoastOptions& options) {
+  constexpr int kBeyondRounds = 4;                               // the first leaves what a torque does to what it does
+  constexpr double kTooSmall_rad = 1e-5 * units::arcsec;  // of what two speeds leave to the ring
   const CoastPasses coast = SortCoast(readings);
   TimeReversal result = BeginCoast(coast);
   if (!result.not_separated.empty()) return result;
@@ -62,8 +68,17 @@ TimeReversal SeparateByTime(const std::vector<Reading>& readings, const CoastOpt
   const Eigen::MatrixXcd orders = OrdersOfTurns(turns);
   const Eigen::MatrixXd weighted = model.weight.asDiagonal() * model.columns;
   const Eigen::MatrixXd cofactor = SolveSquare(model.columns.transpose() * weighted, Eigen::MatrixXd::Identity(model.columns.cols(), model.columns.cols()));
-  const Eigen::MatrixXcd x = (cofactor * weighted.transpose()).cast<harmonics::Complex>() * orders;
-  const Eigen::MatrixXcd rest = orders - model.columns.cast<harmonics::Complex>() * x;
+  const Eigen::MatrixXcd inverse = (cofactor * weighted.transpose()).cast<harmonics::Complex>();
+  Eigen::MatrixXcd x = inverse * orders, beyond = Eigen::MatrixXcd::Zero(orders.rows(), orders.cols());
+  Eigen::VectorXd moved_rad2 = Eigen::VectorXd::Zero(orders.cols());
+  for (int round = 0; round < kBeyondRounds; ++round) {
+    if (round == 0 && LargestBeyond_rad(model, x) < kTooSmall_rad) break;
+    beyond = BeyondInverseSquare(model, turns, x);
+    const Eigen::MatrixXcd next = inverse * (orders - beyond);
+    moved_rad2 = (next.row(0) - x.row(0)).cwiseAbs2().transpose();
+    x = next;
+  }
+  const Eigen::MatrixXcd rest = orders - beyond - model.columns.cast<harmonics::Complex>() * x;
   const auto free = static_cast<double>(2 * (model.columns.rows() - model.columns.cols()));  // re and im
   const Eigen::VectorXd own_rad2 = (model.weight.transpose() * rest.cwiseAbs2()).transpose() / free;
   const Eigen::VectorXd unit_rad2 = Pooled(own_rad2, options.pooled_orders);
@@ -71,7 +86,7 @@ TimeReversal SeparateByTime(const std::vector<Reading>& readings, const CoastOpt
   result.dof = free * (2 * options.pooled_orders + 1);
   result.reference_speed_rad_s = model.reference_speed_rad_s;
   result.stamp_noise_s = std::sqrt(own_rad2.mean() * coast.lines / 2.0);
-  result.ring = SeriesOfRow(x.row(0), unit_rad2 * cofactor(0, 0), result.dof);
+  result.ring = SeriesOfRow(x.row(0), unit_rad2 * cofactor(0, 0) + moved_rad2, result.dof);
   if (model.torque > 0)
     result.torque =
         SeriesOfRow(x.row(model.torque), unit_rad2 * cofactor(model.torque, model.torque), result.dof);
@@ -79,6 +94,8 @@ TimeReversal SeparateByTime(const std::vector<Reading>& readings, const CoastOpt
     result.friction =
         SeriesOfRow(x.row(model.friction), unit_rad2 * cofactor(model.friction, model.friction), result.dof);
   SayWhatIsNotTold(model, result);
+  if (result.ring.Highest() < options.max_order)
+    result.not_separable.push_back(fmt::format("device, orders above {}: {} lines per turn show them as lower ones", result.ring.Highest(), coast.lines));
   result.ring_by_noise = result.ring;
   SetByOwnAngle(result.ring);
   return result;
