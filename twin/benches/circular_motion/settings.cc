@@ -194,6 +194,18 @@ void CheckBodies(const ScenarioText& text, const CircularSettings& s) {
   }
 }
 
+/// Far beyond the span the third Legendre polynomial is thousands of its size: no reading is as fine as what it would take.
+void CheckSpan(const ScenarioText& text, const CircularSettings& s) {
+  constexpr double kMostSpans = 20.0;
+  for (const CircularSetup& setup : s.procedure.setups) {
+    if (!(setup.radius_m > kMostSpans * s.machine.span_m)) continue;
+    throw InputError(Place(text, "machine.span_mm", "circular_procedure.setups"),
+                     fmt::format("a circle of {:g} mm has {:.3g} times the radius of machine.span_mm, {:g}", setup.radius_m / units::mm,
+                                 setup.radius_m / s.machine.span_m, s.machine.span_m / units::mm),
+                     "half the travel over which straightness is stated: some radius of the circles");
+  }
+}
+
 }  // namespace
 
 void AddKeys(Keys& keys, Scenario& s) {
@@ -212,6 +224,7 @@ void AddKeys(Keys& keys, Scenario& s) {
 void CheckTogether(const ScenarioText& text, const Scenario& s) {
   const CircularSettings& own = CircularOf(s);
   CheckPasses(text, "circular_procedure.directions", own.procedure.directions);
+  CheckSpan(text, own);
   if (own.mechanics.HasBodies()) CheckBodies(text, own);
 }
 

@@ -105,7 +105,7 @@ void AddProcedure(Keys& keys, FreeformProcedureSettings& s) {
   t.Records("mounts", s.mounts, AddMount, "where the artefact stands, one per mounting");
   t.Add("poses", kPure, {1, 100000}, &s.poses, "per mounting; each is read on the way forth and back");
   t.Add("angle", kDeg, UpTo(45), &s.angle_rad, "A and B go so far to either side");
-  t.Add("height", kMm, UpTo(1000), &s.height_m, "the tip stands off the surface by up to this, to either side");
+  t.Add("height", kMm, {0.5, 1000.0}, &s.height_m, "the tip stands off the surface by up to this, to either side");
   t.Add("dither", kUm, UpTo(10000), &s.dither_m, "of X and Y at every pose, uniform to either side");
   t.Add("dither", kDeg, UpTo(10), &s.dither_rad, "likewise of A and B");
   t.Text("path", &s.path, {"joint", "single"}, "all axes together, or one after the other");
