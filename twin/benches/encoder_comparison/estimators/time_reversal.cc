@@ -8,7 +8,6 @@
 #include "twin/benches/encoder_comparison/estimators/swing_of_speed.h"
 #include "twin/benches/encoder_comparison/estimators/turn_orders.h"
 #include "twin/core/linear_algebra.h"
-#include "twin/core/units.h"
 
 namespace twinbench::separate::encoder {
 namespace {
@@ -55,7 +54,7 @@ void SayWhatIsNotTold(const TurnModel& model, TimeReversal& result) {
 
 TimeReversal SeparateByTime(const std::vector<Reading>& readings, const CoastOptions& options) {
   constexpr int kBeyondRounds = 4;                               // the first leaves what a torque does to what it does
-  constexpr double kTooSmall_rad = 1e-5 * units::arcsec;  // of what two speeds leave to the ring
+  constexpr double kTooSmall = 0.1;                        // of the curve's noise
   const CoastPasses coast = SortCoast(readings);
   TimeReversal result = BeginCoast(coast);
   if (!result.not_separated.empty()) return result;
@@ -71,8 +70,10 @@ TimeReversal SeparateByTime(const std::vector<Reading>& readings, const CoastOpt
   const Eigen::MatrixXcd inverse = (cofactor * weighted.transpose()).cast<harmonics::Complex>();
   Eigen::MatrixXcd x = inverse * orders, beyond = Eigen::MatrixXcd::Zero(orders.rows(), orders.cols());
   Eigen::VectorXd moved_rad2 = Eigen::VectorXd::Zero(orders.cols());
+  const Eigen::MatrixXd scatter = (orders - model.columns.cast<harmonics::Complex>() * x).cwiseAbs2();
+  const double curve_rad2 = (model.weight.transpose() * scatter).sum() * cofactor(0, 0) / (2.0 * static_cast<double>(model.columns.rows() - model.columns.cols()));
   for (int round = 0; round < kBeyondRounds; ++round) {
-    if (round == 0 && LargestBeyond_rad(model, x) < kTooSmall_rad) break;
+    if (round == 0 && LargestBeyond_rad(model, x) < kTooSmall * std::sqrt(curve_rad2)) break;
     beyond = BeyondInverseSquare(model, turns, x);
     const Eigen::MatrixXcd next = inverse * (orders - beyond);
     moved_rad2 = (next.row(0) - x.row(0)).cwiseAbs2().transpose();
