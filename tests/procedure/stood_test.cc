@@ -108,5 +108,15 @@ TEST(StepProof, AFifthOfAStepTooMuchIsNothingAndHalfOfOneIsSomethingElse) {
   EXPECT_FALSE(is_proved(-0.2, 0.0, 0.0, false));
 }
 
+TEST(StepProof, OfColumnsWhoseSizeNobodyKnowsOneOrTheOtherGoesUnlessTheAxesStand) {
+  const auto is_proved = [](double x, double y, double should) {
+    StepProof proof(false);
+    return !test::FaultOf([&] { proof.Require({{"x", should, x, 0.01, false}, {"y", -should, y, 0.01, false}}); });
+  };
+  EXPECT_TRUE(is_proved(0.0, -0.5, 2.0)) << "x may be at the end of its range";
+  EXPECT_FALSE(is_proved(0.1, 0.1, 2.0) || is_proved(0.002, -0.002, 2.0));
+  EXPECT_TRUE(is_proved(0.002, -0.002, 1.0)) << "it may go less than noise";
+}
+
 }  // namespace
 }  // namespace twinbench::procedure

@@ -18,6 +18,7 @@ namespace {
 constexpr double kShareOfStep = 0.25;
 constexpr double kTimesOfNoise = 10.0 * std::numbers::sqrt2;  // of the difference of two
 constexpr double kAnotherGain = 3.0;
+constexpr double kFar = 10.0;  // times what noise may do to a step
 
 void GoStraight(MachineBench& bench, const std::vector<double>& to, const MachineOptions& options) {
   constexpr double kSlow = 1e-3;  // m/s or rad/s
@@ -46,6 +47,21 @@ double LargestStep(const std::vector<ColumnInStep>& columns) {
   return largest;
 }
 
+double NoiseOf(const ColumnInStep& column) {
+  return kTimesOfNoise * column.noise;
+}
+
+/// Of those without a size one or the other goes, unless the axes stand, where one should go far.
+bool NothingGoes(const std::vector<ColumnInStep>& columns) {
+  bool should_go = false;
+  for (const ColumnInStep& column : columns) {
+    if (column.is_of_size) continue;
+    if (std::abs(column.did) > NoiseOf(column)) return false;
+    should_go = should_go || std::abs(column.should) > kFar * NoiseOf(column);
+  }
+  return should_go;
+}
+
 }  // namespace
 
 void StepProof::Learn(const std::vector<ColumnInStep>& columns, double step) {
@@ -63,19 +79,21 @@ void StepProof::Require(std::vector<ColumnInStep> columns) {
   if (learns_ && known_.empty()) Learn(columns, step);
   for (std::size_t k = 0; k < known_.size(); ++k) columns[k].should = known_[k] * step;
   const double size = std::abs(LargestStep(columns));
+  const bool nothing_goes = NothingGoes(columns);
   for (const ColumnInStep& column : columns) {
-    const double noise = kTimesOfNoise * column.noise;
+    const double noise = NoiseOf(column);
     const bool is_elsewhere =
         !(std::abs(column.did - column.should) <= kShareOfStep * size + noise);  // or shows nothing
     const bool is_against =
         column.did * column.should < 0.0 && std::min(std::abs(column.did), std::abs(column.should)) > noise;
+    const bool stands = nothing_goes && std::abs(column.should) > noise;
     if (column.is_of_size && !(std::abs(column.back) <= kShareOfStep * size + noise))
       throw DeviceFault(
           FaultKind::kMoved, "instruments",
           fmt::format(
               "behind a short way and back {} is by {:.4g} (SI) another than at the reading: did a zero jump?",
               column.name, column.back));
-    if (column.is_of_size ? !is_elsewhere : !is_against) continue;
+    if (column.is_of_size ? !is_elsewhere : !is_against && !stands) continue;
     throw DeviceFault(FaultKind::kMoved, "instruments",
                       fmt::format("beside the reading the axes went a short way, in which {} went {:.4g} of the "
                                   "{:.4g} (SI) that it should: is a "
