@@ -35,7 +35,9 @@ DeviceLine Conversations::LineOf(const std::string& device, const ControlSetting
   Dialogue& dialogue = found.first->second;
   dialogue.Speak(LinesOf(settings));
   dialogue.IntroduceBy(introduction.commands);
+  if (settings.kind == "linuxcnc") dialogue.HearsGreetedOnly();
   DeviceLine line(dialogue, device, FromSeconds(settings.timeout_s));
+  line.HearStop(stop_asked_);
   line.Openings();
   return line;
 }

@@ -27,12 +27,10 @@ class OpenedBench : public OpenBench {
  public:
   OpenedBench(const BenchFile& file, const AdcSettings& adc, double noise_V, Duration elapsed, int run,
               const std::function<bool()>& stop_asked)
-      : file_(file), hands_(std::cin, std::cerr) {
+      : file_(file), hands_(std::cin, std::cerr), conversations_(stop_asked) {
     OpenClock(elapsed, run, stop_asked);  // first: a served twin's time stands still from here on
     target_ = OpenTable("target", file.target, file.target_limits);
     reference_ = OpenTable("reference", file.reference, file.reference_limits);
-    target_->HearStop(stop_asked);
-    reference_->HearStop(stop_asked);
     OpenInstruments();
     adc_ = MakeAdConverter(file.adc, adc, *clock_, noise_V);
     if (file.clock.kind != "host") return;  // a served twin's time stands while its tables are asked

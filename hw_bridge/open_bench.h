@@ -38,7 +38,7 @@ class OpenBench {
 /// @param adc       Says which rate, range, resolution and block length the A/D must give.
 /// @param elapsed   Time 0 of the run was so long ago (a resumed run); 0 for a new one.
 /// @param run       Which run of its bench a served twin makes, as Scenario::repeat; 0: its own.
-/// @param stop_asked  Asked while tables move, see ControlledTable::HearStop; none: nobody stops them then.
+/// @param stop_asked  Heard by every device, as DeviceLine::HearStop; none: nobody stops them.
 /// @throws DeviceFault if a device does not answer, is not the one named or cannot do what is asked.
 std::unique_ptr<OpenBench> OpenHardware(const BenchFile& file, const AdcSettings& adc, double noise_V,
                                         Duration elapsed = {}, int run = 0, const std::function<bool()>& stop_asked = {});

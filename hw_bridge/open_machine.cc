@@ -58,13 +58,12 @@ class OpenedMachine : public OpenMachine {
                 const std::vector<ReadingColumn>& columns, Duration elapsed, int run,
                 const std::function<bool()>& stop_asked)
       : name_(file.name),
+        conversations_(stop_asked),
         clock_(OpenClock(file.clock, elapsed, run, stop_asked)),
         machine_(OpenAxes(file, axes)),
         instruments_(OpenInstruments(file, columns), *clock_),
-        indexer_(OpenIndexer(file, stop_asked)),
-        fixture_(OpenFixture(file.fixture)) {
-    machine_->HearStop(stop_asked);
-  }
+        indexer_(OpenIndexer(file)),
+        fixture_(OpenFixture(file.fixture)) {}
 
   MachineBench Devices() override {
     return {*clock_, *machine_, instruments_, *fixture_, simulation_.get(), indexer_.get()};
@@ -139,11 +138,11 @@ class OpenedMachine : public OpenMachine {
                                               s.words.where);
   }
 
-  std::unique_ptr<Indexer> OpenIndexer(const MachineFile& file, const std::function<bool()>& stop_asked) {
+  std::unique_ptr<Indexer> OpenIndexer(const MachineFile& file) {
     if (file.indexer.kind == "none") return nullptr;
     if (file.indexer.kind == "console") return std::make_unique<ConsoleIndexer>(Operator(std::cin, std::cerr));
     return std::make_unique<DescribedIndexer>(conversations_.LineOf("indexer", file.indexer), file.indexer.words,
-                                              file.indexer_timeout_s, stop_asked);
+                                              file.indexer_timeout_s);
   }
 
   std::unique_ptr<MachineFixture> OpenFixture(const ControlSettings& settings) {

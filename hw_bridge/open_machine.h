@@ -22,7 +22,7 @@ class OpenMachine : public MachineDevices {
 /// @param columns  What its instruments may show.
 /// @param elapsed  Time 0 of the run was so long ago (a resumed run); 0 for a new one.
 /// @param run      Which run of its bench a served twin makes, as Scenario::repeat; 0: its own.
-/// @param stop_asked  Asked while axes move, see EspMachine::HearStop; none: nobody stops them then.
+/// @param stop_asked  Heard by every device, as DeviceLine::HearStop; none: nobody stops them.
 /// @throws DeviceFault if a device does not answer, is not the one named or allows less than the file; InputError
 /// if
 ///         an instrument is said to show what the bench has not.

@@ -69,7 +69,7 @@ void ControlledMachine::RequireReady(const std::vector<AxisState>& states) {
 bool ControlledMachine::Settles(Duration within) {
   const auto end = std::chrono::steady_clock::now() + within;
   while (!AskDone()) {
-    if (stop_asked_ && stop_asked_()) throw DeviceFault(FaultKind::kStopped, "operator", "the run was stopped");
+    line_.RequireGoingOn();
     const Duration left = end - std::chrono::steady_clock::now();
     if (left <= Duration(0)) return false;
     std::this_thread::sleep_for(std::min(left, kPollMachine));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 
 #include "hw_bridge/control/allowed_motion.h"
 #include "hw_bridge/control/command_numbers.h"
@@ -31,12 +30,8 @@ class ControlledMachine : public MachineController {
   void AgreeOnLimits();
   const std::vector<AxisLimits>& limits() const { return limits_; }
 
-  /// From here on Settles on a bench of real time asks `stop_asked` every 20 ms, and ends with a DeviceFault
-  /// kStopped where it says so.
-  void HearStop(std::function<bool()> stop_asked) { stop_asked_ = std::move(stop_asked); }
-
   const std::vector<MachineAxis>& Axes() const override { return axes_; }
-  /// In real time: looks every 20 ms whether it is done.
+  /// In real time: looks every 20 ms whether it is done, and whether the line hears a stop.
   bool Settles(Duration within) override;
   /// Said before the controller is identified or prepared, where the connection has to be opened again.
   void Stop() override;
@@ -78,7 +73,6 @@ class ControlledMachine : public MachineController {
   std::vector<AxisLimits> limits_;
   std::vector<AllowedMotion> agreed_;
   MachineManner manner_;
-  std::function<bool()> stop_asked_;
 };
 
 }  // namespace twinbench::hw

@@ -57,9 +57,9 @@ bool ControlledTable::Settles(Duration within) {
 }
 
 bool ControlledTable::AwaitSettledOrStop(Duration within) {
-  if (!stop_asked_) return AwaitSettled(within);
+  if (!line_.HearsStop()) return AwaitSettled(within);
   do {
-    if (stop_asked_()) throw DeviceFault(FaultKind::kStopped, "operator", "the run was stopped");
+    line_.RequireGoingOn();
     const Duration piece = std::min(within, kHears);
     if (AwaitSettled(piece)) return true;
     within -= piece;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -33,9 +32,6 @@ class ControlledTable : public RotaryTable {
   /// @throws DeviceFault kRefused if the controller allows less than the bench file.
   void AgreeOnLimits();
   const TableLimits& limits() const { return limits_; }
-  /// From here on Settles asks `stop_asked` every 50 ms of bench time, and ends with a DeviceFault kStopped where it says so: nobody waits
-  /// out the second that a procedure watches a moving table for.
-  void HearStop(std::function<bool()> stop_asked) { stop_asked_ = std::move(stop_asked); }
 
  protected:
   DeviceLine& line() { return line_; }
@@ -51,6 +47,7 @@ class ControlledTable : public RotaryTable {
   virtual void SendHome() = 0;
   virtual AllowedMotion ReadAllowed() = 0;
 
+  /// Where the line hears a stop, asks every 50 ms of bench time: nobody waits out the second that a procedure watches a moving table for.
   bool AwaitSettledOrStop(Duration within);
   void RequireWithinLimits(double angle_rad) const;
   void RequireOrigin(const TableState& now) const;
@@ -63,7 +60,6 @@ class ControlledTable : public RotaryTable {
   TableLimits limits_;
   std::optional<AllowedMotion> agreed_;
   CommandNumbers numbers_;
-  std::function<bool()> stop_asked_;
 };
 
 }  // namespace twinbench::hw

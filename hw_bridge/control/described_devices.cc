@@ -135,7 +135,6 @@ void DescribedIndexer::Seat(int tooth, double angle_rad) {
     if (std::chrono::steady_clock::now() > end)
       line_.Fail(FaultKind::kNotInPosition,
                  fmt::format("tooth {} is not seated after {:g} s", tooth, move_timeout_s_));
-    line_.RequireGoingOn();
     std::this_thread::sleep_for(kLookAtIndexer);
   }
 }

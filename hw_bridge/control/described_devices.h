@@ -73,10 +73,8 @@ class DescribedGoniometer : public Goniometer {
 
 class DescribedIndexer : public Indexer {
  public:
-  DescribedIndexer(DeviceLine line, DialogueWords words, double move_timeout_s, std::function<bool()> stop_asked = {})
-      : line_(std::move(line)), words_(std::move(words)), move_timeout_s_(move_timeout_s) {
-    line_.HearStop(std::move(stop_asked));
-  }
+  DescribedIndexer(DeviceLine line, DialogueWords words, double move_timeout_s)
+      : line_(std::move(line)), words_(std::move(words)), move_timeout_s_(move_timeout_s) {}
   /// What does not end as it should, or is stopped by the operator, is told the word that ends it.
   /// @throws DeviceFault kNotInPosition too, if it does not say within its time that it is seated.
   void IndexTo(int tooth, double angle_rad) override;

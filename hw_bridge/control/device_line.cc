@@ -16,23 +16,35 @@ constexpr auto kHurries = std::chrono::seconds(10);
 }  // namespace
 
 Duration DeviceLine::Patience() const {
-  return std::chrono::steady_clock::now() < hurries_until_ ? std::min(timeout_, kHurriedPatience) : timeout_;
+  return Hurries() ? std::min(timeout_, kHurriedPatience) : timeout_;
 }
 
 void DeviceLine::SayFirst(const std::string& command) {
   hurries_until_ = std::chrono::steady_clock::now() + kHurries;
+  has_heard_ = has_heard_ || (stop_asked_ && stop_asked_());
   const Waiting waiting(device_, {});
   if (!command.empty()) dialogue_->SayFirst(command + "\n", device_, Patience());
 }
 
 std::string DeviceLine::Ask(const std::string& query, Duration beyond) {
+  HearOperator();
   const Waiting waiting(device_, beyond);
-  if (beyond == Duration(0) || !stop_asked_) return dialogue_->Ask(device_, query + "\n", Patience() + beyond);
-  return dialogue_->Ask(device_, query + "\n", Patience() + beyond, [this] { RequireGoingOn(); });
+  return dialogue_->Ask(device_, query + "\n", Patience() + beyond, [this] { HearOperator(); });
 }
 
-void DeviceLine::RequireGoingOn() const {
-  if (stop_asked_ && stop_asked_()) throw DeviceFault(FaultKind::kStopped, "operator", "the run was stopped");
+std::string DeviceLine::NextLine() {
+  return dialogue_->NextLine(device_, Patience(), [this] { HearOperator(); });
+}
+
+/// Not while it is being stopped.
+void DeviceLine::HearOperator() {
+  if (!Hurries()) RequireGoingOn();
+}
+
+void DeviceLine::RequireGoingOn() {
+  if (has_heard_ || !stop_asked_ || !stop_asked_()) return;
+  has_heard_ = true;
+  throw DeviceFault(FaultKind::kStopped, "operator", "the run was stopped");
 }
 
 double DeviceLine::AskNumber(const std::string& query, double to_SI) {

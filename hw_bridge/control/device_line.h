@@ -19,10 +19,12 @@ class DeviceLine {
   /// @param beyond  The answer may take so much longer than the timeout.
   /// @throws DeviceFault as Dialogue::Ask.
   std::string Ask(const std::string& query, Duration beyond = {});
-  /// From here on `stop_asked` is asked every 50 ms while an answer is waited for that may take longer than the timeout.
+  /// From here on `stop_asked` is asked before every question and every 50 ms while an answer is waited for, so that nothing is begun behind
+  /// it, however slowly the device answers. It is heard once: what is said behind it brings the device to rest.
   void HearStop(std::function<bool()> stop_asked) { stop_asked_ = std::move(stop_asked); }
+  bool HearsStop() const { return static_cast<bool>(stop_asked_); }
   /// @throws DeviceFault kStopped if the operator said so.
-  void RequireGoingOn() const;
+  void RequireGoingOn();
   /// Says something that is not answered.
   void Tell(const std::string& command) { dialogue_->Tell(device_, command + "\n", Patience()); }
   /// Says, before anything else, what cannot wait (Dialogue::SayFirst); for some seconds from here on no answer is waited for longer
@@ -32,7 +34,7 @@ class DeviceLine {
   /// @throws DeviceFault kProtocol too, unless the whole answer is the number.
   double AskNumber(const std::string& query, double to_SI);
   long long AskWholeNumber(const std::string& query, Duration beyond = {});
-  std::string NextLine() { return dialogue_->NextLine(device_, Patience()); }
+  std::string NextLine();
 
   /// Makes sure of the connection. @return how many times it has been opened.
   int Openings();
@@ -46,12 +48,15 @@ class DeviceLine {
   [[noreturn]] void FailProtocol(const std::string& query, const std::string& answer, const std::string& expected);
 
  private:
+  bool Hurries() const { return std::chrono::steady_clock::now() < hurries_until_; }
   Duration Patience() const;
+  void HearOperator();
 
   Dialogue* dialogue_;
   std::string device_;
   Duration timeout_;
   std::function<bool()> stop_asked_;
+  bool has_heard_ = false;
   std::chrono::steady_clock::time_point hurries_until_{};
 };
 

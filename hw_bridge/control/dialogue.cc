@@ -44,8 +44,8 @@ void Dialogue::Open(const std::string& device, Duration patience) {
 }
 
 /// Behind the opening of the connection.
-void Dialogue::Meet(const std::string& device, Duration patience) {
-  Identify(device, patience);
+void Dialogue::Meet(const std::string& device, Duration patience, bool is_greeted) {
+  Identify(device, patience, is_greeted);
   for (const std::string& introduction : introductions_) Introduce(device, introduction, patience);
   ++openings_;
 }
@@ -56,8 +56,8 @@ void Dialogue::SayFirst(const std::string& word, const std::string& device, Dura
     return;
   }
   Connect(device, patience);
-  Send(device, word, patience);
-  Meet(device, patience);
+  Send(device, (hears_greeted_only_ ? identity_query_ + "\n" : "") + word, patience);
+  Meet(device, patience, hears_greeted_only_);
 }
 
 bool Dialogue::IsExpected(const std::string& answer) const {
@@ -71,16 +71,17 @@ void Dialogue::ReadOldAnswersAway(Duration patience) {
   may_be_missed ? link_->ReadAway(patience, 3 * patience) : link_->ReadAway(kQuiet, patience);
 }
 
-void Dialogue::Identify(const std::string& device, Duration patience) {
+void Dialogue::Identify(const std::string& device, Duration patience, bool is_greeted) {
   if (IsSerial()) ReadOldAnswersAway(patience);
   if (identity_query_.empty()) return;
-  Send(device, identity_query_ + "\n", patience);
+  if (!is_greeted) Send(device, identity_query_ + "\n", patience);
   const std::string answer = AwaitIdentity(device, patience);
   if (!IsExpected(answer))
     Fail(FaultKind::kIdentity, device,
          fmt::format("\"{}\" answers; expected {}\"{}\"", answer,
                      identity_known_ ? "as before " : "what begins with ", identity_));
-  if (IsSerial()) link_->ReadAway(kQuiet, patience);  // the answer may have been that to an older query
+  // The answer may have been that to an older query; and who is greeted may echo what was said with it.
+  if (IsSerial() || is_greeted) link_->ReadAway(kQuiet, patience);
   identity_ = answer;
   identity_known_ = true;
 }
@@ -112,8 +113,23 @@ void Dialogue::Send(const std::string& device, const std::string& text, Duration
   if (sent.failure) Fail(*sent.failure, device, sent.why);
 }
 
-std::string Dialogue::NextLine(const std::string& device, Duration patience) {
-  LinkResult answer = link_->ReadLine(patience);
+LinkResult Dialogue::ReadLine(Duration patience, const std::function<void()>& meanwhile) {
+  if (!meanwhile) return link_->ReadLine(patience);
+  for (const auto end = SteadyClock::now() + patience;;) {
+    const Duration left = std::max<Duration>(end - SteadyClock::now(), Duration(0));
+    LinkResult answer = link_->ReadLine(std::min(left, kHearsWhileItWaits));
+    if (answer.failure != FaultKind::kTimeout || left <= kHearsWhileItWaits) return answer;
+    try {
+      meanwhile();
+    } catch (...) {
+      Close();
+      throw;
+    }
+  }
+}
+
+std::string Dialogue::NextLine(const std::string& device, Duration patience, const std::function<void()>& meanwhile) {
+  const LinkResult answer = ReadLine(patience, meanwhile);
   if (answer.failure) Fail(*answer.failure, device, answer.why);
   if (!answer.line.starts_with(line_.answer_begins))
     Fail(FaultKind::kProtocol, device, fmt::format("\"{}\" came; every answer begins otherwise", answer.line));
@@ -125,25 +141,11 @@ void Dialogue::Tell(const std::string& device, const std::string& text, Duration
   Send(device, text, patience);
 }
 
-Duration Dialogue::AwaitSomething(Duration patience, const std::function<void()>& meanwhile) {
-  const auto end = SteadyClock::now() + patience;
-  while (!link_->HasUnread() && SteadyClock::now() < end) {
-    try {
-      meanwhile();
-    } catch (...) {
-      Close();
-      throw;
-    }
-    std::this_thread::sleep_for(kHearsWhileItWaits);
-  }
-  return std::max<Duration>(end - SteadyClock::now(), Duration(0));
-}
-
 std::string Dialogue::Ask(const std::string& device, const std::string& text, Duration patience, const std::function<void()>& meanwhile) {
   Open(device, patience);
   if (link_->HasUnread()) Fail(FaultKind::kProtocol, device, "an answer came that nobody had asked for");
   Send(device, text, patience);
-  return NextLine(device, meanwhile ? AwaitSomething(patience, meanwhile) : patience);
+  return NextLine(device, patience, meanwhile);
 }
 
 }  // namespace twinbench::hw

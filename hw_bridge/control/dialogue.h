@@ -24,6 +24,8 @@ class Dialogue {
   void Speak(const LineWords& line) { line_ = line; }
   /// Said to whoever has been identified, after every opening: commands, each with a query of its error that must be answered by "0,...".
   void IntroduceBy(std::vector<std::string> introductions) { introductions_ = std::move(introductions); }
+  /// The identity query is a greeting, before which nobody is heard.
+  void HearsGreetedOnly() { hears_greeted_only_ = true; }
 
   /// Opens the connection unless it is open.
   /// @param device  Whose call it is, for messages.
@@ -31,7 +33,7 @@ class Dialogue {
   void Open(const std::string& device, Duration patience);
 
   /// Makes sure that a word which cannot wait goes out before anything else that is said from here on: at once behind a new
-  /// opening, before anybody is identified, and where an answer lies about that nobody asked for. Where the conversation is in order nothing is
+  /// opening, before anybody is identified (with a greeting before it that it does not wait for, where one is needed), and where an answer lies about that nobody asked for. Where the conversation is in order nothing is
   /// sent.
   /// @param word  With its end; it is not answered.
   /// @throws DeviceFault as Open.
@@ -44,7 +46,7 @@ class Dialogue {
   /// Sends `text`, which is not answered.
   void Tell(const std::string& device, const std::string& text, Duration patience);
   /// Takes one more line, of an answer that has several.
-  std::string NextLine(const std::string& device, Duration patience);
+  std::string NextLine(const std::string& device, Duration patience, const std::function<void()>& meanwhile = {});
 
   void Close() { link_.reset(); }
   /// How many times the connection was opened: what a device had set may be gone when it has grown.
@@ -55,12 +57,12 @@ class Dialogue {
 
  private:
   void Connect(const std::string& device, Duration patience);
-  void Meet(const std::string& device, Duration patience);
+  /// @param is_greeted  The identity query has been said.
+  void Meet(const std::string& device, Duration patience, bool is_greeted = false);
   void ReadOldAnswersAway(Duration patience);
-  void Identify(const std::string& device, Duration patience);
+  void Identify(const std::string& device, Duration patience, bool is_greeted);
   void Introduce(const std::string& device, const std::string& introduction, Duration patience);
-  /// @return what is left of the patience.
-  Duration AwaitSomething(Duration patience, const std::function<void()>& meanwhile);
+  LinkResult ReadLine(Duration patience, const std::function<void()>& meanwhile);
   std::string AwaitIdentity(const std::string& device, Duration patience);
   void Send(const std::string& device, const std::string& text, Duration patience);
   [[noreturn]] void Fail(FaultKind kind, const std::string& device, const std::string& why);
@@ -71,6 +73,7 @@ class Dialogue {
   std::string identity_query_;
   std::string identity_;         // as much as is known of it
   bool identity_known_ = false;  // all of it
+  bool hears_greeted_only_ = false;
   std::vector<std::string> introductions_;
   LineWords line_;
   std::unique_ptr<LineLink> link_;

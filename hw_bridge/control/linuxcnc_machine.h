@@ -38,7 +38,7 @@ class LinuxCncMachine : public ControlledMachine {
 
  private:
   /// It takes nothing from somebody who has not said the password.
-  std::string StopWord() const override { return ""; }
+  std::string StopWord() const override { return "set enable " + enable_password_ + "\nset abort"; }
   /// What an emergency stop or a loss of power has ended needs no command, and takes none: whether the axes rest is
   /// for State to say.
   void SendStop() override;

@@ -131,7 +131,9 @@ TEST(DescribedIndexer, IsToldToStopWhereTheOperatorStopsOrItsTimeIsOver) {
                                                           *done ? "" : "acknowledged = \"OK\"\n", done), "my.toml");
     Spoken spoken(device, words);
     bool is_asked = false;
-    DescribedIndexer indexer(spoken.Line(), words, 60.0, [&] { return std::exchange(is_asked, true); });
+    DeviceLine line = spoken.Line();
+    line.HearStop([&] { return std::exchange(is_asked, true); });
+    DescribedIndexer indexer(line, words, 60.0);
     EXPECT_EQ(KindOf([&] { indexer.IndexTo(12, 12.0 * units::deg); }), FaultKind::kStopped);
     const auto is_told = [&] {
       const std::vector<std::string> lines = device.Lines();

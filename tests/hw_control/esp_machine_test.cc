@@ -12,8 +12,10 @@ using testing::Contains, testing::HasSubstr;
 
 class EspMachineWithoutStatus : public testing::Test {
  protected:
-  EspMachine Machine(int decimals = -1) {
-    return {DeviceLine(dialogue_, "machine", std::chrono::milliseconds(300)),
+  EspMachine Machine(int decimals = -1, const std::function<bool()>& stop_asked = {}) {
+    DeviceLine line(dialogue_, "machine", std::chrono::milliseconds(300));
+    line.HearStop(stop_asked);
+    return {line,
             {{"x"}, {"y"}},
             {AxisLimits{}, AxisLimits{}},
             {.traverse_m_s = 0.01, .numbers = {decimals}}};
@@ -81,6 +83,28 @@ TEST_F(EspMachineWithoutStatus, AStopIsSaidBeforeAnythingElseWheneverTheConnecti
   machine.Stop();
   EXPECT_EQ(controller_.Lines()[said], "ST");
   EXPECT_THAT(controller_.Lines(), testing::Not(Contains(HasSubstr("HN"))));
+}
+
+TEST_F(EspMachineWithoutStatus, NothingIsBegunBehindTheOperatorsStopHoweverSlowlyItAnswers) {
+  const auto is_looked_at = [&] { return std::ranges::any_of(controller_.Lines(), [](const std::string& line) { return line.find("TP?") != std::string::npos; }); };
+  EspMachine machine = Machine(-1, is_looked_at);
+  EXPECT_EQ(test::KindOf([&] { machine.StartMove({1e-3, 1e-3}, 0.0); }), FaultKind::kStopped);
+  EXPECT_THAT(controller_.Lines(), testing::Not(Contains(HasSubstr("HL"))));
+  machine.Stop();
+  EXPECT_THAT(controller_.Lines(), Contains("ST"));
+  EXPECT_NO_THROW(machine.State()) << "what is asked behind the stop is for its end";
+}
+
+TEST(DeviceLineThatHearsStop, WaitsNoLongerForAnyLineOfAnAnswer) {
+  FakeController silent([](const std::string& line) -> FakeController::Reply { return {line == "TWO?" ? "1\r\n" : ""}; });
+  Dialogue dialogue(ParseAddress(silent.Address()).value(), "", "");
+  for (const bool is_second : {false, true}) {
+    DeviceLine line(dialogue, "machine", std::chrono::seconds(30));
+    if (is_second) line.Ask("TWO?");
+    int asked = 0;
+    line.HearStop([&] { return asked++ > 0; });  // once it waits
+    EXPECT_EQ(test::KindOf([&] { is_second ? line.NextLine() : line.Ask("ONE?"); }), FaultKind::kStopped);
+  }
 }
 
 TEST_F(EspMachineWithoutStatus, NumbersHaveNoMoreDecimalsThanTheControllerUnderstands) {

@@ -20,10 +20,11 @@ struct LinuxCncModel {
       {"joint_type", "LINEAR LINEAR ANGULAR"}, {"joint_units", "MM MM DEG"}, {"program_codes", "G0 F0 S0"},
       {"abs_cmd_pos", "0 0 0 0 0 0"}, {"abs_act_pos", "0 0 0 0 0 0"}};
   std::function<void(LinuxCncModel&, const std::string& block)> obey = [](LinuxCncModel&, const std::string&) {};
-  bool accepts = true;
+  bool accepts = true, greets = true;
 
   FakeController::Reply operator()(const std::string& line) {
     const std::lock_guard lock(mutex);
+    if (!greets) return {};
     if (line.starts_with("hello "))
       return {line == "hello EMC twinbench 1.0" ? "HELLO ACK MILL 1.1\r\n" : "HELLO NAK\r\n"};
     if (line == "set echo off") return {line + "\r\n"};
@@ -47,6 +48,7 @@ class OnLinuxCnc : public testing::Test {
  protected:
   LinuxCncMachine Machine(const std::string& enable_password = "EMCTOO") {
     dialogue_.Speak(WithAnyLineEnd());
+    dialogue_.HearsGreetedOnly();
     const AxisLimits limits{.lower = -1.0, .upper = 1.0};
     return {DeviceLine(dialogue_, "machine", std::chrono::milliseconds(500)),
             {{"x", false}, {"table", true}},
@@ -151,6 +153,12 @@ TEST_F(OnLinuxCnc, AStopOnANewConnectionComesBeforeAnyLookAtItsAxes) {
   Machine().Stop();
   EXPECT_EQ(controller_.Lines().back(), "set abort");
   EXPECT_THAT(controller_.Lines(), testing::Not(Contains(HasSubstr("joint"))));
+}
+
+TEST_F(OnLinuxCnc, AStopOnANewConnectionWaitsForNoAnswer) {
+  model_.greets = false;
+  EXPECT_EQ(KindOf([&] { Machine().Stop(); }), FaultKind::kTimeout);
+  EXPECT_EQ(controller_.Lines(), (std::vector<std::string>{"hello EMC twinbench 1.0", "set enable EMCTOO", "set abort"}));
 }
 
 TEST_F(OnLinuxCnc, WhatItIsNotIsRefusedAtTheFirstCallAndSoAreCircles) {
