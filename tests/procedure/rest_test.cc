@@ -136,6 +136,17 @@ TEST(BringingToRest, TellsAllBeforeItLooksAtAnyAndSaysWhoMoves) {
   EXPECT_KEPT(BringToRest(clock, {mute.Part(), moving.Part()}).why_not);
 }
 
+TEST(BringingToRest, WhatStoodAndIsSentOffAgainIsToldAtTheLookThatShowsIt) {
+  ScriptedAxis axis;
+  int looks_at_word = 0;
+  axis.when_looked_at = [](ScriptedAxis& a) { a.axis.moving = a.axis.moving || a.looks == 2; };
+  axis.when_stopped = [&](ScriptedAxis& a) { a.axis.moving = false, looks_at_word = a.looks; };
+  fuzz::PlainClock clock;
+  EXPECT_TRUE(BringToRest(clock, {axis.Part()}).is_sure);
+  EXPECT_EQ(axis.stops, 2);
+  EXPECT_EQ(looks_at_word, 2);
+}
+
 /// Seconds until a link is given up on which every word is waited for so long, and whether it was told that all rest.
 std::pair<double, bool> TriedFor(double timeout_s, int parts, double answers_from_s = 1e9) {
   fuzz::PlainClock clock;

@@ -19,7 +19,7 @@ constexpr int kLooksOfRest = 3;
 constexpr int kLooksInTime = 10;  // behind which nobody waits any more ...
 constexpr int kMostLooks = 20;    // ... but for what gets slower
 constexpr double kSlower = 0.95;  // from look to look
-constexpr int kLooksUntilSaidAgain = 3;  // to what moves on; some are busy for a moment with every word
+constexpr int kLooksUntilSaidAgain = 3;  // to what moves on; some are busy for a moment with every word. To what stood and moves again, at once
 constexpr int kFailuresOfADeadLink = 8;
 constexpr Duration kDeadAfter = std::chrono::milliseconds(3500);  // of nothing but failures
 constexpr double kRestsWithin = 1e-5;                 // m or rad: where no in-position limit is known
@@ -106,14 +106,16 @@ class Stopping {
   }
 
   void Look() {
-    const bool moves_on = watch_.Moves() && looks_ - said_at_look_ >= kLooksUntilSaidAgain;
-    if (!was_heard_ || moves_on) Say();
+    if (!was_heard_) Say();
     if (IsDead()) return;
+    const bool stood = looks_ > 0 && !watch_.Moves();
     Try([this] {
       watch_.Look(part_->look());
       ++looks_;
       silence_ = {};
     });
+    const bool moves_on = stood || looks_ - said_at_look_ >= kLooksUntilSaidAgain;
+    if (watch_.Moves() && moves_on) Say();
   }
 
   bool AtRest() const { return is_recording_ || watch_.AtRest(); }
