@@ -16,7 +16,7 @@ constexpr auto kHurries = std::chrono::seconds(10);
 }  // namespace
 
 Duration DeviceLine::Patience() const {
-  return Hurries() ? std::min(timeout_, kHurriedPatience) : timeout_;
+  return std::chrono::steady_clock::now() < hurries_until_ ? std::min(timeout_, kHurriedPatience) : timeout_;
 }
 
 void DeviceLine::SayFirst(const std::string& command) {
@@ -27,18 +27,13 @@ void DeviceLine::SayFirst(const std::string& command) {
 }
 
 std::string DeviceLine::Ask(const std::string& query, Duration beyond) {
-  HearOperator();
+  RequireGoingOn();
   const Waiting waiting(device_, beyond);
-  return dialogue_->Ask(device_, query + "\n", Patience() + beyond, [this] { HearOperator(); });
+  return dialogue_->Ask(device_, query + "\n", Patience() + beyond, [this] { RequireGoingOn(); });
 }
 
 std::string DeviceLine::NextLine() {
-  return dialogue_->NextLine(device_, Patience(), [this] { HearOperator(); });
-}
-
-/// Not while it is being stopped.
-void DeviceLine::HearOperator() {
-  if (!Hurries()) RequireGoingOn();
+  return dialogue_->NextLine(device_, Patience(), [this] { RequireGoingOn(); });
 }
 
 void DeviceLine::RequireGoingOn() {

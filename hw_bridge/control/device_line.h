@@ -20,7 +20,8 @@ class DeviceLine {
   /// @throws DeviceFault as Dialogue::Ask.
   std::string Ask(const std::string& query, Duration beyond = {});
   /// From here on `stop_asked` is asked before every question and every 50 ms while an answer is waited for, so that nothing is begun behind
-  /// it, however slowly the device answers. It is heard once: what is said behind it brings the device to rest.
+  /// it, however slowly the device answers. It is heard once, or was when SayFirst was called: what is said behind it brings the device to
+  /// rest.
   void HearStop(std::function<bool()> stop_asked) { stop_asked_ = std::move(stop_asked); }
   bool HearsStop() const { return static_cast<bool>(stop_asked_); }
   /// @throws DeviceFault kStopped if the operator said so.
@@ -48,9 +49,7 @@ class DeviceLine {
   [[noreturn]] void FailProtocol(const std::string& query, const std::string& answer, const std::string& expected);
 
  private:
-  bool Hurries() const { return std::chrono::steady_clock::now() < hurries_until_; }
   Duration Patience() const;
-  void HearOperator();
 
   Dialogue* dialogue_;
   std::string device_;

@@ -88,10 +88,12 @@ TEST_F(EspMachineWithoutStatus, AStopIsSaidBeforeAnythingElseWheneverTheConnecti
 TEST_F(EspMachineWithoutStatus, NothingIsBegunBehindTheOperatorsStopHoweverSlowlyItAnswers) {
   const auto is_looked_at = [&] { return std::ranges::any_of(controller_.Lines(), [](const std::string& line) { return line.find("TP?") != std::string::npos; }); };
   EspMachine machine = Machine(-1, is_looked_at);
+  machine.Stop();  // for another reason
   EXPECT_EQ(test::KindOf([&] { machine.StartMove({1e-3, 1e-3}, 0.0); }), FaultKind::kStopped);
   EXPECT_THAT(controller_.Lines(), testing::Not(Contains(HasSubstr("HL"))));
+  const auto said = std::ranges::count(controller_.Lines(), "ST");
   machine.Stop();
-  EXPECT_THAT(controller_.Lines(), Contains("ST"));
+  EXPECT_GT(std::ranges::count(controller_.Lines(), "ST"), said);
   EXPECT_NO_THROW(machine.State()) << "what is asked behind the stop is for its end";
 }
 
