@@ -3,6 +3,7 @@
 #include "tests/uncertainty/bench_budget.h"
 #include "twin/plan/advice.h"
 #include "twin/plan/harmonics.h"
+#include "twin/plan/mended.h"
 #include "twin/plan/next_run.h"
 #include "twin/plan/outlook.h"
 #include "twin/plan/unseen.h"
@@ -126,7 +127,7 @@ TEST(BiasesOf, AreChangesByTheirOwnUncertaintyTheMostFirstAndAPhaseComesRound) {
   EXPECT_NEAR(BiasesOf(before, after).front().rms, 2.0, 1e-12);
 }
 
-using testing::ElementsAre;
+using testing::ElementsAre, testing::IsEmpty;
 
 TEST(HarmonicsOf, ReadsTermsColumnsAndTables) {
   const auto results = nlohmann::json::parse(R"({
@@ -175,6 +176,38 @@ TEST(MeanOf, IsKnownByTheScatterOfTheRunsButForPhases) {
   // Standard deviation 0.1 sqrt(4 / 3), of the mean of four half of it; the mean is 1.
   EXPECT_NEAR(UncertaintyOfMean(runs), 0.05 * std::sqrt(4.0 / 3.0), 1e-12);
   EXPECT_NEAR(LargestDifference(runs[0], runs[1]), 0.2 / 0.9, 1e-12);
+}
+
+Outlook Losing(std::vector<std::string> lost) {
+  Outlook outlook;
+  outlook.lost = std::move(lost);
+  outlook.separates = true;
+  return outlook;
+}
+
+/// Half a turn leaves every second order of what one mounting does not separate at all, and says so in other words.
+TEST(Mended, IsNothingOfWhichAPartStaysUnderAnotherName) {
+  const Outlook own = Losing({"turntable and multi-tooth table"}), good = Losing({}),
+                half_turn = Losing({"order 2", "order 4"});
+  EXPECT_THAT(WhollyMendedBy(own, half_turn, good), IsEmpty());
+  EXPECT_THAT(MendedInWords(own, half_turn),
+              ElementsAre("turntable and multi-tooth table but for order 2; order 4"));
+  EXPECT_THAT(WhollyMendedBy(own, Losing({}), good), ElementsAre("turntable and multi-tooth table"));
+}
+
+TEST(Mended, IsWhatIsWholeBesideAPartOfSomethingElse) {
+  const Outlook own = Losing({"target dy", "reference dx"}), good = Losing({});
+  EXPECT_THAT(WhollyMendedBy(own, Losing({"target dy orders 2, 4"}), good), ElementsAre("reference dx"));
+  EXPECT_THAT(WhollyMendedBy(own, Losing({"target dy order 0"}), Losing({"target dy order 0"})),
+              ElementsAre("target dy", "reference dx"))
+      << "no shifts tell order 0";
+  EXPECT_THAT(MendedInWords(own, Losing({"target dy order 0"})),
+              ElementsAre("target dy but for order 0", "reference dx"));
+}
+
+TEST(Mended, IsOrder1WhereOrder12Stays) {
+  const Outlook own = Losing({"device, order 1", "device, order 12"}), good = Losing({});
+  EXPECT_THAT(WhollyMendedBy(own, Losing({"device, order 12"}), good), ElementsAre("device, order 1"));
 }
 
 /// One of the runs that a bench offers next, made on the twin beside the scenario's own.

@@ -17,17 +17,11 @@ using diagnose::Isolability;
 
 /// 12 stops, two set-ups, on the quick twin.
 Scenario SmallRotary(const std::string& clamping) {
-  Scenario scenario;
-  scenario.bench = kRotaryBench;
-  scenario.seed = 41;
-  RotarySettings& own = RotaryOf(scenario);
-  own.mechanics.fidelity = "kinematic";
-  own.optics.fidelity = "closed";
-  own.procedure.positions = 12;
-  own.procedure.shifts = {0, 1};
-  own.procedure.passes = {1, -1};
-  own.procedure.clamping = clamping;
-  return scenario;
+  return ParseScenario(
+      "bench = \"rotary_4dof\"\nseed = 41\nmechanics.fidelity = \"kinematic\"\noptics.fidelity = \"closed\"\n",
+      "small.toml", "",
+      {"procedure.positions=12", "procedure.shifts=[0, 1]", "procedure.passes=[1, -1]",
+       "procedure.clamping=" + clamping});
 }
 
 std::size_t IndexOf(const Isolability& isolability, const std::string& effect) {
