@@ -108,16 +108,13 @@ const Row kDominant[] = {
     // A dish that follows a satellite over its highest point: the azimuth is commanded 5 deg/s at most, for a moment, and reaches 4.7.
     {"ALimitThatIsReachedForAMomentIsASpeedLimit",
      [](unsigned seed) {
-       constexpr double kEvery_s = 0.2, kMost_deg_s = 4.7;
        Noise noise_deg(0.0005, seed);
-       Record record;
-       double at_deg = kNaN;
-       for (int k = 0; k < 2000; ++k) {
-         const double asked_deg = 60.0 * std::atan((kEvery_s * k - 200.0) / 12.0);
-         at_deg = std::isnan(at_deg) ? asked_deg : at_deg + std::min(asked_deg - at_deg, kMost_deg_s * kEvery_s);
-         record.Add(kEvery_s * k, asked_deg, at_deg + noise_deg(), 1, 0);
-       }
-       return record;
+       const auto asked_deg = [](double t_s) { return 60.0 * std::atan((t_s - 200.0) / 12.0); };
+       double at_deg = asked_deg(0.0);
+       return Chirped(0.0, 399.9, 0.2, asked_deg, [&](double t_s) {
+         at_deg += std::min(asked_deg(t_s) - at_deg, 4.7 * 0.2);
+         return at_deg + noise_deg();
+       });
      },
      {Is(Verdict::kUnknown), Says(StartsWith("speed limit of 4.7")), HasCauses(0)},
      {3}},
@@ -143,14 +140,13 @@ const Row kDominant[] = {
     {"PlayIsFoundAtTargetsThatAreNotMetExactly",  // but to a part of a step: the first place behind a reversal is
                                                   // not quite the last one
      [](unsigned seed) {
-       std::mt19937_64 random(seed);
-       std::normal_distribution<double> noise_deg(0.0, 0.004), off_deg(0.0, 0.02);
-       Record record{"stops"};
-       for (int k = 0; k < 4 * 120; ++k) {
-         const int pass = k / 120, at = k % 120, direction = pass % 2 == 0 ? 1 : -1;
-         const double r_deg = -60.0 + 1.0 * (direction > 0 ? at : 119 - at) + off_deg(random);
-         record.Add(k, r_deg, 1.001 * r_deg - 0.03 * direction + Sum({{45, 0.03, 0.0}}, r_deg) + noise_deg(random),
-                    direction, pass);
+       Noise noise_deg(0.004, seed), off_deg(0.02, seed + 1);
+       Record record = Listed({-60.0, 1.0, 120, 4, 1.0}, [](const Place& at) { return at.deg; });
+       for (Reading& r : record.readings) {
+         const double at_deg = r.measured_rad / units::deg + off_deg();
+         r.reference_rad = at_deg * units::deg;
+         r.measured_rad =
+             (1.001 * at_deg - 0.03 * r.direction + Sum({{45, 0.03, 0.0}}, at_deg) + noise_deg()) * units::deg;
        }
        return record;
      },
@@ -165,13 +161,8 @@ const Row kDominant[] = {
      [](unsigned seed) {
        Noise noise_deg(0.05, seed);
        const auto shaft_deg = [](double t_s) { return 30.0 - std::abs(std::remainder(30.0 * t_s, 120.0)); };
-       Record record;
-       for (int k = 0; k < 1600; ++k) {
-         const double t_s = 1.0 + 0.01 * k;
-         const int half = static_cast<int>(t_s / 2.0);
-         record.Add(t_s, shaft_deg(t_s), 0.96 * shaft_deg(t_s - 0.06) + noise_deg(), half % 2 == 0 ? -1 : 1, half);
-       }
-       return record;
+       return Chirped(1.003, 17.0, 0.01, shaft_deg,
+                      [&](double t_s) { return 0.96 * shaft_deg(t_s - 0.06) + noise_deg(); });
      },
      {Named("latency"), Size("latency", "delay", 0.06, 0.05 * 0.06), NotNamed({"backlash"}, 0.0)},
      {18}},
@@ -205,18 +196,9 @@ const Row kDominant[] = {
      [](unsigned seed) { return FollowedWithin(1000.0, 0.06, seed); },
      {Named("latency"), Size("latency", "delay", 0.06, 0.001)},
      {10}},
-    {"OnePlacePushedFromBothSidesShowsThePlay",
-     [](unsigned seed) {
-       Noise noise_deg(0.001, seed);
-       Record record{"stops"};
-       for (int k = 0; k < 20; ++k) {
-         const int side = k % 2 == 0 ? 1 : -1;
-         record.Add(k, 30.0, 30.0 - 0.005 * side + noise_deg(), side, k);
-       }
-       return record;
-     },
-     {Named("backlash", 0.5), Size("backlash", "width", 0.01, 0.0, 4.0), kSilentAgain},
-     {8}},
+    OfCourse("OnePlacePushedFromBothSidesShowsThePlay", {30.0, 0.0, 1, 20, 1.0}, 0.001,
+             [](const Place& at) { return -0.005 * at.direction; },
+             {Named("backlash", 0.5), Size("backlash", "width", 0.01, 0.0, 4.0), kSilentAgain}, {8}),
     // The straight line through a parabola has its slope in the middle, at 116 deg.
     OfCourse("WithoutAClockAScaleThatBendsIsNoDrift", {0.0, 8.0, 30}, 0.001,
              [](const Place& at) { return 0.001 * at.deg * (1.0 + 0.8 * at.deg / 360.0); },

@@ -43,14 +43,12 @@ Rows ExactnessRows() {
     rows.push_back({fmt::format("ASingleFarReadingThatNoOtherPassCheckedMayBeOfItsPlace_{}", were_others_there),
                     [=](unsigned seed) {
                       Noise noise_deg(0.002, seed);
-                      Record record;
-                      for (int k = 0; k < 800; ++k) {
-                        const int pass = k / 200;
-                        const double turned_deg =
-                            3.6 * (pass % 2 == 0 ? k % 200 : 199 - k % 200) + between_deg * pass;
-                        record.Add(0.1 * k + pass, turned_deg, turned_deg + noise_deg() + (k == 333 ? 0.04 : 0.0),
-                                   pass % 2 == 0 ? 1 : -1, pass);
-                      }
+                      Record record = Listed({0.0, 3.6, 200, 4, 0.1, "sweep"}, [&](const Place& at) {
+                        return at.deg + noise_deg() + (std::lround(10.0 * at.t_s) == 333 ? 0.04 : 0.0);
+                      });
+                      for (Reading& r : record.readings)
+                        for (double* rad : {&r.reference_rad, &r.measured_rad})
+                          *rad += between_deg * r.pass * units::deg;
                       return record;
                     },
                     {Named("outliers", 0.5), were_others_there ? Named("outliers") : NotNamed({"outliers"}, 0.8),
@@ -177,12 +175,9 @@ TEST(EncoderExactness, WhatIsComputedHasNoCause) {
 /// A degree of this axis is a millimetre.
 TEST(EncoderExactness, OfALinearAxisIsToldInLengths) {
   constexpr double kRate_mm_h = 0.6;
-  Noise noise_mm(0.002, 5);
-  Record record;
-  for (int k = 0; k < 400; ++k) {
-    const double t_s = 5.0 * k, at_mm = 1.8 * (k < 200 ? k : 399 - k);
-    record.Add(t_s, at_mm, at_mm + 0.05 * std::cos(9.0 * at_mm * units::deg) + kRate_mm_h * t_s / 3600.0 + noise_mm(), k < 200 ? 1 : -1, k < 200 ? 0 : 1);
-  }
+  const Record record = Listed({0.0, 1.8, 200, 2, 5.0, "sweep"}, 0.002, 5, [](const Place& at) {
+    return Sum({{9, 0.05, 0.0}}, at.deg) + kRate_mm_h * at.t_s / 3600.0;
+  });
   Scenario believed = record.Believed();
   EncoderOf(believed).device.turn_m = 0.36;
   const Diagnosis found = Diagnosed(record, believed).diagnosis;

@@ -23,17 +23,19 @@ using twinbench::test::EncoderEffect, twinbench::test::EncoderScenario, twinbenc
 struct Fit {
   int grid_point = 0;
   Eigen::VectorXd amplitudes;
-  double left = 1.0;  // share of the signal's rms that stays
+  double left = Amplitude::kInfinity;  // share of the signal's rms that stays
 };
 
-/// Least squares of one grid point's columns and the offsets of the set-ups.
-inline Fit FitAt(const Family& family, int g, const LinearRun& run) {
-  const Eigen::MatrixXd columns = family.ColumnsAt(g), offsets = run.nuisance.jacobian.toDense();
+/// Least squares of columns and the offsets of the set-ups.
+inline Fit FitOf(const Eigen::MatrixXd& columns, const LinearRun& run, int grid_point = 0) {
+  const Eigen::MatrixXd offsets = run.nuisance.jacobian.toDense();
   Eigen::MatrixXd all(columns.rows(), columns.cols() + offsets.cols());
   all << columns, offsets;
   const Eigen::VectorXd x = SolveShortest(all, run.residual);
-  return {g, x.head(columns.cols()), (run.residual - all * x).norm() / run.residual.norm()};
+  const Eigen::VectorXd signal = run.residual - offsets * SolveShortest(offsets, run.residual);
+  return {grid_point, x.head(columns.cols()), (run.residual - all * x).norm() / signal.norm()};
 }
+inline Fit FitAt(const Family& family, int g, const LinearRun& run) { return FitOf(family.ColumnsAt(g), run, g); }
 
 /// The best grid point.
 inline Fit BestFit(const Family& family, const LinearRun& run) {

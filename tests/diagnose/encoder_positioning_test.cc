@@ -1,6 +1,7 @@
 #include <random>
 
 #include "tests/diagnose/encoder_record.h"
+#include "tests/support/over_seeds.h"
 #include "twin/benches/encoder_comparison/diagnosis/memory.h"
 
 namespace twinbench::diagnose::encoder {
@@ -60,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Memory, EncoderAnswer, testing::ValuesIn(kMemory), Name
 
 /// Forward and back once; the noise has a deviation of 0.02 deg and remembers this much of what it was a reading
 /// ago.
-Record Remembering(int readings, double correlation, unsigned seed) {
+Record Remembering(int readings, double correlation, std::uint64_t seed) {
   Noise unit(1.0, seed);
   Record record;
   double x = unit();
@@ -74,25 +75,21 @@ Record Remembering(int readings, double correlation, unsigned seed) {
 }
 
 TEST(EncoderMemory, NoiseThatRemembersAFewReadingsIsNoWalk) {
-  int alarms = 0;
-  for (unsigned seed = 1; seed <= 12; ++seed) {
-    const Answer answer = Ask(Remembering(240, 0.85, seed));
-    if (answer.run.diagnosis.verdict != Verdict::kNone) ++alarms;
-  }
+  const int alarms = twinbench::test::CountOverSeeds(12, [](std::uint64_t seed) {
+    return Ask(Remembering(240, 0.85, seed)).run.diagnosis.verdict != Verdict::kNone;
+  });
   EXPECT_LE(alarms, 1);
 }
 
 /// What many columns have as coefficients exceeds what they sum up to tenfold.
 TEST(EncoderMemory, AWalkIsToldAsLargeAsItShows) {
-  int told = 0;
-  for (unsigned seed = 1; seed <= 6; ++seed) {
-    const Answer answer = Ask(Remembering(190, 0.97, seed));
-    const std::string& words = answer.run.diagnosis.unknown.signature;
-    const std::size_t at = words.find("random walk"), amplitude = words.find("amplitude ", at);
-    if (at == std::string::npos) continue;
-    ++told;
-    EXPECT_LT(std::stod(words.substr(amplitude + 10)), 2.0 * std::sqrt(2.0) * 0.02) << words;
-  }
+  const int told = twinbench::test::CountOverSeeds(6, [](std::uint64_t seed) {
+    const std::string words = Ask(Remembering(190, 0.97, seed)).run.diagnosis.unknown.signature;
+    const std::size_t at = words.find("random walk");
+    if (at == std::string::npos) return false;
+    EXPECT_LT(std::stod(words.substr(words.find("amplitude ", at) + 10)), 2.0 * std::sqrt(2.0) * 0.02) << words;
+    return true;
+  });
   EXPECT_GE(told, 2);
 }
 
@@ -183,22 +180,17 @@ TEST(EncoderPositioning, TheFileOfOneTestPredictsTheCurveOfTheNext) {
 }
 
 TEST(Memory, OfWhiteNoiseIsOneAndOfAWalkIsLongAlongWhatIsSlow) {
-  Noise normal(1.0, 13);
-  constexpr int kReadings = 1200, kRuns = 200;
-  double of_white = 0.0, of_walk = 0.0;
+  constexpr int kReadings = 1200;
   const Eigen::VectorXd slow = Eigen::VectorXd::LinSpaced(kReadings, -1.0, 1.0);
-  for (int run = 0; run < kRuns; ++run) {
-    Eigen::VectorXd white(kReadings), walk(kReadings);
-    double sum = 0.0;
-    for (int k = 0; k < kReadings; ++k) {
-      white[k] = normal();
-      walk[k] = sum += normal();
-    }
-    of_white += MemoryAlong(slow, white) / kRuns;
-    of_walk += MemoryAlong(slow, walk.array() - walk.mean()) / kRuns;
-  }
-  EXPECT_NEAR(of_white, 1.0, 0.15);  // twelve stretches of unlike weight scatter by some 0.6 a run
-  EXPECT_GT(of_walk, 50.0);          // a stretch of 100 readings that hardly changes counts for one
+  const Eigen::Array2d of_white_and_walk = twinbench::test::MeanOverSeeds(200, [&](std::uint64_t seed) {
+    Noise normal(1.0, seed);
+    const Eigen::VectorXd white = Eigen::VectorXd::NullaryExpr(kReadings, [&] { return normal(); });
+    Eigen::VectorXd walk(kReadings);
+    std::partial_sum(white.begin(), white.end(), walk.begin());
+    return Eigen::Array2d(MemoryAlong(slow, white), MemoryAlong(slow, walk.array() - walk.mean()));
+  });
+  EXPECT_NEAR(of_white_and_walk[0], 1.0, 0.15);  // twelve stretches of unlike weight scatter by some 0.6 a run
+  EXPECT_GT(of_white_and_walk[1], 50.0);         // a stretch of 100 readings that hardly changes counts for one
 }
 
 }  // namespace

@@ -206,6 +206,9 @@ using Check = std::function<void(const Answer&)>;
 inline Check Is(Verdict v) {
   return [=](const Answer& a) { EXPECT_EQ(a.run.diagnosis.verdict, v); };
 }
+inline Check IsNot(Verdict v) {
+  return [=](const Answer& a) { EXPECT_NE(a.run.diagnosis.verdict, v); };
+}
 inline Check HasCauses(std::size_t n) {
   return [=](const Answer& a) { EXPECT_EQ(a.run.diagnosis.causes.size(), n); };
 }

@@ -1,4 +1,7 @@
+#include "tests/diagnose/encoder_fit.h"
 #include "tests/diagnose/encoder_record.h"
+#include "tests/diagnose/ring_run.h"
+#include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
 
 namespace twinbench::diagnose::encoder {
@@ -7,7 +10,8 @@ namespace {
 using namespace lab;
 using testing::HasSubstr;
 
-// What recordings of others have beside a cause: glitches, a part of a turn, targets of a stage. Closed forms.
+// What recordings of others have beside a cause: glitches, a part of a turn, targets of a stage, joints whose
+// friction remembers. Closed forms.
 
 using Glitches = std::map<int, double>;
 
@@ -39,6 +43,39 @@ Row PartOfATurn(int order, double travel_deg, int stops) {
       {HasCauses(1), Size("periodic", "order", order, 0.1 * 360.0 / travel_deg),  // of what the travel resolves
        Size("periodic", "amplitude", 0.01, 0.0005), kSilentAgain},
       {5});
+}
+
+struct JointCourse {
+  int readings = 2400;
+  double every_s = 0.04, settles_deg = 0.0;
+};
+
+/// A joint that swings by two frequencies, which grow and die away, with a gap and friction of some memory.
+Record Joint(double gap_deg, double noise_deg, double memory_s, bool is_walk, unsigned seed,
+             const JointCourse& course = {}) {
+  const double end_s = course.readings * course.every_s,
+               kept = is_walk ? 1.0 : std::exp(-course.every_s / memory_s);
+  Noise new_deg(noise_deg * (is_walk ? 1.0 : std::sqrt(1.0 - kept * kept)), seed);
+  Record record;
+  double last_deg = 0.0, shaft_deg = 0.0, behind_deg = 0.0, friction_deg = 0.0;
+  int direction = 1, pass = 0;
+  for (int k = 0; k < course.readings; ++k) {
+    const double t_s = course.every_s * k;
+    const double swell = std::pow(std::clamp(std::min(t_s, end_s - t_s) / (0.4 * end_s), 0.0, 1.0), 2);
+    const double angle_deg = swell * (24.0 * std::sin(2.0 * units::kPi * 0.041 * t_s) +
+                                      15.0 * std::sin(2.0 * units::kPi * 0.063 * t_s + 0.7));
+    shaft_deg = std::clamp(shaft_deg, angle_deg - 0.5 * gap_deg, angle_deg + 0.5 * gap_deg);
+    const double way_deg = std::abs(angle_deg - last_deg);
+    behind_deg +=
+        (course.settles_deg > 0.0 ? -std::expm1(-way_deg / course.settles_deg) : 1.0) * (shaft_deg - behind_deg);
+    friction_deg = kept * friction_deg + new_deg();
+    const int sense = angle_deg < last_deg ? -1 : 1;
+    pass += sense != direction ? 1 : 0;
+    direction = sense;
+    last_deg = angle_deg;
+    record.Add(t_s, angle_deg, behind_deg + friction_deg, direction, pass);
+  }
+  return record;
 }
 
 const Row kRecordings[] = {
@@ -82,7 +119,21 @@ const Row kRecordings[] = {
      },
      {NotNamed({"signal_clipping"}), Named("latency"), Named("periodic"), Size("latency", "delay", 0.15, 0.003),
       Size("periodic", "amplitude", 8.0, 0.05)},
-     {7}}};
+     {7}},
+    // Four fifths of the variance are play: a walk may follow all of it, and is not asked first.
+    {"AWalkTakesNothingOfPlayBesideFrictionThatRemembers",
+     [](unsigned seed) { return Joint(3.6, 0.8, 0.35, false, seed); },
+     {Named("backlash"), Size("backlash", "width", 3.6, 0.6), Is(Verdict::kNamed)},
+     {1, 2, 4}},
+    // Neither of the catalogue's loops, and not both of them.
+    {"PlayWithACourseOfItsOwnIsNamedAsOneLoop",
+     [](unsigned seed) { return Joint(5.3, 0.6, 0.6, false, seed, {900, 0.1, 2.0}); },
+     {[](const Answer& a) { EXPECT_NE(a.Names("backlash", 0.5), a.Names("hysteresis", 0.5)); }},
+     {9, 13, 14, 29}},
+    {"AWalkOfAJointWithoutPlayIsNoPlay",
+     [](unsigned seed) { return Joint(0.0, 0.06, 0.0, true, seed); },
+     {NotNamed({"backlash", "hysteresis"}, 0.5)},
+     {11, 12, 13}}};
 INSTANTIATE_TEST_SUITE_P(Recordings, EncoderAnswer, testing::ValuesIn(kRecordings), NameOfRow);
 
 TEST(EncoderRecordings, WholeTurnsAreContinuedBehindAGlitch) {
@@ -95,6 +146,23 @@ TEST(EncoderRecordings, WholeTurnsAreContinuedBehindAGlitch) {
   const Eigen::VectorXd error_rad = measure::CompareAngles(readings).error_rad;
   EXPECT_NEAR(error_rad[4], 170.0 * units::deg, 1e-12);
   EXPECT_NEAR(error_rad[8], 170.0 * units::deg, 1e-12) << "360 deg more without the level before";
+}
+
+/// What a walk and another shape make against each other is in neither of them, and no word of it stays.
+TEST(EncoderWalk, SaysNothingOfAShapeThatItTakesBack) {
+  Noise step_deg(0.05, 3);
+  double walk_deg = 0.0;
+  const Record record =
+      Listed({0.0, 0.06, 600, 1, 0.1}, [&](const Place& at) { return at.deg + (walk_deg += step_deg()); });
+  DiagnosisRun result;
+  result.run = RunOf(record.readings, record.Believed()).run;
+  const Eigen::VectorXd shape = Eigen::VectorXd::LinSpaced(600, 0.0, 6.0).array().cos();
+  result.accepted = {test::TermOf("", shape, 5.0 * units::deg, Kind::kUnknown)};
+  result.accepted[0].family.describe = [](int, const auto&, const auto&) { return std::string("by the speed"); };
+  result.diagnosis.unknown.signature = "by the speed";
+  TellWander({}, result);
+  EXPECT_THAT(result.diagnosis.unknown.signature,
+              testing::AllOf(HasSubstr("random walk"), testing::Not(HasSubstr("speed"))));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <random>
 
 #include "tests/diagnose/encoder_record.h"
+#include "tests/diagnose/ring_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/few_counts.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_cause.h"
 #include "twin/benches/encoder_comparison/diagnosis/memory.h"
@@ -114,36 +115,37 @@ Record Driven(const Trapezoids& path, double end_s, double noise_deg, unsigned s
   return record;
 }
 
-/// How late it is in all, by a delay and a lag.
-double Late_s(const Answer& answer) {
-  double late_s = 0.0;
-  for (const char* part : {"delay", "time_constant"}) late_s += answer.Find("latency", part) ? answer.Value("latency", part) : 0.0;
-  return late_s;
+/// In all, by a delay and a lag.
+Check Late(double late_s, double within_s) {
+  return [=](const Answer& a) {
+    double told_s = 0.0;
+    for (const char* part : {"delay", "time_constant"})
+      told_s += a.Find("latency", part) ? a.Value("latency", part) : 0.0;
+    EXPECT_NEAR(told_s, late_s, within_s);
+  };
 }
 
-TEST(EncoderServo, IsBehindInProportionToSpeedAndAccelerationAndByFriction) {
-  constexpr double kLate_s = 0.0024, kInert_s2 = 3.1e-4, kFriction_deg = 0.05;
-  const Trapezoids path;
-  const Answer answer = Ask(Driven(path, 7.0, 0.002, 95, [&](double t_s, int goes) {
-    return path.At(t_s - kLate_s) - kInert_s2 * path.Acceleration_deg_s2(t_s) - kFriction_deg * goes;
-  }));
-  SCOPED_TRACE(answer.Words());
-  // Speeds and accelerations are those of readings 4 ms apart: a few readings of each ramp see its ends.
-  EXPECT_TRUE(answer.Names("latency") && answer.Names("acceleration_error") && answer.Names("friction"));
-  EXPECT_NEAR(Late_s(answer), kLate_s, 0.08 * kLate_s);
-  EXPECT_NEAR(answer.Value("acceleration_error", "coefficient"), kInert_s2, 0.08 * kInert_s2);
-  EXPECT_NEAR(answer.Value("friction", "lag"), kFriction_deg, 0.08 * kFriction_deg);
-  EXPECT_NE(answer.run.diagnosis.verdict, Verdict::kUnknown);
-}
-
-TEST(EncoderServo, ThatIsLateAloneHasNoOtherFollowingError) {
-  const Trapezoids path{.speed_deg_s = 45.0, .ramp_s = 0.2, .steady_s = 0.2, .rest_s = 0.25};
-  const Answer answer = Ask(Driven(path, 6.0, 0.004, 96, [&](double t_s, int) { return path.At(t_s - 0.0061); }));
-  SCOPED_TRACE(answer.Words());
-  EXPECT_TRUE(answer.Names("latency"));
-  EXPECT_NEAR(Late_s(answer), 0.0061, 0.0001);
-  EXPECT_FALSE(answer.Names("friction", 0.5) || answer.Names("acceleration_error", 0.5) || answer.Names("backlash", 0.5));
-}
+const Row kDriven[] = {
+    // Speeds and accelerations are those of readings 4 ms apart: a few readings of each ramp see its ends.
+    {"AServoIsBehindInProportionToSpeedAndAccelerationAndByFriction",
+     [](unsigned seed) {
+       const Trapezoids path;
+       return Driven(path, 7.0, 0.002, seed, [&](double t_s, int goes) {
+         return path.At(t_s - 0.0024) - 3.1e-4 * path.Acceleration_deg_s2(t_s) - 0.05 * goes;
+       });
+     },
+     {Named("latency"), Named("acceleration_error"), Named("friction"), Late(0.0024, 0.08 * 0.0024),
+      Size("acceleration_error", "coefficient", 3.1e-4, 0.08 * 3.1e-4), Size("friction", "lag", 0.05, 0.08 * 0.05),
+      IsNot(Verdict::kUnknown)},
+     {95}},
+    {"AServoThatIsLateAloneHasNoOtherFollowingError",
+     [](unsigned seed) {
+       const Trapezoids path{.speed_deg_s = 45.0, .ramp_s = 0.2, .steady_s = 0.2, .rest_s = 0.25};
+       return Driven(path, 6.0, 0.004, seed, [&](double t_s, int) { return path.At(t_s - 0.0061); });
+     },
+     {Named("latency"), Late(0.0061, 0.0001), NotNamed({"friction", "acceleration_error", "backlash"}, 0.5)},
+     {96}}};
+INSTANTIATE_TEST_SUITE_P(Driven, EncoderAnswer, testing::ValuesIn(kDriven), NameOfRow);
 
 LargeCause Latency(double delay_s, double lag_s) {
   LargeCause latency;
@@ -191,10 +193,7 @@ double ChanceOfLoop(double width, double shown, const char* beside, double speed
   DiagnosisRun result;
   result.run.residual = encoder.run.residual;
   result.diagnosis.causes = {Named("backlash", "width", width), Named(beside, "ratio", 0.01)};
-  Accepted& accepted = result.accepted.emplace_back();
-  accepted.family.effect = "backlash";
-  accepted.columns = encoder.run.residual;
-  accepted.amplitudes = Eigen::VectorXd::Constant(1, shown);
+  result.accepted = {test::TermOf("backlash", encoder.run.residual, shown)};
   DoubtLeadingLoops(encoder, result);
   return result.diagnosis.causes.front().probability;
 }

@@ -33,6 +33,13 @@ inline DiagnosisRun NamedRun(const Cause& cause) {
   return run;
 }
 
+/// What a cause that cannot be seen could bias.
+inline std::string CouldBias(const Diagnosis& d, const std::string& effect, const std::string& where = "") {
+  const auto found = std::ranges::find_if(
+      d.invisible, [&](const Invisible& one) { return one.effect == effect && one.where == where; });
+  return found == d.invisible.end() ? "(it says that it would be seen)" : found->could_bias;
+}
+
 /// All that a diagnosis says, for the message of a test that fails.
 inline std::string Told(const DiagnosisRun& found) {
   return report::DiagnosisText({found, ShownBy(found), "the readings"}, {report::Letters::kAscii, true});

@@ -1,6 +1,7 @@
 #include "twin/diagnose/gain.h"
 
 #include "tests/diagnose/ring_run.h"
+#include "tests/support/over_seeds.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/rotary_4dof/bench.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -13,6 +14,7 @@ namespace twinbench::diagnose {
 namespace {
 
 using namespace test;
+using twinbench::test::CountOverSeeds, twinbench::test::MeanOverSeeds;
 
 /// With unknowns, noise, and what `cause` shows in a size.
 LinearRun RingWith(std::uint64_t seed, double size, Accepted (*cause)(const LinearRun&),
@@ -94,28 +96,24 @@ constexpr int kGainRuns = 40;
 
 /// Mean over runs of what is removed by a cause, which is positive in each.
 double MeanFraction(const std::function<LinearRun(std::uint64_t seed)>& make, Accepted (*cause)(const LinearRun&)) {
-  double fraction = 0.0;
-  for (std::uint64_t seed = 0; seed < kGainRuns; ++seed) {
+  return MeanOverSeeds(kGainRuns, [&](std::uint64_t seed) {
     const LinearRun run = make(seed);
     const Gain gain = GainOf(run, {cause(run)});
     EXPECT_TRUE(gain.positive) << seed;
-    fraction += gain.fraction_removed / kGainRuns;
-  }
-  return fraction;
+    return gain.fraction_removed;
+  });
 }
 
 /// Variance that is left of the direction, in that of the noise.
 double LeftOfNoise(bool is_stated) {
-  double floor = 0.0, after = 0.0;
-  for (std::uint64_t seed = 0; seed < kGainRuns; ++seed) {
+  const Eigen::Array2d power = MeanOverSeeds(kGainRuns, [&](std::uint64_t seed) {
     LinearRun run = RingWith(seed, 1e-6, Direction);
     run.sigma_stated = is_stated;
     const Gain gain = GainOf(run, {Direction(run)});
     EXPECT_EQ(gain.folds, 4);
-    floor += std::pow(gain.noise_floor_m, 2);
-    after += std::pow(gain.after_m, 2);
-  }
-  return after / floor;
+    return Eigen::Array2d(std::pow(gain.after_m, 2), std::pow(gain.noise_floor_m, 2));
+  });
+  return power[0] / power[1];
 }
 
 TEST(MeasureGain, OfTheTrueCauseLeavesTheNoiseAlsoOneThatNobodyStates) {
@@ -128,12 +126,9 @@ TEST(MeasureGain, OfTheTrueCauseLeavesTheNoiseAlsoOneThatNobodyStates) {
 
 /// A step of channel b at the last pass of the last set-up.
 Accepted LastStep(const LinearRun& run) {
-  Accepted step;
-  step.family.amplitudes = {{"step", "um", 1e-6, 3e-6, -1e-3, 1e-3}};
-  step.columns = Eigen::MatrixXd::Zero(run.Rows(), 1);
-  for (int i = run.schedule.Readings() - 12; i < run.schedule.Readings(); ++i)
-    step.columns(kRingChannels * i + 1, 0) = 1.0;
-  return step;
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(run.Rows());
+  for (int i = run.schedule.Readings() - 12; i < run.schedule.Readings(); ++i) step[kRingChannels * i + 1] = 1.0;
+  return TermOf("step", step, 0.0);
 }
 
 TEST(MeasureGain, OfTheTrueCauseIsTheWholeRemovableVarianceOfHalfOfItHalfAndOfOnePassMeasuredOnBlocksOfIt) {
@@ -163,20 +158,17 @@ TEST(MeasureGain, OfACauseInADirectionThatWasDrivenOnceIsMeasuredAsWell) {
 
 /// A scale error of channel b in a sweep of +-300 um; the full circles do not see it at all.
 Accepted ScaleInSweep(const LinearRun& run) {
-  Accepted scale;
-  scale.family.amplitudes = {{"gain_error", "1", 1.0, 0.01, -1.0, 1.0}};
-  scale.columns = Eigen::MatrixXd::Zero(run.Rows(), 1);
-  for (int i = 0; i < 26; ++i) scale.columns(kRingChannels * i + 1, 0) = 50e-6 * (i % 13 - 6);
-  return scale;
+  Eigen::VectorXd scale = Eigen::VectorXd::Zero(run.Rows());
+  for (int i = 0; i < 26; ++i) scale[kRingChannels * i + 1] = 50e-6 * (i % 13 - 6);
+  return TermOf("scale", scale, 0.0, Kind::kNamed, {"gain_error", "1", 1.0, 0.01, -1.0, 1.0});
 }
 
 TEST(MeasureGain, CountsACauseThatOnlyTheCalibrationShows) {
-  int positive = 0;
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  const int positive = CountOverSeeds(20, [](std::uint64_t seed) {
     const LinearRun run =
         RingWith(seed, 0.003, ScaleInSweep, {12, {0, 1, 5}, {1, -1, -1, 1}, 26});  // 0.9 um at the ends
-    positive += GainOf(run, {ScaleInSweep(run)}).positive ? 1 : 0;
-  }
+    return GainOf(run, {ScaleInSweep(run)}).positive;
+  });
   EXPECT_GE(positive, 19);
 }
 
@@ -268,24 +260,26 @@ std::vector<HeldOutSums> Blocks(const Held& held, std::uint64_t seed) {
   return blocks;
 }
 
+Gain GainBy(const std::vector<HeldOutSums>& blocks, bool noise_is_stated = true, double stated_correlation = 0.0) {
+  Gain gain;
+  FillGain(blocks, noise_is_stated, stated_correlation, gain);
+  return gain;
+}
+
 struct Found {
-  double mean = 0.0;     // of the fraction
-  double covered = 0.0;  // share of the runs whose interval has the truth
-  double positive = 0.0;
+  double mean;     // of the fraction
+  double covered;  // share of the runs whose interval has the truth
+  double positive;
 };
 
 Found Over(const Held& held, bool noise_is_stated, double stated_correlation = 0.0) {
-  constexpr int kRuns = 120;
-  Found found;
-  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
-    Gain gain;
-    FillGain(Blocks(held, seed), noise_is_stated, stated_correlation, gain);
+  const Eigen::Array3d found = MeanOverSeeds(120, [&](std::uint64_t seed) {
+    const Gain gain = GainBy(Blocks(held, seed), noise_is_stated, stated_correlation);
     const auto [lower, upper] = gain.interval95;
-    found.mean += gain.fraction_removed / kRuns;
-    found.covered += lower <= held.fraction() && held.fraction() <= upper ? 1.0 / kRuns : 0.0;
-    found.positive += gain.positive ? 1.0 / kRuns : 0.0;
-  }
-  return found;
+    const bool covers = lower <= held.fraction() && held.fraction() <= upper;
+    return Eigen::Array3d(gain.fraction_removed, covers ? 1.0 : 0.0, gain.positive ? 1.0 : 0.0);
+  });
+  return {found[0], found[1], found[2]};
 }
 
 TEST(HeldOut, FractionIsRightOnAverageAlsoWhereTheNoiseIsLargerThanTheCause) {
@@ -318,14 +312,9 @@ TEST(HeldOut, CorrelatedNoiseIsNoRemainder) {
 
 /// Share of the runs in which what is stated of another run is right within 0.05.
 double StatedRight(const Held& held) {
-  constexpr int kRuns = 200;
-  double right = 0.0;
-  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
-    Gain gain;
-    FillGain(Blocks(held, seed), true, 0.0, gain);
-    right += std::abs(gain.another_run - held.fraction()) < 0.05 ? 1.0 / kRuns : 0.0;
-  }
-  return right;
+  return MeanOverSeeds(200, [&](std::uint64_t seed) {
+    return std::abs(GainBy(Blocks(held, seed)).another_run - held.fraction()) < 0.05 ? 1.0 : 0.0;
+  });
 }
 
 TEST(HeldOut, AnotherRunIsStatedWithinAFewPercentAlsoWhereWhatRemainsIsNoise) {
@@ -338,15 +327,13 @@ TEST(HeldOut, AnotherRunIsStatedWithinAFewPercentAlsoWhereWhatRemainsIsNoise) {
 TEST(HeldOut, NothingRemovedIsNoGain) {
   const Found found = Over({.power = 0.0}, true);
   EXPECT_EQ(found.positive, 0.0);
-  Gain gain;
-  FillGain({{4.0, 4.0, 5.0, 1.0}}, true, 0.0, gain);  // below the floor: nothing to remove
+  const Gain gain = GainBy({{4.0, 4.0, 5.0, 1.0}});  // below the floor: nothing to remove
   EXPECT_TRUE(std::isnan(gain.fraction_removed));
   EXPECT_FALSE(gain.positive);
 }
 
 TEST(HeldOut, RmsIsInUnitsOfTheReadings) {
-  Gain gain;
-  FillGain({{16.0, 4.0, 1.0, 1e12}}, true, 0.0, gain);  // one row with a noise of 1 um
+  const Gain gain = GainBy({{16.0, 4.0, 1.0, 1e12}});  // one row with a noise of 1 um
   EXPECT_NEAR(gain.before_m, 4e-6, 1e-18);
   EXPECT_NEAR(gain.after_m, 2e-6, 1e-18);
   EXPECT_NEAR(gain.noise_floor_m, 1e-6, 1e-18);

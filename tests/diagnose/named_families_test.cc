@@ -1,5 +1,4 @@
 #include "tests/diagnose/encoder_fit.h"
-#include "twin/diagnose/engine/projector.h"
 
 // Each named family, where a cause shows times its course, against what the twin shows when the cause is at work:
 // two implementations that share no code. Benches whose candidates the twin makes itself are not here: what their twins
@@ -121,34 +120,6 @@ Limit LimitOf(const Slope& slope) {
   return of_effect == limits.end() ? Limit{} : of_effect->second;
 }
 
-/// Least squares of a signature on columns, after projection.
-class Against {
- public:
-  struct Fit {
-    double left = Amplitude::kInfinity;  // share of the signature
-    Eigen::VectorXd amplitudes, shape;
-  };
-
-  Against(const LinearRun& run, const Eigen::VectorXd& signature)
-      : run_(run), projector_(White(run.nuisance.jacobian).sparseView(), run.nuisance), y_(Projected(signature)) {}
-
-  Fit Of(const Eigen::MatrixXd& columns, const Eigen::VectorXd& shape) const {
-    const Eigen::MatrixXd S = Projected(columns);
-    const Eigen::VectorXd x = SolveShortest(S, Eigen::VectorXd(y_.col(0)));
-    return {(y_.col(0) - S * x).norm() / y_.norm(), x, shape};
-  }
-
- private:
-  Eigen::MatrixXd White(const Eigen::MatrixXd& rows) const {
-    return NoiseModel{run_.sigma, {}}.Whiten(run_, rows);
-  }
-  Eigen::MatrixXd Projected(const Eigen::MatrixXd& rows) const { return projector_.Apply(White(rows)); }
-
-  const LinearRun& run_;
-  Projector projector_;
-  Eigen::MatrixXd y_;
-};
-
 /// How far a grid point is from the effect's own shape, and that shape; what no catalogue names stays as it is.
 std::pair<double, Eigen::VectorXd> FromOwn(const Family& family, int grid_point, const Values& parameters) {
   Eigen::VectorXd shape = family.ShapeAt(grid_point);
@@ -166,20 +137,21 @@ std::pair<double, Eigen::VectorXd> FromOwn(const Family& family, int grid_point,
 
 struct Match {
   const Family* family = nullptr;
-  Against::Fit own, grid;
+  test::Fit own;
+  Eigen::VectorXd own_shape;
+  double left_at_grid = Amplitude::kInfinity;
 };
 
-Match MatchOf(const Family& family, const Values& parameters, const Against& against) {
+Match MatchOf(const Family& family, const Values& parameters, const LinearRun& run) {
   double nearest = Amplitude::kInfinity;
   for (int g = 0; g < family.grid; ++g) nearest = std::min(nearest, FromOwn(family, g, parameters).first);
   Match best{&family, {}, {}};
   for (int g = 0; g < family.grid; ++g) {
     const auto [distance, shape] = FromOwn(family, g, parameters);
     if (distance > 2.0 * nearest + 1e-9) continue;
-    const Against::Fit grid = against.Of(family.ColumnsAt(g), family.ShapeAt(g));
-    const Against::Fit own = family.at ? against.Of(family.at(shape), shape) : grid;
-    if (grid.left < best.grid.left) best.grid = grid;
-    if (own.left < best.own.left) best.own = own;
+    const test::Fit grid = test::FitAt(family, g, run), own = family.at ? test::FitOf(family.at(shape), run) : grid;
+    best.left_at_grid = std::min(best.left_at_grid, grid.left);
+    if (own.left < best.own.left) best.own = own, best.own_shape = shape;
   }
   return best;
 }
@@ -190,7 +162,7 @@ void ExpectParameters(const Match& match, const Values& truth, double within) {
   for (Eigen::Index j = 0; j < x.size(); ++j)
     found.push_back({match.family->amplitudes[static_cast<std::size_t>(j)].name, "", 1.0, x[j], 0.0});
   if (match.family->parameters)
-    found = match.family->parameters(match.own.shape, x, Eigen::MatrixXd::Identity(x.size(), x.size()));
+    found = match.family->parameters(match.own_shape, x, Eigen::MatrixXd::Identity(x.size(), x.size()));
   for (const ParameterEstimate& p : found) {
     if (!truth.contains(p.name) || p.name == "crossed_over") continue;
     const double off = p.value - truth.at(p.name),
@@ -208,17 +180,16 @@ TEST_P(NamedFamily, IsWhatTheTwinShowsOfItsEffectNearlySoOnItsGrid) {
   actual.effects = {effect};
   // Candidates are made of readings that have the effect in them.
   const Candidates candidates = CandidatesOf(stated, ReadingsOf(actual));
-  const Against against(candidates.run, candidates.run.residual);
   Match best;
   for (const Family& family : candidates.families) {
     if (family.kind != Kind::kNamed || family.effect != effect.name || family.where != effect.where) continue;
-    const Match match = MatchOf(family, effect.parameters, against);
+    const Match match = MatchOf(family, effect.parameters, candidates.run);
     if (match.own.left < best.own.left) best = match;
   }
   ASSERT_NE(best.family, nullptr);
   const Limit limit = LimitOf(GetParam());
   EXPECT_LT(best.own.left, limit.own);
-  EXPECT_LT(best.grid.left, std::max(limit.own, limit.grid));
+  EXPECT_LT(best.left_at_grid, std::max(limit.own, limit.grid));
   ExpectParameters(best, effect.parameters, std::min(limit.own, 0.02));
 }
 

@@ -1,5 +1,6 @@
 #include "tests/diagnose/found_causes.h"
 #include "tests/diagnose/ring_run.h"
+#include "tests/support/over_seeds.h"
 #include "twin/diagnose/at_jumps.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/autoregression.h"
@@ -40,10 +41,9 @@ TEST(Autoregression, PredictsByTheWeightsThatASeriesWasMadeWith) {
 }
 
 TEST(Autoregression, RemembersNoMoreThanItsNeighbourWhereThatIsAllOrTheSeriesIsShort) {
-  int longer = 0;
-  for (std::uint64_t seed = 0; seed < 50; ++seed)
-    longer += FitAutoregression(DrawnSeries(0.5, 0.0, 900, seed), InOnePass(900), 1).series.Order() > 1;
-  EXPECT_LE(longer, 1);
+  EXPECT_LE(twinbench::test::CountOverSeeds(50, [](auto seed) {
+    return FitAutoregression(DrawnSeries(0.5, 0.0, 900, seed), InOnePass(900), 1).series.Order() > 1;
+  }), 1);
   // Of short series it asks for neighbours only.
   EXPECT_EQ(FitAutoregression(DrawnSeries(1.2, -0.6, 100, 3), InOnePass(100), 1).series.Order(), 1u);
 }
@@ -94,16 +94,11 @@ std::vector<NoiseCause> CausesOf(std::uint64_t seed, const Alter& alter) {
   return FindNoiseCauses(run, noise, without({}), without);
 }
 
-int CountAbove(const std::vector<NoiseCause>& causes, double log_bayes) {
-  int count = 0;
-  for (const NoiseCause& cause : causes) count += cause.log_bayes > log_bayes ? 1 : 0;
-  return count;
-}
-
 TEST(FindNoiseCauses, HardlyEverRefutesWhiteNoise) {
-  int refuted = 0;
-  for (std::uint64_t seed = 0; seed < 100; ++seed)
-    refuted += CountAbove(CausesOf(seed, [](LinearRun&) {}), 6.0) > 0;
+  const int refuted = twinbench::test::CountOverSeeds(100, [](std::uint64_t seed) {
+    return std::ranges::any_of(CausesOf(seed, [](LinearRun&) {}),
+                               [](const NoiseCause& c) { return c.log_bayes > 6.0; });
+  });
   EXPECT_LE(refuted, 1);
 }
 

@@ -61,20 +61,29 @@ inline void AddUnknowns(LinearRun& run, std::uint64_t seed) {
   run.residual += run.nuisance.jacobian * x;
 }
 
+/// A term of one amplitude as a search leaves it.
+inline Accepted TermOf(const std::string& effect, const Eigen::VectorXd& signature, double size,
+                       Kind kind = Kind::kNamed,
+                       const Amplitude& amplitude = {"size", "um", 1e-6, 3e-6, -1e-3, 1e-3}) {
+  Accepted term;
+  term.family.kind = kind;
+  term.family.effect = effect;
+  term.family.amplitudes = {amplitude};
+  term.columns = signature;
+  term.amplitudes = Eigen::VectorXd::Constant(1, size);
+  return term;
+}
+
 /// Channel a follows the direction of travel, the free unknowns cannot: a backlash.
 inline Accepted Direction(const LinearRun& run) {
-  Accepted accepted;
-  accepted.family.kind = Kind::kNamed;
-  accepted.family.effect = "backlash";
-  accepted.family.where = "target";
-  accepted.family.amplitudes = {{"half_width", "um", 1e-6, 3e-6, -1e-3, 1e-3}};
-  accepted.columns = Eigen::MatrixXd::Zero(run.Rows(), 1);
+  Eigen::VectorXd signature = Eigen::VectorXd::Zero(run.Rows());
   for (int i = 0; i < run.schedule.Readings(); ++i) {
     if (run.schedule.phase[static_cast<std::size_t>(i)] == Phase::kFullCircle)
-      accepted.columns(kRingChannels * i, 0) = run.schedule.direction[static_cast<std::size_t>(i)];
+      signature[kRingChannels * i] = run.schedule.direction[static_cast<std::size_t>(i)];
   }
-  accepted.amplitudes = Eigen::VectorXd::Zero(1);
-  return accepted;
+  Accepted direction = TermOf("backlash", signature, 0.0);
+  direction.family.where = "target";
+  return direction;
 }
 
 }  // namespace twinbench::diagnose::test

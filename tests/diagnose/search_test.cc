@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "tests/diagnose/ring_run.h"
+#include "tests/support/over_seeds.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/naming.h"
 #include "twin/diagnose/engine/null_calibration.h"
@@ -86,10 +87,9 @@ TEST(Search, PicksTwoCausesAtOnceUnlessFewerAreAllowed) {
 }
 
 TEST(Search, FindsNothingInNoise) {
-  int found = 0;
-  for (std::uint64_t seed = 10; seed < 110; ++seed) found += SearchCase(seed).Find(3.0).terms.empty() ? 0 : 1;
   // Odds of e^3 = 20 against none: by Markov's inequality at most one in twenty, as a rule far fewer.
-  EXPECT_LE(found, 5);
+  EXPECT_LE(
+      twinbench::test::CountOverSeeds(100, [](auto seed) { return !SearchCase(seed).Find(3.0).terms.empty(); }), 5);
 }
 
 /// A slow cosine of the run, so many times.
@@ -167,7 +167,7 @@ TEST(NullCalibration, KnowsThatAllChannelsOfAReadingShowOneDraw) {
   constexpr double kShare = 0.9;
   SearchCase c(1);
   const NoiseModel noise = WhiteNoise(c.run);
-  const Projector projector(noise.Whiten(c.run, c.run.nuisance.jacobian), c.run.nuisance);
+  const Projector projector = ProjectorOf(c.run, noise);
   const Scanner scanner(c.run, noise, projector, c.families);
   const Eigen::VectorXd priors = LogPriors(c.families);
   const double as_if_white = Calibrate(c.run, scanner, projector, priors, 1000).Threshold(0.05);
@@ -210,17 +210,15 @@ Family Decay(const LinearRun& run) {
 
 /// Shares of many runs whose 95 % intervals hold amplitude and lifetime, with a noise of so many times the stated one.
 Eigen::Vector2d CoverageOf95(double noise) {
-  constexpr int kSeeds = 200;
-  Eigen::Vector2d share(0.0, 0.0);
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  return twinbench::test::MeanOverSeeds(200, [noise](std::uint64_t seed) {
     SearchCase c(seed);
     c.families = {Decay(c.run)};
     c.run.residual = noise * c.run.residual + kDecaying_m * c.families[0].at(Eigen::VectorXd::Constant(1, kLifetime_s));
     const Term term = c.Find(-std::numeric_limits<double>::infinity(), 1).terms.at(0);  // its size is asked for, not whether it is there
     const Eigen::Vector2d off(term.amplitudes[0] - kDecaying_m, term.shape[0] - kLifetime_s);
-    for (int k = 0; k < 2; ++k) share[k] += std::abs(off[k]) <= 1.96 * std::sqrt(term.cov(k, k)) ? 1.0 / kSeeds : 0.0;
-  }
-  return share;
+    const Eigen::Array2d u = term.cov.diagonal().head(2).cwiseSqrt();
+    return Eigen::Vector2d((off.array().abs() <= 1.96 * u).cast<double>());
+  });
 }
 
 // 0.95 less three deviations of 200 runs is 0.90. A lifetime enters in curves, which costs a little more.

@@ -55,17 +55,6 @@ TEST(MissingColumns, NamesColumnsOrTheWholeCalibrationAndTheCausesThatAreLostOfA
   EXPECT_EQ(NotesOf(twinbench::test::RunTwin(scenario).readings, kRotaryBench), "");
 }
 
-/// The term as a search would have left it: one amplitude, its signature in SI.
-Accepted TermOf(const std::string& effect, const Eigen::VectorXd& signature, Kind kind = Kind::kNamed) {
-  Accepted term;
-  term.family.kind = kind;
-  term.family.effect = effect;
-  term.family.amplitudes = {{"size", "1", 1.0, 1.0}};
-  term.amplitudes = Eigen::VectorXd::Ones(1);
-  term.columns = signature;
-  return term;
-}
-
 /// A sweep forth and back without noise, with what two causes show: a wave of 10 sigma, a wave of 5 sigma.
 struct TwoWaves {
   TwoWaves() {
@@ -86,7 +75,7 @@ struct TwoWaves {
 
 TEST(ShownBy, SharesTheVarianceAmongTheCauses) {
   TwoWaves waves;
-  waves.found.accepted = {TermOf("small", waves.small), TermOf("large", waves.large)};
+  waves.found.accepted = {TermOf("small", waves.small, 1.0), TermOf("large", waves.large, 1.0)};
   const Shown shown = ShownBy(waves.found);
   ASSERT_EQ(shown.share.size(), 3u);
   // Powers 100 to 25. The waves are not quite orthogonal on the unequal steps of the sweep: some hundredths.
@@ -99,7 +88,7 @@ TEST(ShownBy, SharesTheVarianceAmongTheCauses) {
 
 TEST(ShownBy, LeavesTheShareOfWhatWasNotAccepted) {
   TwoWaves waves;
-  waves.found.accepted = {TermOf("wave", waves.small, Kind::kUnknown)};
+  waves.found.accepted = {TermOf("wave", waves.small, 1.0, Kind::kUnknown)};
   const Shown shown = ShownBy(waves.found);
   EXPECT_TRUE(std::isnan(shown.share[0]));
   EXPECT_NEAR(shown.share_unnamed, 0.2, 0.05);
@@ -108,7 +97,8 @@ TEST(ShownBy, LeavesTheShareOfWhatWasNotAccepted) {
 TEST(ShownBy, GivesNoCauseMoreThanThereIs) {
   TwoWaves waves;
   const Eigen::VectorXd all = waves.large + waves.small;
-  waves.found.accepted = {TermOf("large", 1.3 * all), TermOf("small", -0.3 * all)};  // one takes back what the other has too much
+  waves.found.accepted = {TermOf("large", 1.3 * all, 1.0),
+                          TermOf("small", -0.3 * all, 1.0)};  // one takes back what the other has too much
   const Shown shown = ShownBy(waves.found);
   EXPECT_LE(shown.share[0], 1.0);
   EXPECT_LT(shown.share[1], 0.0);

@@ -177,25 +177,19 @@ TEST(TurntableDiagnosis, TakesWhatSwitchesForNoTone) {
 }
 
 TEST(TurntableDiagnosis, CallsTheRollInvisibleWithOneTiltAndNoSweep) {
-  Scenario scenario = PublishedScenario();
-  TurntableOf(scenario).turntable_procedure.tilts_rad = {60 * arcsec};
-  TurntableOf(scenario).turntable_procedure.tilt_azimuths_rad = {0.0};
-  TurntableOf(scenario).turntable_procedure.passes = {1, -1};
+  const Scenario scenario = Altered(
+      PublishedScenario(), {"turntable_procedure.tilts_arcsec=[60]", "turntable_procedure.tilt_azimuths_deg=[0]",
+                            "turntable_procedure.passes=[1, -1]"});
   const Diagnosis d = DiagnosisOf(scenario, {.roll_rad = 10e-3}).diagnosis;
   EXPECT_EQ(d.verdict, Verdict::kNone);
   for (const char* effect : {"autocollimator_roll", "autocollimator_scale", "mirror_flatness"}) {
-    const auto invisible = std::ranges::find(d.invisible, effect, &Invisible::effect);
-    ASSERT_NE(invisible, d.invisible.end()) << effect;
-    EXPECT_THAT(invisible->could_bias, HasSubstr("turntable.ez of a position up to")) << effect;
-    if (invisible->effect == "autocollimator_roll") {
-      EXPECT_THAT(invisible->could_bias, HasSubstr("another tilt of the multi-tooth table"));
-    }
+    EXPECT_THAT(test::CouldBias(d, effect), HasSubstr("turntable.ez of a position up to")) << effect;
   }
+  EXPECT_THAT(test::CouldBias(d, "autocollimator_roll"), HasSubstr("another tilt of the multi-tooth table"));
 }
 
 TEST(TurntableDiagnosis, TiesBacklashAndSettlingWithOneDwell) {
-  Scenario scenario = CarefulScenario();
-  TurntableOf(scenario).turntable_procedure.dwell_s = {1.0};
+  const Scenario scenario = Altered(CarefulScenario(), {"turntable_procedure.dwell_s=[1]"});
   const Diagnosis d = DiagnosisOf(scenario, {.backlash_rad = 0.6 * arcsec}).diagnosis;
   ASSERT_EQ(d.verdict, Verdict::kTie);
   ASSERT_EQ(d.causes.size(), 2u);

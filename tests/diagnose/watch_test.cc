@@ -1,12 +1,14 @@
 #include "twin/diagnose/watch.h"
 
 #include "tests/diagnose/ring_run.h"
+#include "tests/support/over_seeds.h"
 #include "twin/diagnose/sequential_fit.h"
 
 namespace twinbench::diagnose {
 namespace {
 
 using namespace test;
+using twinbench::test::CountOverSeeds;
 
 LinearRun Clean(std::uint64_t seed, double noise = 1.0) {
   LinearRun run = MakeRing();
@@ -45,9 +47,9 @@ TEST(WatchLimits, KeepTheirRateOverWhiteNoise) {
 TEST(Watch, RaisesFalseAlarmsNoMoreOftenThanStated) {
   for (const double rate : {0.01, 0.05}) {
     constexpr int kRuns = 400;
-    int alarms = 0;
-    for (std::uint64_t seed = 0; seed < kRuns; ++seed)
-      alarms += Watch(Clean(seed), {rate, 0}).alarms.empty() ? 0 : 1;
+    const int alarms = CountOverSeeds(kRuns, [=](auto seed) {
+      return !Watch(Clean(seed), {rate, 0}).alarms.empty();
+    });
     // Binomial, three standard deviations.
     EXPECT_LE(alarms, kRuns * rate + 3.0 * std::sqrt(kRuns * rate * (1.0 - rate))) << rate;
   }
@@ -55,9 +57,9 @@ TEST(Watch, RaisesFalseAlarmsNoMoreOftenThanStated) {
 
 TEST(Watch, StandsANoiseFigureThatIsWrongByAQuarter) {
   constexpr int kRuns = 200;
-  int alarms = 0;
-  for (std::uint64_t seed = 0; seed < kRuns; ++seed)
-    alarms += Watch(Clean(seed, 1.25), {0.05, 0}).alarms.empty() ? 0 : 1;
+  const int alarms = CountOverSeeds(kRuns, [](auto seed) {
+    return !Watch(Clean(seed, 1.25), {0.05, 0}).alarms.empty();
+  });
   // Here 14 rows come before the charts begin: until the scale has been learnt the limits are too narrow. Without
   // rescaling four runs in five alarm.
   EXPECT_LE(alarms, 0.20 * kRuns);
@@ -103,16 +105,12 @@ LinearRun WithStep(std::uint64_t seed, int from, double size_m, bool on_b) {
 /// Upwards or downwards.
 TEST(Watch, FindsAStepOfThreeDeviationsWithinTenReadings) {
   constexpr int kFrom = 8 + 20;  // in the second pass
-  int found = 0;
-  constexpr int kRuns = 100;
-  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+  const int found = CountOverSeeds(100, [](std::uint64_t seed) {
     const double sign = seed % 2 == 0 ? 1.0 : -1.0;
-    const WatchReport report = Watch(WithStep(seed, kFrom, sign * 4.0 * kRingSigma_m, false));
-    if (report.alarms.empty()) continue;
-    const Alarm& alarm = report.alarms.front();
-    EXPECT_GE(alarm.reading, kFrom);
-    found += alarm.reading <= kFrom + 10 && alarm.series == "a" ? 1 : 0;
-  }
+    const std::vector<Alarm> alarms = Watch(WithStep(seed, kFrom, sign * 4.0 * kRingSigma_m, false)).alarms;
+    EXPECT_TRUE(alarms.empty() || alarms.front().reading >= kFrom);
+    return !alarms.empty() && alarms.front().reading <= kFrom + 10 && alarms.front().series == "a";
+  });
   // A prediction of one reading before has sqrt(2) of the noise: 4 sigma are 2.8 standard deviations of it. The sum
   // gains 2.3 a reading and its limit is 11.5.
   EXPECT_GE(found, 90);
