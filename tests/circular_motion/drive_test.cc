@@ -1,15 +1,17 @@
 #include "tests/circular_motion/written_circles.h"
+#include "tests/support/thresholds.h"
 #include "twin/benches/circular_motion/bench.h"
 #include "twin/benches/circular_motion/twin/live.h"
 #include "twin/benches/evaluated.h"
 #include "twin/core/stream.h"
 
-// What a controller logs of its own axes on a circle. Readings are written here from how late each axis is.
+// What a controller logs of its own axes on a circle, and a grid plate. Readings are written here from how late
+// each axis is, and from what each error does to the path.
 namespace twinbench::benches::circular {
 namespace {
 
 using test::ExpectCircleError;
-using units::arcsec, units::mm, units::um;
+using units::arcsec, units::deg, units::mm, units::um;
 
 constexpr double kCircle_m = 50.0 * mm;
 
@@ -108,11 +110,8 @@ TEST(Drive, ShowsItsLagOneWayRound) {
 TEST(Drive, IsDiagnosedWithItsLagOneWayRound) {
   const Drives late{.are_delayed = false, .late_x_s = 12e-3, .late_y_s = 12.5e-3, .scale_x = 0.0, .scale_y = 0.0, .squareness_rad = 0.0};
   const diagnose::Diagnosis found = Diagnose(Logged(late, {3000.0}, {-1}), test::ToldOfCircles("drive", kCircle_m), {}).diagnosis;
-  const auto causes_called = [&found](const char* effect) {
-    return std::ranges::count_if(found.causes, [effect](const auto& cause) { return cause.effect == effect; });
-  };
-  EXPECT_EQ(causes_called("servo_lag"), 1);
-  EXPECT_EQ(causes_called("scale"), 0);
+  EXPECT_EQ(std::ranges::count(found.causes, "servo_lag", &diagnose::Cause::effect), 1);
+  EXPECT_EQ(std::ranges::count(found.causes, "scale", &diagnose::Cause::effect), 0);
 }
 
 TEST(Drive, IsLateByAFixedTimeWhereTheScenarioSaysSo) {
@@ -128,6 +127,70 @@ TEST(Drive, IsLateByAFixedTimeWhereTheScenarioSaysSo) {
 
 TEST(Drive, HasNoKindOfLagWhereNoneIsSeen) {
   EXPECT_FALSE(ResultsOf(Logged({.late_x_s = 0.0, .late_y_s = 0.0}, {1000.0, 3000.0})).contains("lag_kind"));
+}
+
+constexpr double kGridCircle_m = 80.0 * mm;
+
+/// Squareness turns Y towards -X.
+struct Plane {
+  double squareness_rad, scale_x, scale_y, backlash_x_m, backlash_y_m;
+};
+
+/// @param show  What else is done to a reading.
+template <class Show>
+diagnose::Diagnosis DiagnosisOfGrid(const Plane& plane, double feed_m_s, Show show) {
+  Stream stream(7, "grid");
+  const auto readings = test::Written({kGridCircle_m, feed_m_s, 360, 0.0, 5.7}, [&](Reading& r, double a) {
+    const double x_m = kCommandedX_m(r), y_m = kCommandedY_m(r);
+    kGridX_m(r) = x_m * (1.0 + plane.scale_x) - plane.squareness_rad * y_m +
+                  test::Behind_m(kGridCircle_m, plane.backlash_x_m, a, r.direction) + 0.05 * um * stream.Normal();
+    kGridY_m(r) = y_m * (1.0 + plane.scale_y) +
+                  test::Behind_m(kGridCircle_m, plane.backlash_y_m, a - 90.0 * deg, r.direction) +
+                  0.05 * um * stream.Normal();
+    show(r, a);
+  });
+  const Scenario scenario =
+      test::ToldOfCircles("grid", kGridCircle_m, {"machine.lag_x_s=0", "machine.lag_y_s=0", "machine.span_mm=80"});
+  return Diagnose(readings, scenario, test::QuickOptions(100)).diagnosis;
+}
+
+const diagnose::Cause* CauseOf(const diagnose::Diagnosis& d, const std::string& effect, const std::string& where) {
+  for (const diagnose::Cause& cause : d.causes)
+    if (cause.effect == effect && cause.where == where) return &cause;
+  return nullptr;
+}
+
+TEST(GridPlate, HasItsSquarenessScalesAndBacklashesNamedTogether) {
+  const Plane plane{12.0 * arcsec, 20e-6, -25e-6, 4.0 * um, 6.0 * um};
+  const diagnose::Diagnosis d = DiagnosisOfGrid(plane, 1000.0 * mm / 60.0, [](Reading&, double) {});
+  for (const auto& [effect, where, size] : {std::tuple{"squareness", "", plane.squareness_rad},
+                                            {"scale", "x", plane.scale_x},
+                                            {"scale", "y", plane.scale_y},
+                                            {"backlash", "x", plane.backlash_x_m},
+                                            {"backlash", "y", plane.backlash_y_m}}) {
+    const diagnose::Cause* const cause = CauseOf(d, effect, where);
+    ASSERT_TRUE(cause) << effect << " " << where;
+    EXPECT_NEAR(cause->parameters[0].value, size, 4.0 * cause->parameters[0].u) << effect << " " << where;
+  }
+  EXPECT_FALSE(CauseOf(d, "outliers", "")) << "a reading on the way through a reversal is no outlier";
+  EXPECT_FALSE(HasUnmodelled(d));
+}
+
+TEST(GridPlate, HasTheScaleOfAnAxisBesideLagsThatAreNotAlike) {
+  // Of first order: along each axis 1 / (1 + lag s) at the circle's rate.
+  constexpr double kLagX_s = 3.0e-3, kLagY_s = 3.6e-3, kScaleX = 20e-6, kFeed = 15.0 * units::mm * 1000.0 / 60.0;
+  const diagnose::Diagnosis d = DiagnosisOfGrid({}, kFeed, [&](Reading& r, double a) {
+    const auto lagging_m = [&](double from_rad, double lag_s) {
+      const double lag_rad = r.direction * kFeed / kGridCircle_m * lag_s;
+      return kGridCircle_m / std::hypot(1.0, lag_rad) * std::cos(from_rad - std::atan(lag_rad));
+    };
+    kGridX_m(r) += (1.0 + kScaleX) * lagging_m(a, kLagX_s) - kCommandedX_m(r);
+    kGridY_m(r) += lagging_m(a - 90.0 * deg, kLagY_s) - kCommandedY_m(r);
+  });
+  const diagnose::Cause* const scale = CauseOf(d, "scale", "x");
+  ASSERT_TRUE(scale);
+  EXPECT_NEAR(scale->parameters[0].value, kScaleX, 4.0 * scale->parameters[0].u);
+  EXPECT_FALSE(HasUnmodelled(d));
 }
 
 }  // namespace

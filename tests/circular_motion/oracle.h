@@ -25,8 +25,8 @@ class QuietCircles {
  public:
   QuietCircles() : text_("bench = \"circular_motion\"\n[machine]\nlag_x_s = 0.0\nlag_y_s = 0.0\n") {}
 
-  /// @param name  As the independent implementation calls a parameter.
-  void Set(const std::string& name, double value) {
+  /// Of a parameter as the independent implementation calls it.
+  static std::string KeyOf(const std::string& name) {
     static const std::map<std::string, std::string> renamed = {
         {"zero_deg", "encoder.zero_deg"},
         {"ecc_arcsec", "encoder.eccentricity_arcsec"},
@@ -35,7 +35,10 @@ class QuietCircles {
         {"ell_azimuth_deg", "encoder.ellipticity_azimuth_deg"},
         {"bar_gain", "bar.gain_error"},
         {"encoder_latency_s", "encoder.latency_s"}};
-    overrides_.push_back((renamed.contains(name) ? renamed.at(name) : TableOf(name)) + "=" + std::to_string(value));
+    return renamed.contains(name) ? renamed.at(name) : TableOf(name);
+  }
+  void Set(const std::string& name, double value) {
+    overrides_.push_back(KeyOf(name) + "=" + std::to_string(value));
   }
 
   Scenario Make() const { return ParseScenario(text_, "quiet", ".", overrides_); }

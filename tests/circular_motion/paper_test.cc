@@ -1,6 +1,7 @@
 #include "tests/circular_motion/circle_run.h"
 #include "tests/circular_motion/oracle.h"
 #include "tests/support/night.h"
+#include "tests/support/over_seeds.h"
 #include "tests/support/thresholds.h"
 #include "twin/benches/circular_motion/analysis.h"
 #include "twin/benches/circular_motion/bench.h"
@@ -52,7 +53,7 @@ TEST(PaperOfTheBar, RepeatsWithinAMicrometreAt156Millimetres) {
 }
 
 /// e' cov^-1 e of all fitted errors of machine, bar and encoder, and how many they are.
-std::pair<double, Eigen::Index> ChiSquared(std::uint64_t seed) {
+Eigen::Array2d ChiSquared(std::uint64_t seed) {
   const Scenario scenario = Instrument(seed, {"circular_procedure.points=60"});
   const CircleFit fit = Analyse(scenario, test::CircleReadings(scenario), Estimator::kRigorous).fit;
   const Eigen::Index count = std::ssize(fit.fitted);
@@ -64,19 +65,14 @@ std::pair<double, Eigen::Index> ChiSquared(std::uint64_t seed) {
     error[k] = unknown.in(found)-truth;
   }
   EXPECT_EQ(fit.shared.hidden.cols(), 0) << "two radii, two feeds and the grid tell all apart";
-  return {error.dot(fit.shared.cov.topLeftCorner(count, count).inverse() * error), count};
+  return {error.dot(fit.shared.cov.topLeftCorner(count, count).inverse() * error), static_cast<double>(count)};
 }
 
 TEST(RigorousCircle, StatesUncertaintiesThatMatchItsErrors) {
   const int seeds = test::ByNight(20, 6);
-  double sum = 0.0, dof = 0.0;
-  for (int seed = 1; seed <= seeds; ++seed) {
-    const auto [chi2, count] = ChiSquared(static_cast<std::uint64_t>(seed));
-    sum += chi2;
-    dof += static_cast<double>(count);
-  }
+  const Eigen::Array2d chi2_and_dof = seeds * test::MeanOverSeeds(seeds, ChiSquared);
   // Chi-squared per degree of freedom: standard deviation sqrt(2 / dof), about 0.06 with 20 runs.
-  EXPECT_NEAR(sum / dof, 1.0, 4.0 * std::sqrt(2.0 / dof)) << dof;
+  EXPECT_NEAR(chi2_and_dof[0] / chi2_and_dof[1], 1.0, 4.0 * std::sqrt(2.0 / chi2_and_dof[1])) << chi2_and_dof[1];
 }
 
 Scenario Believed() {

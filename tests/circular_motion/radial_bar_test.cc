@@ -237,10 +237,7 @@ TEST(CircularDeviations, OfATurnThatIsNotQuiteClosedOrOfWhichAPartWasReadTwiceAr
 }
 
 TEST(RadialBar, FarOffItsCentreHasNoLagOfBothAxesNamed) {
-  Machine machine;
-  machine.backlash_x_m = 40.0 * um;
-  machine.centre_x_m = 800.0 * um;
-  machine.centre_y_m = -500.0 * um;
+  const Machine machine{.backlash_x_m = 40.0 * um, .centre_x_m = 800.0 * um, .centre_y_m = -500.0 * um};
   const diagnose::Diagnosis d = Diagnose(Readings(machine, 0.3 * um), Usual(), test::QuickOptions(100)).diagnosis;
   for (const diagnose::Cause& cause : d.causes) EXPECT_NE(cause.effect, "servo_lag");
 }
