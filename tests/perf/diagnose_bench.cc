@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "tests/perf/timing.h"
@@ -48,8 +49,8 @@ void SumOverWavesOneByOne(benchmark::State& state) {
 BENCHMARK(SumOverWavesOneByOne)->Arg(2000)->Arg(20000)->Unit(benchmark::kMillisecond);
 
 /// Eight passes of two turns, four at 36 deg/s and four at 12 deg/s, with noise of 0.002 deg.
-template <class Error>
-std::vector<Reading> Read(int count, Error error_deg) {
+using Error = std::function<double(const Reading&)>;
+std::vector<Reading> Read(int count, const Error& error_deg) {
   std::mt19937_64 random(2);
   std::normal_distribution<double> noise_deg(0.0, 0.002);
   std::vector<Reading> readings;
@@ -75,8 +76,7 @@ std::vector<Reading> Read(int count, Error error_deg) {
   return readings;
 }
 
-template <class Error>
-void Diagnose(benchmark::State& state, Error error_deg) {
+void Diagnose(benchmark::State& state, const Error& error_deg) {
   const std::vector<Reading> readings = Read(static_cast<int>(state.range(0)), error_deg);
   Scenario scenario;
   scenario.bench = kEncoderBench;
@@ -88,21 +88,17 @@ void Diagnose(benchmark::State& state, Error error_deg) {
   state.counters["asked/taken"] = kAsked_s * static_cast<double>(state.iterations()) / taken_s;
 }
 
-void DiagnoseNothing(benchmark::State& state) {
-  Diagnose(state, [](const Reading&) { return 0.0; });
+double OneOrder_deg(const Reading& r) { return 0.02 * std::cos(7.0 * r.reference_rad); }
+double FourLarge_deg(const Reading& r) {
+  return 0.3 * std::cos(7.0 * r.reference_rad) + 0.5 * std::cos(r.reference_rad + 0.9) -
+         0.02 * r.velocity_rad_s / deg + 1e-3 * ToSeconds(r.time);
 }
-void DiagnoseOneOrder(benchmark::State& state) {
-  Diagnose(state, [](const Reading& r) { return 0.02 * std::cos(7.0 * r.reference_rad); });
+void Sizes(benchmark::internal::Benchmark* b) {
+  b->Arg(2000)->Arg(20000)->Iterations(1)->Unit(benchmark::kSecond);
 }
-void DiagnoseFourLarge(benchmark::State& state) {
-  Diagnose(state, [](const Reading& r) {
-    return 0.3 * std::cos(7.0 * r.reference_rad) + 0.5 * std::cos(r.reference_rad + 0.9) -
-           0.02 * r.velocity_rad_s / deg + 1e-3 * ToSeconds(r.time);
-  });
-}
-BENCHMARK(DiagnoseNothing)->Arg(2000)->Arg(20000)->Iterations(1)->Unit(benchmark::kSecond);
-BENCHMARK(DiagnoseOneOrder)->Arg(2000)->Arg(20000)->Iterations(1)->Unit(benchmark::kSecond);
-BENCHMARK(DiagnoseFourLarge)->Arg(2000)->Arg(20000)->Iterations(1)->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(Diagnose, nothing, [](const Reading&) { return 0.0; })->Apply(Sizes);
+BENCHMARK_CAPTURE(Diagnose, one_order, OneOrder_deg)->Apply(Sizes);
+BENCHMARK_CAPTURE(Diagnose, four_large, FourLarge_deg)->Apply(Sizes);
 
 }  // namespace
 

@@ -28,15 +28,8 @@ void SeparateAll(benchmark::State& state, std::size_t lost) {
       benchmark::Counter(n, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void SeparateFromScratch(benchmark::State& state) {
-  SeparateAll(state, 0);
-}
-/// One reading in 300.
-void SeparateWithGaps(benchmark::State& state) {
-  SeparateAll(state, 300);
-}
-BENCHMARK(SeparateFromScratch)->Arg(36)->Arg(360)->Arg(720)->Unit(benchmark::kMillisecond);
-BENCHMARK(SeparateWithGaps)->Arg(360)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(SeparateAll, from_scratch, 0)->Arg(36)->Arg(360)->Arg(720)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(SeparateAll, with_gaps, 300)->Arg(360)->Unit(benchmark::kMillisecond);
 
 void SeparateWithFactorisation(benchmark::State& state) {
   const auto motions = FullCircles(36);
@@ -74,15 +67,11 @@ void SeparateTwoCurves(benchmark::State& state, double missing, double spread) {
       n * std::log2(n), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// n = 36 007 is a prime.
-void CompleteCurves(benchmark::State& state) {
-  SeparateTwoCurves(state, 0.0, 1.0);
+void Lengths(benchmark::internal::Benchmark* b) {  // the last is a prime
+  for (const int n : {9000, 18000, 36000, 72000, 36007}) b->Arg(n)->Unit(benchmark::kMillisecond);
 }
-void CurvesWithGapsAndWeights(benchmark::State& state) {
-  SeparateTwoCurves(state, 0.02, 10.0);
-}
-BENCHMARK(CompleteCurves)->Arg(9000)->Arg(18000)->Arg(36000)->Arg(72000)->Arg(36007)->Unit(benchmark::kMillisecond);
-BENCHMARK(CurvesWithGapsAndWeights)->Arg(9000)->Arg(18000)->Arg(36000)->Arg(72000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(SeparateTwoCurves, complete, 0.0, 1.0)->Apply(Lengths);
+BENCHMARK_CAPTURE(SeparateTwoCurves, with_gaps_and_weights, 0.02, 10.0)->Apply(Lengths);
 
 }  // namespace
 
