@@ -98,11 +98,9 @@ inline void FillExact(std::vector<Motion>& motions, const Truth& truth, const La
 /// The entries of one table that contain a component.
 inline std::vector<NotSeparable> LossesOf(const std::vector<NotSeparable>& lost, Table table, Component component) {
   std::vector<NotSeparable> found;
-  for (const NotSeparable& e : lost) {
-    bool has = false;
-    for (const Component c : e.components) has = has || c == component;
-    if (e.table == table && has) found.push_back(e);
-  }
+  std::ranges::copy_if(lost, std::back_inserter(found), [&](const NotSeparable& e) {
+    return e.table == table && std::ranges::count(e.components, component) > 0;
+  });
   return found;
 }
 

@@ -5,6 +5,7 @@
 #include "tests/support/kept_text.h"
 #include "tests/support/night.h"
 #include "tests/support/noise.h"
+#include "tests/support/over_seeds.h"
 #include "twin/report/compensation_text.h"
 #include "twin/separate/line_search.h"
 
@@ -162,17 +163,16 @@ TEST(Compensate, PredictsWhatIsLeftAtEvenPositionsAndWithReadingsBetweenAllOrHal
 TEST(Compensate, PredictsTheUncertaintyOfItsOwnLinesToo) {
   CompensationOptions options;
   options.search.highest_order = 30;
-  constexpr int kSeeds = 60, kLines = 12;  // a sixth of the places, the most that are looked for
-  double mean_ratio = 0.0;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
-    SpectrumBench bench = BenchWith({}, 2.0 * arcsec, static_cast<std::uint64_t>(seed));
+  constexpr int kLines = 12;  // a sixth of the places, the most that are looked for
+  const double mean_ratio = test::MeanOverSeeds(60, [&](std::uint64_t seed) {
+    SpectrumBench bench = BenchWith({}, 2.0 * arcsec, seed);
     for (int order = 1; order <= kLines; ++order) bench.lines.push_back({order, 100.0 / order, 0.7 * order});
     const IndexErrors first = bench.Read({EvenPositions()});
     const Compensation compensation = Compensate(first, options);
     EXPECT_EQ(compensation.Orders(LineFate::kCompensated).size(), static_cast<std::size_t>(kLines)) << seed;
     bench.commanded = compensation.table;
-    mean_ratio += CheckCompensation(first, compensation, bench.Read({EvenPositions()})).Ratio() / kSeeds;
-  }
+    return CheckCompensation(first, compensation, bench.Read({EvenPositions()})).Ratio();
+  });
   EXPECT_NEAR(mean_ratio, 1.0, 0.04);  // 0.86 without it
 }
 
@@ -237,16 +237,12 @@ TEST(FindLines, IsNotCertainOfALineThatIsHalfSeen) {
 }
 
 TEST(FindLines, StatesAnUncertaintyThatMatchesItsScatter) {
-  constexpr int kRuns = 200;
-  double sum = 0.0;
-  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
-    const SpectrumBench bench = BenchWith({{2, 3, 0.0}}, 0.3 * arcsec, seed);
-    const LineFit fit = FindLines(bench.Read({EvenPositions()}));
-    ASSERT_FALSE(fit.lines.empty());
-    sum += std::pow((fit.lines[0].sin_rad) / fit.lines[0].u_rad, 2);
-  }
+  const double mean = test::MeanOverSeeds(200, [](std::uint64_t seed) {
+    const LineFit fit = FindLines(BenchWith({{2, 3, 0.0}}, 0.3 * arcsec, seed).Read({EvenPositions()}));
+    return std::pow(fit.lines.at(0).sin_rad / fit.lines.at(0).u_rad, 2);
+  });
   // chi-squared of one degree of freedom: mean 1, standard deviation sqrt(2 / 200) = 0.1.
-  EXPECT_NEAR(sum / kRuns, 1.0, 0.3);
+  EXPECT_NEAR(mean, 1.0, 0.3);
 }
 
 TEST(FindLines, RefusesFewPlaces) {

@@ -1,5 +1,6 @@
 #include "tests/separate/encoder_readings.h"
 #include "tests/support/kept_text.h"
+#include "tests/support/over_seeds.h"
 #include "tests/support/night.h"
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
 #include "twin/benches/encoder_comparison/estimators/iso230_2.h"
@@ -193,11 +194,9 @@ TEST(SeparateDevice, WidensTheUncertaintyOfAnOrderThatChangedWithTheMounting) {
   EXPECT_GT(e.curves.device.At(1).cov(0, 0), 100.0 * before) << "chi2 / dof is about (30 / 1)^2 / 2";
 }
 
-const int kDeviceSeeds = test::ByNight(200, 60);
-
-/// Means of (error / u)^2 over seeds, and over positions or orders of the curves.
+/// Means of (error / u)^2 over seeds, and over positions or orders of the curves; NaN: there is no such curve.
 struct Coverage {
-  double device = 0.0, reference = 0.0, first_order = 0.0, reversal = 0.0;
+  double device, reference, first_order, reversal;
 };
 
 double MeanChi2(const harmonics::HarmonicSeries& series, const std::vector<test::Wave>& waves) {
@@ -208,18 +207,24 @@ double MeanChi2(const harmonics::HarmonicSeries& series, const std::vector<test:
   return sum;
 }
 
-Coverage CoverageOf(Comparison bench) {
-  Coverage mean;
-  for (int seed = 0; seed < kDeviceSeeds; ++seed) {
-    bench.seed = static_cast<std::uint64_t>(seed);
+/// @param draw  (seed): the device's waves of that seed.
+template <class Draw>
+Coverage CoverageOf(Comparison bench, int seeds, Draw draw) {
+  const Eigen::Array4d mean = twinbench::test::MeanOverSeeds(seeds, [&](std::uint64_t seed) {
+    bench.seed = seed;
+    bench.device = draw(seed);
     const DeviceError e = SeparateDevice(bench.Readings());
-    mean.device += MeanChi2(e.curves.device, bench.device) / kDeviceSeeds;
-    mean.first_order += test::OrderChi2(e.curves.device, bench.device, 1) / kDeviceSeeds;
-    mean.reversal += std::pow(e.reversal.value_rad / e.reversal.u_rad, 2) / kDeviceSeeds;
-    if (!e.curves.reference.orders.empty())
-      mean.reference += MeanChi2(e.curves.reference, bench.reference) / kDeviceSeeds;
-  }
-  return mean;
+    const bool has_reference = !e.curves.reference.orders.empty();
+    return Eigen::Array4d(MeanChi2(e.curves.device, bench.device),
+                          has_reference ? MeanChi2(e.curves.reference, bench.reference) : kNaN,
+                          test::OrderChi2(e.curves.device, bench.device, 1),
+                          std::pow(e.reversal.value_rad / e.reversal.u_rad, 2));
+  });
+  return {mean[0], mean[1], mean[2], mean[3]};
+}
+
+Coverage CoverageOf(const Comparison& bench) {
+  return CoverageOf(bench, test::ByNight(200, 60), [device = bench.device](std::uint64_t) { return device; });
 }
 
 // Small errors, so that error x slope does not count: 5 arcsec x 5e-5.
@@ -239,21 +244,19 @@ TEST(SeparateDeviceUncertainty, CoversWhiteNoiseWithOneMountingWithThreeAndInASi
   EXPECT_NEAR(one.reversal, 0.8, 0.4);
 }
 
-/// Mean over seeds, of rings whose orders fall as 1 / order up to `highest`.
-Coverage CoverageOfFalling(int highest, Comparison bench) {
-  Coverage mean;
-  constexpr int kRings = 20;
-  for (int seed = 0; seed < kRings; ++seed) {
-    Stream stream(static_cast<std::uint64_t>(seed), "test.ring");
-    bench.seed = static_cast<std::uint64_t>(seed);
-    bench.device.clear();
+/// Of rings with random orders up to `highest`, which fall as 1 / order or do not.
+Coverage CoverageOfRings(int rings, int highest, bool falls, const Comparison& bench) {
+  return CoverageOf(bench, rings, [=](std::uint64_t seed) {
+    Stream stream(seed, "test.ring");
+    std::vector<Wave> ring;
     for (int k = 1; k <= highest; ++k)
-      bench.device.push_back({k, 20.0 / k * std::abs(stream.Normal()), 2.0 * units::kPi * stream.Uniform()});
-    const DeviceError e = SeparateDevice(bench.Readings());
-    mean.device += MeanChi2(e.curves.device, bench.device) / kRings;
-    if (!e.curves.reference.orders.empty()) mean.reference += MeanChi2(e.curves.reference, {}) / kRings;
-  }
-  return mean;
+      ring.push_back({k, 20.0 / (falls ? k : 1) * std::abs(stream.Normal()), units::turn * stream.Uniform()});
+    return ring;
+  });
+}
+
+Coverage CoverageOfFalling(int highest, const Comparison& bench) {
+  return CoverageOfRings(20, highest, true, bench);
 }
 
 // Orders above half the stops fold into those below: without them in u the squares are some tens and hundreds. The
@@ -278,14 +281,7 @@ TEST(SweepsThatFitNoMemory, AreRefusedWhenTheScenarioIsRead) {
 
 /// A spectrum that has come to its end below half the stops is not taken to go on: u was fifteen times what there was.
 TEST(SeparateDeviceUncertainty, EndsWhereTheLastOrdersAreNoiseAlone) {
-  double mean = 0.0;
-  constexpr int kRings = 12;
-  for (int seed = 0; seed < kRings; ++seed) {
-    Stream stream(static_cast<std::uint64_t>(seed), "test.ring");
-    Comparison bench{.noise_arcsec = 0.3, .seed = static_cast<std::uint64_t>(seed)};
-    for (int k = 1; k <= 28; ++k) bench.device.push_back({k, 20.0 * std::abs(stream.Normal()), 2.0 * units::kPi * stream.Uniform()});
-    mean += MeanChi2(SeparateDevice(bench.Readings()).curves.device, bench.device) / kRings;
-  }
+  const double mean = CoverageOfRings(12, 28, false, {.noise_arcsec = 0.3}).device;
   EXPECT_GT(mean, 0.15);
   EXPECT_LT(mean, 1.5);
 }

@@ -1,6 +1,7 @@
 #include "tests/separate/encoder_readings.h"
 #include "tests/separate/shift_formulas.h"
 #include "tests/support/kept_text.h"
+#include "tests/support/over_seeds.h"
 #include "twin/benches/encoder_comparison/estimators/several_heads.h"
 #include "twin/benches/encoder_comparison/estimators/time_reversal.h"
 #include "twin/core/reading_column.h"
@@ -83,21 +84,17 @@ TEST(SeparateHeads, StateTheVarianceOfTheClosedForm) {
 }
 
 TEST(SeparateHeads, CoverRingAndReferenceOverSeeds) {
-  constexpr int kSeeds = 30;
-  double ring = 0.0, reference = 0.0, published = 0.0;
-  for (int seed = 0; seed < kSeeds; ++seed) {
-    Ring bench{.heads_deg = {0.0, 90.0, 180.0, 270.0}, .turns = 2, .noise_arcsec = 0.05,
-               .reference_noise_arcsec = 0.3, .seed = static_cast<std::uint64_t>(seed)};
+  const Eigen::Array3d chi2 = twinbench::test::MeanOverSeeds(30, [](std::uint64_t seed) {
+    const Ring bench{.turns = 2, .noise_arcsec = 0.05, .reference_noise_arcsec = 0.3, .seed = seed};
     const auto readings = bench.Readings();
     const SeveralHeads found = SeparateHeads(readings);
-    ring += MeanOrderChi2(found.ring, bench.ring) / kSeeds;
-    reference += MeanOrderChi2(found.reference, bench.reference) / kSeeds;
-    published += MeanOrderChi2(EqualDivision(readings).ring, bench.ring) / kSeeds;
-  }
+    return Eigen::Array3d(MeanOrderChi2(found.ring, bench.ring), MeanOrderChi2(found.reference, bench.reference),
+                          MeanOrderChi2(EqualDivision(readings).ring, bench.ring));
+  });
   // 27 orders x 30 seeds, 2 parts each: 0.035; the variances are from 73 to 375 degrees of freedom each time.
-  EXPECT_NEAR(ring, 1.0, 0.1);
-  EXPECT_NEAR(reference, 73.0 / 71.0, 0.1);
-  EXPECT_NEAR(published, 89.0 / 87.0, 0.1);
+  EXPECT_NEAR(chi2[0], 1.0, 0.1) << "ring";
+  EXPECT_NEAR(chi2[1], 73.0 / 71.0, 0.1) << "reference";
+  EXPECT_NEAR(chi2[2], 89.0 / 87.0, 0.1) << "published";
 }
 
 TEST(EqualDivision, IsNoisierThanAllHeadsByTheRootOfTheOthers) {
@@ -225,21 +222,18 @@ TEST(SeparateByTime, LeavesOutTurnsWithAMissingLine) {
 }
 
 TEST(SeparateByTime, CoversTheRingOverSeedsAndTellsTheNoiseOfATime) {
-  constexpr int kSeeds = 15;
-  double rigorous = 0.0, published = 0.0, noise_ns = 0.0;
-  for (int seed = 0; seed < kSeeds; ++seed) {
-    Coast bench{.tau_s = 2000.0, .noise_s = 5e-9, .seed = static_cast<std::uint64_t>(seed)};
+  const Eigen::Array3d mean = twinbench::test::MeanOverSeeds(15, [](std::uint64_t seed) {
+    const Coast bench{.tau_s = 2000.0, .noise_s = 5e-9, .seed = seed};
     const auto readings = bench.Readings();
     const TimeReversal found = SeparateByTime(readings);
-    rigorous += MeanOrderChi2(found.ring, bench.ring) / kSeeds;
-    noise_ns += found.stamp_noise_s / 1e-9 / kSeeds;
-    published += MeanOrderChi2(DynamicReversal(readings).ring, bench.ring) / kSeeds;
-  }
+    return Eigen::Array3d(MeanOrderChi2(found.ring, bench.ring), found.stamp_noise_s / 1e-9,
+                          MeanOrderChi2(DynamicReversal(readings).ring, bench.ring));
+  });
   // 63 orders x 15 seeds, 2 parts each: 0.033; four of these.
-  EXPECT_NEAR(rigorous, 1.0, 0.13);
-  EXPECT_NEAR(noise_ns, 5.0, 0.1);
+  EXPECT_NEAR(mean[0], 1.0, 0.13);
+  EXPECT_NEAR(mean[1], 5.0, 0.1);
   // Turns share the times that close them, and the distance to the rigorous result is part of the uncertainty.
-  EXPECT_NEAR(published, 1.0, 0.4);
+  EXPECT_NEAR(mean[2], 1.0, 0.4) << "published";
 }
 
 TEST(SeparateByTime, SaysWhyThereIsNoCurve) {

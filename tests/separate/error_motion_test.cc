@@ -127,14 +127,11 @@ TEST(ErrorMotion, ThreeAnglesAreTheLeast) {
 }
 
 TEST(WidestRange, OfOneSampleHasTheConstantsOfControlCharts) {
-  struct Chart {
-    int size;
-    double d2, d3;
-  };
-  for (const Chart& c : {Chart{2, 1.128, 0.853}, {3, 1.693, 0.888}, {5, 2.326, 0.864}, {10, 3.078, 0.797}, {25, 3.931, 0.708}}) {
-    const WidestRange range = WidestOf({{2.0, c.size}});
-    EXPECT_NEAR(range.mean, 2.0 * c.d2, 2.0 * 0.001) << c.size << ": tables have three digits";
-    EXPECT_NEAR(range.deviation, 2.0 * c.d3, 2.0 * 0.001) << c.size;
+  for (const auto& [size, d2, d3] : {std::tuple{2, 1.128, 0.853}, {3, 1.693, 0.888}, {5, 2.326, 0.864},
+                                     {10, 3.078, 0.797}, {25, 3.931, 0.708}}) {
+    const WidestRange range = WidestOf({{2.0, size}});
+    EXPECT_NEAR(range.mean, 2.0 * d2, 2.0 * 0.001) << size << ": tables have three digits";
+    EXPECT_NEAR(range.deviation, 2.0 * d3, 2.0 * 0.001) << size;
   }
 }
 

@@ -1,4 +1,5 @@
 #include "tests/separate/hob_bench.h"
+#include "tests/support/over_seeds.h"
 #include "twin/benches/hob_transmission/estimators/comparison.h"
 #include "twin/benches/hob_transmission/estimators/two_positions.h"
 
@@ -62,17 +63,14 @@ TEST(CompareTransmission, SaysThatASumStillHoldsTheEncodersShare) {
 TEST(CompareOrders, StatesTheScatterOfTheDifferences) {
   HobMachine machine = NoisyMachine();
   machine.samples_per_turn = 150;
-  constexpr int kRuns = 200;
-  double amplitude2 = 0.0, phase2 = 0.0;
-  for (int run = 0; run < kRuns; ++run) {
-    const Results r = Evaluate(Samples(machine, Heads({0.0, 100.0}), 20 + run), 12);
+  const Eigen::Array2d pull2 = test::MeanOverSeeds(200, [&](std::uint64_t seed) {
+    const Results r = Evaluate(Samples(machine, Heads({0.0, 100.0}), seed), 12);
     const OrderComparison one = CompareTransmission(r.separation, 1, r.transmission, {1}).at(0);
-    amplitude2 += std::pow(one.amplitude_difference_rad / one.u_amplitude_difference_rad, 2);
-    phase2 += std::pow(one.phase_difference_rad / one.u_phase_difference_rad, 2);
-  }
+    return Eigen::Array2d(std::pow(one.amplitude_difference_rad / one.u_amplitude_difference_rad, 2),
+                          std::pow(one.phase_difference_rad / one.u_phase_difference_rad, 2));
+  });
   // 200 squares: 10 %, three times that; scatter estimated with some 30 degrees of freedom adds 7 %.
-  EXPECT_NEAR(amplitude2 / kRuns, 1.07, 0.3);
-  EXPECT_NEAR(phase2 / kRuns, 1.07, 0.3);
+  for (const double mean : pull2) EXPECT_NEAR(mean, 1.07, 0.3);
 }
 
 TEST(CompareOrders, LeavesOutOrdersThatOneSideDoesNotHave) {
@@ -146,24 +144,22 @@ Ratios ScatterOverStated(double second_head_deg, double u_head_deg) {
   HobMachine machine = PaperMachine();
   machine.samples_per_turn = 180;
   machine.noise_arcsec = 1.0;
-  constexpr int kRuns = 300;
   Stream heads(5, "heads");
-  double e2 = 0.0, p2 = 0.0, u_e2 = 0.0, u_p2 = 0.0, m2 = 0.0;
-  for (int run = 0; run < kRuns; ++run) {
+  // Of e_T and psi: squared errors and what is stated of them; what is stated of one position.
+  const Eigen::Array<double, 5, 1> mean = test::MeanOverSeeds(300, [&](std::uint64_t seed) {
     // One truth; the head stands where nobody thinks it does.
-    std::vector<HobSample> samples =
-        Samples(machine, Heads({u_head_deg * heads.Normal(), second_head_deg + u_head_deg * heads.Normal()}, 3.0),
-                50 + run);
+    const double first_deg = u_head_deg * heads.Normal(),
+                 second_deg = second_head_deg + u_head_deg * heads.Normal();
+    std::vector<HobSample> samples = Samples(machine, Heads({first_deg, second_deg}, 3.0), seed);
     for (HobSample& s : samples) s.head_rad = s.setup == 0 ? 0.0 : second_head_deg * units::deg;
     const auto positions = MeasurePositions(samples, OrdersUpTo(12));
     const TwoPositions r = SeparateTwoPositions(positions[0], positions[1], u_head_deg * units::deg);
-    e2 += std::norm(r.transmission.value - CoefficientOf(machine.transmission, 1));
-    p2 += std::norm(r.encoder.value - CoefficientOf(machine.encoder, 1));
-    u_e2 += r.transmission.cov.trace();
-    u_p2 += r.encoder.cov.trace();
-    m2 += positions[0].series.At(1).cov.trace();
-  }
-  return {e2 / u_e2, p2 / u_p2, std::sqrt(u_e2 / m2)};
+    return Eigen::Array<double, 5, 1>{{std::norm(r.transmission.value - CoefficientOf(machine.transmission, 1)),
+                                       std::norm(r.encoder.value - CoefficientOf(machine.encoder, 1)),
+                                       r.transmission.cov.trace(), r.encoder.cov.trace(),
+                                       positions[0].series.At(1).cov.trace()}};
+  });
+  return {mean[0] / mean[2], mean[1] / mean[3], std::sqrt(mean[2] / mean[4])};
 }
 
 TEST(SeparateTwoPositions, StatesTheScatterOfItsResultsWithTheUncertaintyOfTheHeadAngles) {
@@ -189,6 +185,68 @@ TEST(SeparateTwoPositions, SaysSoIfBothHeadsStandAtOnePlace) {
 TEST(SeparateTwoPositions, RefusesDirectionsThatDiffer) {
   const auto positions = MeasurePositions(Samples(PaperMachine(), {{0, 0.0, 1, 0, 2}, {1, 180.0, -1, 0, 2}}), {});
   EXPECT_THROW(SeparateTwoPositions(positions[0], positions[1]), std::logic_error);
+}
+
+// What repeats once per turn of the hob.
+
+constexpr double kHobTurns = 3.4;  // in one of the table: 17 teeth to 5
+constexpr double kHobWave_arcsec = 40.0, kHobPhase_rad = -0.7;
+constexpr double kTableWave_arcsec = 14.0;
+constexpr int kSamplesATurn = 408;
+
+/// Table and hob of a pass: once per turn of either, and white noise.
+std::vector<HobSample> GearedSamples(double turns, std::uint64_t seed, double noise_arcsec) {
+  Stream noise(seed, "hob_orders");
+  std::vector<HobSample> samples;
+  for (int i = 0; i < static_cast<int>(turns * kSamplesATurn); ++i) {
+    const double even_rad = kTestTurn_rad * i / kSamplesATurn;
+    HobSample s{.setup = 0, .pass = 0, .direction = 1};
+    s.head_rad = 0.0;
+    s.hob_encoder_rad = kHobTurns * even_rad;
+    s.table_encoder_rad = even_rad + kArcsec * (kTableWave_arcsec * std::cos(even_rad) +
+                                                kHobWave_arcsec * std::cos(s.hob_encoder_rad + kHobPhase_rad) +
+                                                noise_arcsec * noise.Normal());
+    samples.push_back(s);
+  }
+  return samples;
+}
+
+TransmissionOptions GearedOptions() {
+  TransmissionOptions options = OrdersUpTo(60);
+  options.table_turns_per_hob_turn = 1.0 / kHobTurns;
+  options.hob_orders = {1, 2};
+  return options;
+}
+
+/// The table's angle is read with the error of the hob's wave: order 1 moves by 40 arcsec, 2e-4 of 14 arcsec.
+constexpr double kBend_arcsec = 0.01;
+
+TEST(HobOrders, AreFoundBesideWholeOrdersOfTheTableThatTheyDoNotInflate) {
+  const PositionError seen = MeasurePositions(GearedSamples(5.0, 1, 0.4), GearedOptions()).at(0);
+  ASSERT_EQ(seen.of_hob.size(), 2u);
+  // White noise of 0.4 arcsec in 2040 samples: 0.4 sqrt(2 / 2040).
+  const double u_arcsec = 0.4 * std::sqrt(2.0 / 2040.0);
+  const HobOrder& once = seen.of_hob[0];
+  EXPECT_EQ(once.times, 1);
+  EXPECT_NEAR(AmplitudeUncertainty(once.wave) / kArcsec, u_arcsec, 0.1 * u_arcsec);
+  EXPECT_LT(DistanceArcsec(once.wave.value, std::polar(kHobWave_arcsec * kArcsec, kHobPhase_rad)),
+            4.0 * u_arcsec + kBend_arcsec);
+  EXPECT_LT(Amplitude(seen.of_hob[1].wave) / kArcsec, 4.0 * u_arcsec + kBend_arcsec);
+  EXPECT_LT(AmplitudeUncertainty(seen.series.At(1)) / kArcsec, 2.0 * u_arcsec);
+  EXPECT_NEAR(Amplitude(seen.series.At(1)) / kArcsec, kTableWave_arcsec, 4.0 * u_arcsec + kBend_arcsec);
+}
+
+TEST(HobOrders, HaveAnUncertaintyThatHolds) {
+  const double pull2 = test::MeanOverSeeds(40, [](std::uint64_t seed) {
+    const PositionError seen = MeasurePositions(GearedSamples(2.0, seed, 4.0), GearedOptions()).at(0);
+    return Pull2(seen.of_hob.at(0).wave, std::polar(kHobWave_arcsec * kArcsec, kHobPhase_rad));
+  });
+  // A mean of 40 values of chi-squared with 2 degrees of freedom: 2, and 0.32 its standard deviation.
+  EXPECT_NEAR(pull2, 2.0, 4.0 * 0.32);
+}
+
+TEST(HobOrders, AreNotToldInOneTurnOfTheTable) {
+  EXPECT_TRUE(MeasurePositions(GearedSamples(1.0, 1, 0.4), GearedOptions()).at(0).of_hob.empty());
 }
 
 }  // namespace

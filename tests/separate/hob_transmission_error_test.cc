@@ -1,6 +1,7 @@
 #include "tests/core/input_error.h"
 #include "tests/separate/hob_bench.h"
 #include "tests/support/kept_text.h"
+#include "tests/support/over_seeds.h"
 #include "twin/benches/hob_transmission/estimators/turn_fit.h"
 
 namespace twinbench::separate::hob {
@@ -12,6 +13,20 @@ constexpr double kSecondOrder_arcsec = 2e-3;
 HobMachine Machine() {
   return {.transmission = {{1, 10.0, 0.5}, {2, 1.0, 1.0}, {22, 2.0, -1.0}, {44, 1.0, 2.0}},
           .encoder = {{1, 1.5, 2.72}, {3, 0.5, 0.2}}};
+}
+
+/// Without what the ring errs, so that nothing but the sampling is left.
+HobMachine OfATrueRing(double noise_arcsec = 0.0, int samples_per_turn = 1440) {
+  HobMachine machine = Machine();
+  machine.encoder.clear();
+  machine.noise_arcsec = noise_arcsec;
+  machine.samples_per_turn = samples_per_turn;
+  return machine;
+}
+
+/// The one position of a head at 0.
+PositionError OfOneHead(const HobMachine& machine, int max_order = 60, double turns = 4.0, std::uint64_t seed = 1) {
+  return MeasurePositions(Samples(machine, Heads({0.0}, turns), seed), OrdersUpTo(max_order)).at(0);
 }
 
 /// Equation 1 in orders: e_T + psi exp(-j k head).
@@ -43,17 +58,15 @@ TEST(MeasurePositions, FindsTheOrdersOfEachSetUpAndDirection) {
 }
 
 TEST(MeasurePositions, IsNotBiasedByMissingSamplesJitterOrSpeed) {
-  HobMachine machine = Machine();
-  machine.samples_per_turn = 400;
-  machine.encoder.clear();  // so that nothing but the sampling is left
+  HobMachine machine = OfATrueRing(0.0, 400);
   for (const auto& [missing, jitter, speed] :
        std::vector<std::array<double, 3>>{{0.1, 0, 0}, {0, 0.4, 0}, {0, 0, 0.1}, {0.1, 0.3, 0.1}}) {
     machine.missing = missing;
     machine.jitter = jitter;
     machine.speed_change = speed;
-    const auto positions = MeasurePositions(Samples(machine, Heads({0.0})), OrdersUpTo(60));
-    ExpectOrders(positions.at(0), machine, 0.0, 1e-6);  // rounding of the hob's 600 rad: 1e-13 rad = 2e-8 arcsec
-    EXPECT_EQ(positions.at(0).turns, 4);
+    const PositionError position = OfOneHead(machine);
+    ExpectOrders(position, machine, 0.0, 1e-6);  // rounding of the hob's 600 rad: 1e-13 rad = 2e-8 arcsec
+    EXPECT_EQ(position.turns, 4);
   }
 }
 
@@ -69,15 +82,13 @@ TEST(MeasurePositions, SkipsSamplesWithoutAngle) {
 TEST(MeasurePositions, LeavesOutTurnsWithAWideGapAndTheTurnThatWasNotFinished) {
   std::vector<HobSample> samples = Samples(Machine(), Heads({0.0}));
   samples.erase(samples.begin() + 1440 + 300, samples.begin() + 1440 + 400);  // 25 deg of the second turn
-  const auto gap = MeasurePositions(samples, OrdersUpTo(60));
-  const auto unfinished = MeasurePositions(Samples(Machine(), Heads({0.0}, 2.6)), OrdersUpTo(60));
-  EXPECT_EQ(gap.at(0).turns, 3);
-  EXPECT_EQ(gap.at(0).turns_left_out, 1);
-  ExpectOrders(gap.at(0), Machine(), 0.0, kSecondOrder_arcsec);
-  EXPECT_EQ(unfinished.at(0).turns, 2);
-  EXPECT_EQ(unfinished.at(0).turns_left_out, 1);
-  const auto none = MeasurePositions(Samples(Machine(), Heads({0.0}, 0.6)), OrdersUpTo(60));
-  EXPECT_EQ(none.at(0).status, PositionStatus::kNoTurn);
+  const PositionError gap = MeasurePositions(samples, OrdersUpTo(60)).at(0),
+                      unfinished = OfOneHead(Machine(), 60, 2.6);
+  EXPECT_EQ(gap.turns, 3);
+  EXPECT_EQ(unfinished.turns, 2);
+  for (const PositionError& position : {gap, unfinished}) EXPECT_EQ(position.turns_left_out, 1);
+  ExpectOrders(gap, Machine(), 0.0, kSecondOrder_arcsec);
+  EXPECT_EQ(OfOneHead(Machine(), 60, 0.6).status, PositionStatus::kNoTurn);
 }
 
 // A counter that latches at lines gives angles a whole turn apart, but for the rounding of their decimals.
@@ -106,7 +117,7 @@ TEST(MeasurePositions, CountsInUWhatFewSamplesATurnFoldOntoTheOrders) {
   machine.noise_arcsec = 0.05;
   for (const auto& [samples, folds] : {std::pair(4, true), {720, false}}) {
     machine.samples_per_turn = samples;
-    const PositionError position = MeasurePositions(Samples(machine, Heads({0.0})), OrdersUpTo(1)).at(0);
+    const PositionError position = OfOneHead(machine, 1);
     EXPECT_EQ(position.of_folding_rad2 > 0.0, folds) << samples;
     const double off_arcsec = DistanceArcsec(position.series.At(1).value, CoefficientOf(machine.transmission, 1));
     EXPECT_EQ(off_arcsec > 0.5, folds) << samples;  // order 3
@@ -116,70 +127,63 @@ TEST(MeasurePositions, CountsInUWhatFewSamplesATurnFoldOntoTheOrders) {
 
 // At lines of the table the hob stands where it stood a turn ago: its counts err alike in every turn.
 TEST(MeasurePositions, StatesWhatCoarseCountsOfTheHobRepeatInEveryTurn) {
-  HobMachine machine = Machine();
-  machine.encoder.clear();
-  machine.samples_per_turn = 720;
   constexpr double kStep_rad = units::turn / 16384.0;
   constexpr int kRuns = 8, kOrders = 60;
   for (const double noise_arcsec : {0.02, 0.1}) {
-    machine.noise_arcsec = noise_arcsec;
-    double with = 0.0, without = 0.0;
-    for (int run = 0; run < kRuns; ++run) {
-      std::vector<HobSample> samples = Samples(machine, Heads({0.0}), static_cast<std::uint64_t>(run + 1));
+    const HobMachine machine = OfATrueRing(noise_arcsec, 720);
+    const Eigen::Array2d of_stated = test::MeanOverSeeds(kRuns, [&](std::uint64_t run) {
+      std::vector<HobSample> samples = Samples(machine, Heads({0.0}), run);
       for (HobSample& s : samples)
         s.hob_encoder_rad = kStep_rad * std::round(s.hob_encoder_rad / kStep_rad + static_cast<double>(run) / kRuns);
       TransmissionOptions options = OrdersUpTo(kOrders);
       const PositionError scatter = MeasurePositions(samples, options).at(0);
       options.hob_step_rad = kTestRatio * kStep_rad;
       const PositionError counted = MeasurePositions(samples, options).at(0);
+      Eigen::Array2d of_run(0.0, 0.0);
       for (int k = 1; k <= kOrders; ++k) {
-        const double off_rad2 = std::norm(counted.series.At(k).value - Expected(machine, k, 0.0)) / (kRuns * kOrders);
-        with += off_rad2 / counted.series.At(k).cov.trace();
-        without += off_rad2 / scatter.series.At(k).cov.trace();
+        const Eigen::Array2d stated_rad2(counted.series.At(k).cov.trace(), scatter.series.At(k).cov.trace());
+        of_run += std::norm(counted.series.At(k).value - Expected(machine, k, 0.0)) / kOrders / stated_rad2;
       }
-    }
-    EXPECT_THAT(with, testing::AllOf(testing::Gt(0.25), testing::Lt(4.0))) << noise_arcsec;
-    EXPECT_GT(without, 10.0) << noise_arcsec;
+      return of_run;
+    });
+    EXPECT_THAT(of_stated[0], testing::AllOf(testing::Gt(0.25), testing::Lt(4.0))) << noise_arcsec;
+    EXPECT_GT(of_stated[1], 10.0) << noise_arcsec;
   }
 }
 
 TEST(MeasurePositions, StatesTheScatterOfTheMeanOfItsTurns) {
-  HobMachine machine = Machine();
-  machine.encoder.clear();
-  machine.noise_arcsec = 0.5;
-  machine.samples_per_turn = 720;
-  constexpr int kRuns = 60, kOrders = 60;
+  const HobMachine machine = OfATrueRing(0.5, 720);
+  constexpr int kOrders = 60;
   const double u_arcsec = 0.5 * std::sqrt(2.0 / (4 * 720));  // white noise, 4 turns
-  double sum_pull2 = 0.0, sum_variance = 0.0;
-  for (int run = 0; run < kRuns; ++run) {
-    const auto positions = MeasurePositions(Samples(machine, Heads({0.0}), 100 + run), OrdersUpTo(kOrders));
-    EXPECT_EQ(positions.at(0).scatter, ScatterSource::kBetweenTurns);
-    EXPECT_NEAR(positions.at(0).residual_rms_rad / kArcsec, 0.5, 0.05);  // of 2400 samples: 1.4 %, seven times that
-    for (int k = 1; k <= kOrders; ++k) {
-      sum_pull2 += Pull2(positions.at(0).series.At(k), CoefficientOf(machine.transmission, k));
-      sum_variance += 0.5 * positions.at(0).series.At(k).cov.trace();
-    }
-  }
+  const Eigen::Array2d mean = test::MeanOverSeeds(60, [&](std::uint64_t seed) {
+    const PositionError position = OfOneHead(machine, kOrders, 4.0, seed);
+    EXPECT_EQ(position.scatter, ScatterSource::kBetweenTurns);
+    EXPECT_NEAR(position.residual_rms_rad / kArcsec, 0.5, 0.05);  // of 2400 samples: 1.4 %, seven times that
+    Eigen::Array2d pull2_and_variance(0.0, 0.0);
+    for (int k = 1; k <= kOrders; ++k)
+      pull2_and_variance += Eigen::Array2d(Pull2(position.series.At(k), CoefficientOf(machine.transmission, k)),
+                                           0.5 * position.series.At(k).cov.trace()) / kOrders;
+    return pull2_and_variance;
+  });
   // Mean variance: 3600 coefficients with 54 degrees of freedom each, neighbours pooled: 1 %. The drift adds to low
   // orders.
-  EXPECT_NEAR(std::sqrt(sum_variance / (kRuns * kOrders)) / (u_arcsec * kArcsec), 1.0, 0.03);
+  EXPECT_NEAR(std::sqrt(mean[1]) / (u_arcsec * kArcsec), 1.0, 0.03);
   // F(2, 54): mean of the pull 2 x 54 / 52 = 2.08, standard deviation of the mean of 3600 about 2.1 / 60 = 0.035.
-  EXPECT_NEAR(sum_pull2 / (kRuns * kOrders), 2.08, 0.12);
+  EXPECT_NEAR(mean[0], 2.08, 0.12);
 }
 
 TEST(MeasurePositions, TakesTheScatterWithinASingleTurn) {
   HobMachine machine = Machine();
   machine.noise_arcsec = 0.5;
-  const auto positions = MeasurePositions(Samples(machine, Heads({0.0}, 1.0)), OrdersUpTo(60));
-  EXPECT_EQ(positions.at(0).scatter, ScatterSource::kWithinTurn);
+  const PositionError position = OfOneHead(machine, 60, 1.0);
+  EXPECT_EQ(position.scatter, ScatterSource::kWithinTurn);
   const double u_arcsec = 0.5 * std::sqrt(2.0 / 1440);
   // 1319 degrees of freedom: 2 %, four times that.
-  EXPECT_NEAR(LargestUncertainty(positions.at(0).series.At(22)) / (u_arcsec * kArcsec), 1.0, 0.08);
+  EXPECT_NEAR(LargestUncertainty(position.series.At(22)) / (u_arcsec * kArcsec), 1.0, 0.08);
 }
 
 TEST(MeasurePositions, TakesASteadyDriftOut) {
-  HobMachine machine = Machine();
-  machine.encoder.clear();
+  HobMachine machine = OfATrueRing();
   machine.drift_arcsec_per_turn = 3.0;
   for (const int direction : {1, -1}) {
     const auto three = MeasurePositions(Samples(machine, {{0, 0.0, direction, 0, 3.0}}), OrdersUpTo(60));
@@ -194,8 +198,7 @@ TEST(MeasurePositions, TakesASteadyDriftOut) {
 }
 
 TEST(MeasurePositions, TakesNoCountsThatWereLostBetweenTwoRunsOfTurnsForADrift) {
-  HobMachine machine = Machine();
-  machine.encoder.clear();
+  const HobMachine machine = OfATrueRing();
   std::vector<HobSample> samples = Samples(machine, Heads({0.0}, 5.0));
   constexpr double kLost_rad = 1e-3, kBetween_rad = 20.0 * kTestTurn_rad;
   for (auto s = samples.begin() + 2 * machine.samples_per_turn; s != samples.end(); ++s)
@@ -214,20 +217,17 @@ void ShiftTurns(std::vector<HobSample>& samples, int per_turn, double sd_arcsec,
 
 TEST(MeasurePositions, CountsTheUncertaintyOfTheDrift) {
   const HobMachine machine{.transmission = {{1, 10.0, 0.5}}, .noise_arcsec = 0.05, .samples_per_turn = 200};
-  constexpr int kRuns = 400;
   Stream stream(9, "shifts");
-  double sum2 = 0.0, stated = 0.0;
-  for (int run = 0; run < kRuns; ++run) {
-    std::vector<HobSample> samples = Samples(machine, Heads({0.0}), 500 + run);
+  const Eigen::Array2d found_and_stated = test::MeanOverSeeds(400, [&](std::uint64_t seed) {
+    std::vector<HobSample> samples = Samples(machine, Heads({0.0}), seed);
     ShiftTurns(samples, 200, 1.0, stream);
-    const auto positions = MeasurePositions(samples, OrdersUpTo(10));
-    sum2 += std::norm(positions.at(0).series.At(1).value - CoefficientOf(machine.transmission, 1));
-    stated += positions.at(0).series.At(1).cov.trace();
-  }
+    const auto once = MeasurePositions(samples, OrdersUpTo(10)).at(0).series.At(1);
+    return Eigen::Array2d(std::norm(once.value - CoefficientOf(machine.transmission, 1)), once.cov.trace());
+  });
   // The slope over four turns has the uncertainty 1 / sqrt(5) arcsec a turn, 1 / pi of it in order 1.
-  EXPECT_NEAR(std::sqrt(sum2 / kRuns) / kArcsec, 1.0 / (std::sqrt(5.0) * units::kPi), 0.02);
+  EXPECT_NEAR(std::sqrt(found_and_stated[0]) / kArcsec, 1.0 / (std::sqrt(5.0) * units::kPi), 0.02);
   // 400 squares over 400 estimates with two degrees of freedom: 7 and 5 %, three times that.
-  EXPECT_NEAR(sum2 / stated, 1.0, 0.26);
+  EXPECT_NEAR(found_and_stated[0] / found_and_stated[1], 1.0, 0.26);
 }
 
 TEST(FitTurn, SaysHowMuchAGapCosts) {
@@ -281,11 +281,9 @@ TEST(MeasurePositions, CountsFromTheReferenceMarkIfTold) {
 }
 
 TEST(MeasurePositions, ResamplesTheMeanAtRegularAngles) {
-  HobMachine machine = Machine();
-  machine.encoder.clear();
+  HobMachine machine = OfATrueRing();
   machine.missing = 0.1;
-  const auto positions = MeasurePositions(Samples(machine, Heads({0.0})), OrdersUpTo(60));
-  const Eigen::VectorXd mean_rad = Resample(positions.at(0).series, 360);
+  const Eigen::VectorXd mean_rad = Resample(OfOneHead(machine).series, 360);
   for (int i = 0; i < 360; ++i)
     EXPECT_NEAR(mean_rad[i] / kArcsec, ValueOf(machine.transmission, i * units::deg) / kArcsec, 1e-5);  // rounding
 }
@@ -293,20 +291,17 @@ TEST(MeasurePositions, ResamplesTheMeanAtRegularAngles) {
 TEST(ResampledUncertainty, IsTheRootOfTheOrdersVariances) {
   HobMachine machine = Machine();
   machine.noise_arcsec = 0.5;
-  const auto positions = MeasurePositions(Samples(machine, Heads({0.0})), OrdersUpTo(60));
-  const Eigen::VectorXd u_rad = ResampledUncertainty(positions.at(0).series, 36);
+  const Eigen::VectorXd u_rad = ResampledUncertainty(OfOneHead(machine).series, 36);
   // 60 orders of variance 2 sigma^2 / (4 x 1440) each, whatever the angle; scatter known to some per cent.
   EXPECT_NEAR(u_rad.mean() / kArcsec, 0.5 * std::sqrt(60 * 2.0 / (4 * 1440)), 0.01);
 }
 
 TEST(FindLines, RaisesFalseAlarmsAsOftenAsAsked) {
-  HobMachine machine{.noise_arcsec = 0.5, .samples_per_turn = 300};
-  int alarms = 0;
-  for (int run = 0; run < 200; ++run) {
-    const auto positions = MeasurePositions(Samples(machine, Heads({0.0}), 900 + run), OrdersUpTo(40));
-    alarms += static_cast<int>(FindLines(positions.at(0).series, 0.2).size());
-  }
-  EXPECT_NEAR(alarms, 40, 25);  // 0.2 x 200, standard deviation 6; orders at the ends have fewer neighbours
+  const HobMachine machine{.noise_arcsec = 0.5, .samples_per_turn = 300};
+  const double alarms = test::MeanOverSeeds(200, [&](std::uint64_t seed) {
+    return static_cast<double>(FindLines(OfOneHead(machine, 40, 4.0, seed).series, 0.2).size());
+  });
+  EXPECT_NEAR(alarms, 0.2, 0.125);  // standard deviation 0.03; orders at the ends have fewer neighbours
 }
 
 TEST(MeasurePositions, RefusesAnglesThatWrapWrongRatiosHeadsThatMoveOrAreMissingAndADirectionThatIsNone) {

@@ -1,6 +1,7 @@
 #include "twin/benches/turntable_autocollimator/estimators/polygon_closure.h"
 
 #include "tests/core/input_error.h"
+#include "tests/separate/waves.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/turntable_autocollimator/estimators/polygon_means.h"
 #include "twin/benches/turntable_autocollimator/estimators/polygon_readings.h"
@@ -13,28 +14,20 @@ namespace {
 
 // A turntable's encoder and a polygon written down in a few lines, independent of the program.
 
-struct TrueWave {
-  int order = 0;
-  double cos_rad = 0.0, sin_rad = 0.0;
-};
+using test::CoefficientOf, test::ValueOf, test::Wave;
 
 struct NulledPolygon {
   int faces = 24;
-  std::vector<double> offsets_deg;
-  std::vector<TrueWave> encoder;
-  std::vector<double> face_rad;  // zero mean
+  std::vector<double> offsets_deg = {};
+  std::vector<Wave> encoder = {};
+  std::vector<double> face_rad = {};  // zero mean
   double noise_rad = 0.0;
   int passes = 1;
-
-  double Encoder_rad(double angle_rad) const {
-    double sum_rad = 0.0;
-    for (const TrueWave& w : encoder)
-      sum_rad += w.cos_rad * std::cos(w.order * angle_rad) + w.sin_rad * std::sin(w.order * angle_rad);
-    return sum_rad;
-  }
+  std::uint64_t seed = 1;
 
   /// Constants of the clampings: 5, -10, 15 ... arcsec.
-  std::vector<FaceReading> Read(Stream& noise) const {
+  std::vector<FaceReading> Read() const {
+    Stream noise(seed, "noise");
     std::vector<FaceReading> readings;
     for (std::size_t c = 0; c < offsets_deg.size(); ++c) {
       for (int pass = 0; pass < passes; ++pass) {
@@ -42,8 +35,8 @@ struct NulledPolygon {
           const double angle_rad = (offsets_deg[c] + face * 360.0 / faces) * units::deg;
           const double constant_rad = (c % 2 == 0 ? 5.0 : -5.0) * static_cast<double>(c + 1) * units::arcsec;
           readings.push_back({static_cast<int>(c), face, 1, angle_rad,
-                              Encoder_rad(angle_rad) + face_rad[static_cast<std::size_t>(face)] + constant_rad +
-                                  noise_rad * noise.Normal()});
+                              ValueOf(encoder, angle_rad) + face_rad[static_cast<std::size_t>(face)] +
+                                  constant_rad + noise_rad * noise.Normal()});
         }
       }
     }
@@ -60,12 +53,13 @@ std::vector<double> EvenOffsets(int clampings) {
 
 /// Waves of these orders, faces of half an arcsecond.
 NulledPolygon AnyPolygon(int faces, const std::vector<double>& offsets_deg, const std::vector<int>& orders,
-                         Stream& truth) {
-  NulledPolygon polygon;
+                         std::uint64_t seed = 1, double noise_rad = 0.0, int passes = 1) {
+  Stream truth(seed, "truth");
+  NulledPolygon polygon{.noise_rad = noise_rad, .passes = passes, .seed = seed};
   polygon.faces = faces;
   polygon.offsets_deg = offsets_deg;
   for (const int order : orders)
-    polygon.encoder.push_back({order, units::arcsec * truth.Normal(), units::arcsec * truth.Normal()});
+    polygon.encoder.push_back({order, truth.Normal(), units::turn * truth.Uniform()});
   double mean_rad = 0.0;
   for (int face = 0; face < faces; ++face) {
     polygon.face_rad.push_back(0.5 * units::arcsec * truth.Normal());
@@ -97,10 +91,11 @@ std::string HiddenOf(const PolygonClosure& closure) {
 /// Largest error of a fitted wave [arcsec].
 double WorstWave_arcsec(const PolygonClosure& closure, const NulledPolygon& truth) {
   double worst = 0.0;
-  for (const TrueWave& w : truth.encoder) {
+  for (const Wave& w : truth.encoder) {
     if (w.order > closure.encoder.highest_order) continue;
-    const Eigen::Vector2d found = closure.encoder.coefficients_rad.segment<2>(2 * w.order - 1);
-    worst = std::max(worst, (found - Eigen::Vector2d(w.cos_rad, w.sin_rad)).norm() / arcsec);
+    const Eigen::Vector2d found =
+        closure.encoder.coefficients_rad.segment<2>(2 * w.order - 1);  // of cosine and sine
+    worst = std::max(worst, std::abs(std::complex(found[0], -found[1]) - CoefficientOf({w}, w.order)) / arcsec);
   }
   return worst;
 }
@@ -121,9 +116,8 @@ TEST(ClosePolygon, FindsEncoderAndFacesExactlyWithoutNoiseAlsoWhereAHigherOrderI
       {EvenOffsets(25), OrdersUpTo(20), 20}, {{0.0, 7.3, 101.0, 215.7}, OrdersUpTo(20), 20},
       {EvenOffsets(25), {1, 2, 5, 24}, 6}};
   for (const auto& [offsets_deg, orders, highest] : cases) {
-    Stream truth(1, "truth"), noise(1, "noise");
-    const NulledPolygon polygon = AnyPolygon(24, offsets_deg, orders, truth);
-    const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 24, highest);
+    const NulledPolygon polygon = AnyPolygon(24, offsets_deg, orders);
+    const PolygonClosure closure = ClosePolygon(polygon.Read(), 24, highest);
     EXPECT_EQ(HiddenOf(closure), "");
     EXPECT_LT(WorstWave_arcsec(closure, polygon), kExact_arcsec);
     EXPECT_LT(WorstFace_arcsec(closure, polygon), kExact_arcsec);
@@ -131,17 +125,15 @@ TEST(ClosePolygon, FindsEncoderAndFacesExactlyWithoutNoiseAlsoWhereAHigherOrderI
 }
 
 TEST(ClosePolygon, PutsAFaceAtItsOwnAngleOnThePolygon) {
-  Stream truth(1, "truth"), noise(1, "noise");
-  const NulledPolygon polygon = AnyPolygon(8, EvenOffsets(3), {1}, truth);
-  const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 8, 2);
+  const NulledPolygon polygon = AnyPolygon(8, EvenOffsets(3), {1});
+  const PolygonClosure closure = ClosePolygon(polygon.Read(), 8, 2);
   EXPECT_EQ(closure.face, (std::vector<int>{0, 7, 6, 5, 4, 3, 2, 1}));
   EXPECT_NEAR(closure.polygon.position_rad[1] / units::deg, 45.0, 1e-9) << "face 7 is seen at 315 deg";
 }
 
 TEST(ClosePolygon, NamesWhatConstantsAndFacesHide) {
-  Stream truth(1, "truth"), noise(1, "noise");
   const auto hidden = [&](const std::vector<double>& offsets_deg, int highest) {
-    return HiddenOf(ClosePolygon(AnyPolygon(24, offsets_deg, {1}, truth).Read(noise), 24, highest));
+    return HiddenOf(ClosePolygon(AnyPolygon(24, offsets_deg, {1}).Read(), 24, highest));
   };
   EXPECT_EQ(hidden(EvenOffsets(25), 60), "24c 25p 48c 50p");
   EXPECT_EQ(hidden({0.0, 7.3, 101.0, 215.7}, 26), "24c");
@@ -151,8 +143,7 @@ TEST(ClosePolygon, NamesWhatConstantsAndFacesHide) {
 
 // 3 clampings of 8 faces are 24 even positions: order k looks like order 24 - k.
 TEST(ClosePolygon, NamesOrdersThatTheAnglesDoNotTellFromLowerOnes) {
-  Stream truth(1, "truth"), noise(1, "noise");
-  const PolygonClosure closure = ClosePolygon(AnyPolygon(8, EvenOffsets(3), {1}, truth).Read(noise), 8, 14);
+  const PolygonClosure closure = ClosePolygon(AnyPolygon(8, EvenOffsets(3), {1}).Read(), 8, 14);
   EXPECT_EQ(HiddenOf(closure), "3p 6p 8c 9p 12p 13l 14l");
   EXPECT_THAT(closure.notes, testing::Contains(HasSubstr("orders 13, 14 of the encoder look like lower orders")));
 }
@@ -160,11 +151,8 @@ TEST(ClosePolygon, NamesOrdersThatTheAnglesDoNotTellFromLowerOnes) {
 // Waves of N even positions are orthogonal with squares of N / 2: each order adds 2 s^2 / N to the variance of the
 // curve.
 TEST(ClosePolygon, StatesTwiceTheOrdersOverTheReadings) {
-  Stream truth(3, "truth"), noise(3, "noise");
-  NulledPolygon polygon = AnyPolygon(24, EvenOffsets(25), {1}, truth);
-  polygon.noise_rad = 0.03 * arcsec;
-  polygon.passes = 4;
-  const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 24, 5);
+  const NulledPolygon polygon = AnyPolygon(24, EvenOffsets(25), {1}, 3, 0.03 * arcsec, 4);
+  const PolygonClosure closure = ClosePolygon(polygon.Read(), 24, 5);
   EXPECT_EQ(closure.noise.dof, 600 * 3);
   // The scatter is known to sqrt(1 / 3600), 1.7 %.
   EXPECT_NEAR(closure.noise.u_rad / arcsec, 0.03, 4 * 0.017 * 0.03);
@@ -177,37 +165,29 @@ TEST(ClosePolygon, StatesTwiceTheOrdersOverTheReadings) {
 // Estler, J. Res. NIST 103 (1998) 141: dual closure, n clampings a face apart, gives every angle with s sqrt(n - 1)
 // / n.
 TEST(ClosePolygon, IsDualClosureWhereClampingsAreAFaceApart) {
-  Stream truth(4, "truth"), noise(4, "noise");
-  NulledPolygon polygon = AnyPolygon(12, EvenOffsets(12), {1, 5}, truth);
-  polygon.noise_rad = 0.1 * arcsec;
-  const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 12, 5);
+  const NulledPolygon polygon = AnyPolygon(12, EvenOffsets(12), {1, 5}, 4, 0.1 * arcsec);
+  const PolygonClosure closure = ClosePolygon(polygon.Read(), 12, 5);
   EXPECT_FALSE(closure.noise.is_of_repeats);
   EXPECT_EQ(closure.dof, 144 - 12 - 11 - 10);
   EXPECT_NEAR(closure.polygon.U_rad(3), closure.noise.u_rad * std::sqrt(11.0) / 12.0, 1e-9 * arcsec);
 }
 
 TEST(ClosePolygon, SaysThatThereAreOrdersAboveTheHighest) {
-  Stream truth(5, "truth"), noise(5, "noise");
-  NulledPolygon polygon = AnyPolygon(24, EvenOffsets(25), {1, 9}, truth);
-  polygon.noise_rad = 0.03 * arcsec;
-  polygon.passes = 2;
-  const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 24, 5);
+  const NulledPolygon polygon = AnyPolygon(24, EvenOffsets(25), {1, 9}, 5, 0.03 * arcsec, 2);
+  const PolygonClosure closure = ClosePolygon(polygon.Read(), 24, 5);
   EXPECT_GT(closure.noise.scale, 2.0);
   EXPECT_THAT(closure.notes, testing::Contains(HasSubstr("orders above the highest")));
 }
 
 /// Orders above repeat in all readings of an angle: twenty-five clampings do not make them less. Even and uneven ones.
 TEST(ClosePolygon, StatesACurveNoBetterThanTheOrdersItLacks) {
-  Stream truth(21, "truth"), noise(22, "noise");
   for (const std::vector<double>& offsets_deg : {EvenOffsets(25), std::vector{0.0, 3.1, 11.0, 52.4, 140.7, 201.3}}) {
-    NulledPolygon polygon = AnyPolygon(24, offsets_deg, {1, 2, 3, 5, 8}, truth);
-    polygon.noise_rad = 0.03 * arcsec;
-    polygon.passes = 2;
-    const std::vector<FaceReading> readings = polygon.Read(noise);
+    const NulledPolygon polygon = AnyPolygon(24, offsets_deg, {1, 2, 3, 5, 8}, 21, 0.03 * arcsec, 2);
+    const std::vector<FaceReading> readings = polygon.Read();
     const PolygonClosure lacking = ClosePolygon(readings, 24, 3), whole = ClosePolygon(readings, 24, 8);
     double lost_rad2 = 0.0;
-    for (const TrueWave& w : polygon.encoder)
-      if (w.order > 3) lost_rad2 += 0.5 * (w.cos_rad * w.cos_rad + w.sin_rad * w.sin_rad);
+    for (const Wave& w : polygon.encoder)
+      lost_rad2 += w.order > 3 ? 0.5 * std::pow(w.amplitude_arcsec * arcsec, 2) : 0.0;
     EXPECT_NEAR(lacking.encoder.u_unmodelled_rad, std::sqrt(lost_rad2), 0.05 * std::sqrt(lost_rad2));
     EXPECT_THAT(lacking.notes, testing::Contains(HasSubstr("orders 5, 8 of the turntable's angle stand out")));
     EXPECT_GT(lacking.turntable.cov_rad2.diagonal().minCoeff(), 0.9 * lost_rad2);
@@ -217,19 +197,15 @@ TEST(ClosePolygon, StatesACurveNoBetterThanTheOrdersItLacks) {
 }
 
 TEST(ClosePolygon, RefusesClampingsWithoutACommonFace) {
-  Stream truth(6, "truth"), noise(6, "noise");
-  std::vector<FaceReading> readings = AnyPolygon(6, {0.0, 20.0}, {1}, truth).Read(noise);
+  std::vector<FaceReading> readings = AnyPolygon(6, {0.0, 20.0}, {1}, 6).Read();
   std::erase_if(readings, [](const FaceReading& r) { return (r.clamping == 0) == (r.face < 3); });
   EXPECT_KEPT(MessageOf([&] { ClosePolygon(readings, 6, 1); }));
   EXPECT_KEPT(MessageOf([&] { ClosePolygon({}, 6, 1); }));
 }
 
 TEST(ClosePolygonByMeans, IsLeastSquaresForEvenClampings) {
-  Stream truth(1, "truth"), noise(1, "noise");
-  NulledPolygon polygon = AnyPolygon(24, EvenOffsets(25), {1, 2, 7}, truth);
-  polygon.noise_rad = 0.03 * arcsec;
-  polygon.passes = 2;
-  const auto readings = polygon.Read(noise);
+  const NulledPolygon polygon = AnyPolygon(24, EvenOffsets(25), {1, 2, 7}, 1, 0.03 * arcsec, 2);
+  const auto readings = polygon.Read();
   const PolygonClosure means = ClosePolygonByMeans(readings, 24, 8), squares = ClosePolygon(readings, 24, 8);
   EXPECT_LT(ClosureBias_rad(means.turntable, squares.turntable) / arcsec, 1e-9);
   EXPECT_LT(ClosureBias_rad(means.polygon, squares.polygon) / arcsec, 1e-9);
@@ -240,13 +216,12 @@ TEST(ClosePolygonByMeans, IsLeastSquaresForEvenClampings) {
 
 // The mean of a wave over the clampings is what the faces take of it, and what the encoder loses.
 TEST(ClosePolygonByMeans, GivesFacesTheMeanOfTheEncodersWavesOverUnevenClampings) {
-  Stream truth(2, "truth"), noise(2, "noise");
-  NulledPolygon polygon = AnyPolygon(12, {0.0, 20.0, 50.0}, {2}, truth);
-  const PolygonClosure means = ClosePolygonByMeans(polygon.Read(noise), 12, 3);
+  NulledPolygon polygon = AnyPolygon(12, {0.0, 20.0, 50.0}, {2}, 2);
+  const PolygonClosure means = ClosePolygonByMeans(polygon.Read(), 12, 3);
   for (std::size_t i = 0; i < means.face.size(); ++i) {
     double expected_rad = polygon.face_rad[static_cast<std::size_t>(means.face[i])];
     for (const double offset_deg : polygon.offsets_deg)
-      expected_rad += polygon.Encoder_rad((offset_deg + 30.0 * means.face[i]) * units::deg) / 3.0;
+      expected_rad += ValueOf(polygon.encoder, (offset_deg + 30.0 * means.face[i]) * units::deg) / 3.0;
     EXPECT_NEAR(means.polygon.value_rad[static_cast<Eigen::Index>(i)] / arcsec, expected_rad / arcsec, 1e-9);
   }
 }

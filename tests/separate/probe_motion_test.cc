@@ -1,4 +1,5 @@
 #include "tests/support/noise.h"
+#include "tests/support/over_seeds.h"
 #include "twin/benches/rotary_4dof/columns.h"
 #include "twin/benches/rotary_4dof/estimators/far_readings.h"
 #include "twin/benches/rotary_4dof/estimators/probe_separation.h"
@@ -18,12 +19,15 @@ double AxisX_um(double a) { return 0.5 * std::cos(2.0 * a) + 0.3 * std::sin(5.0 
 double AxisY_um(double a) { return 0.4 * std::cos(3.0 * a + 0.6); }
 double Artefact_um(double a) { return 0.8 * std::cos(3.0 * a) + 0.35 * std::sin(4.0 * a + 0.2); }
 
+/// Of three probes that tell all low orders.
+const std::vector<double> kApart_rad = {0.0, 100.0 * units::deg, 213.0 * units::deg};
+
 struct Spun {
   std::vector<double> at_rad;  // of the probes
   int turns = 6, angles = 120;
   double noise_um = 0.0, off_deg = 0.0;  // off_deg: readings that lie beside the grid, by turn
   bool both = false;                     // a second mounting, reversed
-  unsigned seed = 3;
+  std::uint64_t seed = 3;
 };
 
 std::vector<Reading> Made(const Spun& of, const Curve& artefact_um) {
@@ -58,14 +62,11 @@ RadialMotion Separated(const Spun& of, const Curve& artefact_um) {
 
 /// Order 1 and the constant aside.
 void ExpectCurve(const ErrorMotion& motion, const Curve& truth_um, double within_um, const char* what) {
-  const Eigen::Index n = motion.contour.size();
-  Eigen::VectorXd rest = motion.contour / um;
-  for (Eigen::Index k = 0; k < n; ++k) rest[k] -= truth_um(motion.angle_rad[k]);
-  const Eigen::VectorXd c = motion.angle_rad.array().cos(), s = motion.angle_rad.array().sin();
-  rest.array() -= rest.mean();
-  const double of_c = 2.0 * c.dot(rest) / static_cast<double>(n), of_s = 2.0 * s.dot(rest) / static_cast<double>(n);
-  rest -= of_c * c + of_s * s;
-  EXPECT_LT(rest.cwiseAbs().maxCoeff(), within_um) << what;
+  Eigen::ArrayXd rest = motion.contour / um - motion.angle_rad.unaryExpr(truth_um);
+  for (const Eigen::ArrayXd& wave :
+       {Eigen::ArrayXd(motion.angle_rad.array().cos()), Eigen::ArrayXd(motion.angle_rad.array().sin())})
+    rest -= 2.0 * (wave * rest).mean() * wave;
+  EXPECT_LT((rest - rest.mean()).abs().maxCoeff(), within_um) << what;
 }
 
 TEST(ProbeMotion, OfTwoProbesHasTheArtefactInIt) {
@@ -96,7 +97,7 @@ TEST(ProbeMotion, IsSeparatedByReversal) {
 }
 
 TEST(ProbeMotion, IsSeparatedByProbesWhereTheirAnglesTellIt) {
-  const RadialMotion three = Separated({.at_rad = {0.0, 100.0 * units::deg, 213.0 * units::deg}}, Artefact_um);
+  const RadialMotion three = Separated({.at_rad = kApart_rad}, Artefact_um);
   EXPECT_EQ(three.separated_by, "probes");
   EXPECT_TRUE(std::ranges::none_of(three.lost_orders, [](int order) { return order < 15; }));
   ExpectCurve(*three.x, AxisX_um, 1e-9, "x");
@@ -128,45 +129,38 @@ TEST(ProbeMotion, TakesReadingsAtOtherAnglesFromTurnToTurn) {
 
 /// The spread of what comes out, over many runs, is the u that is stated: of the contour at one angle.
 TEST(ProbeMotion, StatesWhatItScattersBy) {
-  double of_x = 0.0, of_artefact = 0.0, stated_x = 0.0, stated_artefact = 0.0;
-  constexpr int kTimes = 60;
-  for (unsigned seed = 1; seed <= kTimes; ++seed) {
-    const RadialMotion m = Separated({.at_rad = {0.0, 100.0 * units::deg, 213.0 * units::deg}, .turns = 4,
-                                      .angles = 60, .noise_um = 0.02, .seed = seed},
-                                     [](double) { return 0.0; });
-    for (Eigen::Index k = 0; k < 60; ++k) {
-      of_x += std::pow(m.x->contour[k] / um - AxisX_um(m.x->angle_rad[k]), 2) / (60.0 * kTimes);
-      of_artefact += std::pow(m.artefact->contour[k] / um, 2) / (60.0 * kTimes);
-    }
-    stated_x += m.x->cov.diagonal().mean() / (um * um) / kTimes;
-    stated_artefact += m.artefact->cov.diagonal().mean() / (um * um) / kTimes;
-  }
-  EXPECT_NEAR(of_x / stated_x, 1.0, 0.1);
-  EXPECT_NEAR(of_artefact / stated_artefact, 1.0, 0.15);
+  // Of x and of the artefact: squared errors, and what is stated of them.
+  const Eigen::Array22d of = twinbench::test::MeanOverSeeds(60, [](std::uint64_t seed) {
+    const RadialMotion m =
+        Separated({.at_rad = kApart_rad, .turns = 4, .angles = 60, .noise_um = 0.02, .seed = seed},
+                  [](double) { return 0.0; });
+    const Eigen::VectorXd x_um = m.x->contour / um - m.x->angle_rad.unaryExpr(&AxisX_um);
+    return Eigen::Array22d{
+        {x_um.squaredNorm() / 60.0, m.x->cov.diagonal().mean() / (um * um)},
+        {(m.artefact->contour / um).squaredNorm() / 60.0, m.artefact->cov.diagonal().mean() / (um * um)}};
+  });
+  EXPECT_NEAR(of(0, 0) / of(0, 1), 1.0, 0.1);
+  EXPECT_NEAR(of(1, 0) / of(1, 1), 1.0, 0.15);
 }
 
 /// A wave of 0.8 um in noise of 0.04 um at 720 angles: the points of the mean turn lie 2 x 0.8 um apart and some
 /// noise more, the wave does not, and in 40 runs the truth lies within what is stated as a normal number does.
 TEST(ProbeMotion, KeepsOrdersThatStandOutOfNoise) {
-  double of_u2 = 0.0, of_points_um = 0.0;
-  constexpr int kTimes = 40;
-  for (unsigned seed = 1; seed <= kTimes; ++seed) {
+  const Eigen::Array2d of = twinbench::test::MeanOverSeeds(40, [](std::uint64_t seed) {
     twinbench::test::Noise noise(0.04, seed);
     const Eigen::VectorXd angle_rad = Eigen::VectorXd::LinSpaced(720, 0.0, units::turn * 719.0 / 720.0);
-    Eigen::MatrixXd turns(3, 720);
-    for (Eigen::Index t = 0; t < 3; ++t)
-      for (Eigen::Index k = 0; k < 720; ++k)
-        turns(t, k) = (0.8 * std::cos(2.0 * angle_rad[k]) + noise()) * um;
+    const Eigen::MatrixXd turns = Eigen::MatrixXd::NullaryExpr(
+        3, 720, [&](Eigen::Index, Eigen::Index k) { return (0.8 * std::cos(2.0 * angle_rad[k]) + noise()) * um; });
     const ErrorMotion plain = OfTurns(angle_rad, turns), standing = OfStandingOrders(plain);
-    const auto value = EvaluateErrorMotion(standing, PlotCentre::kLeastSquares, {100, seed}).synchronous;
-    of_u2 += std::pow((value.value / um - 1.6) / (value.u / um), 2) / kTimes;
-    of_points_um += (plain.contour.maxCoeff() - plain.contour.minCoeff()) / um / kTimes;
     for (Eigen::Index k = 0; k < 720; k += 90)
       EXPECT_NEAR(standing.contour[k] + standing.scatter[static_cast<std::size_t>(k)][1], turns(1, k), 1e-15)
           << "a turn is what it was";
-  }
-  EXPECT_NEAR(of_u2, 1.0, 0.6);
-  EXPECT_GT(of_points_um, 1.68) << "what this is good for";
+    const auto value = EvaluateErrorMotion(standing, PlotCentre::kLeastSquares, {100, seed}).synchronous;
+    return Eigen::Array2d(std::pow((value.value / um - 1.6) / (value.u / um), 2),
+                          (plain.contour.maxCoeff() - plain.contour.minCoeff()) / um);
+  });
+  EXPECT_NEAR(of[0], 1.0, 0.6);
+  EXPECT_GT(of[1], 1.68) << "what this is good for";
   const ErrorMotion one = OfTurns(Eigen::VectorXd::LinSpaced(8, 0.0, 5.0), Eigen::RowVectorXd::Random(8));
   EXPECT_EQ(OfStandingOrders(one).contour, one.contour) << "of one turn no noise is known";
 }

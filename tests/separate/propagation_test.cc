@@ -24,45 +24,33 @@ Eigen::MatrixXd BlockOf(const TableEstimate& estimate, Component component, int 
   return estimate.cov.ToDense().block(first, first, n, n);
 }
 
-struct GainCase {
-  int n;
-  std::vector<int> shifts;
-  double gain;  // of the shift tables
-};
-
 TEST(Separator, PropagatesTheNoiseOfEzAsTheClosedFormAndTheShiftTablesSay) {
-  const std::vector<GainCase> cases = {{12, {0, 1}, 1.409},        {36, {0, 1}, 2.449},
-                                       {72, {0, 1}, 3.464},        {12, {0, 1, 4}, 0.674},
-                                       {12, {0, 1, 4, 6}, 0.531},  {36, {0, 1, 6}, 0.781},
-                                       {36, {0, 1, 7, 11}, 0.579}, {36, {0, 1, 9, 11, 15}, 0.491}};
+  const std::tuple<int, std::vector<int>, double> tabled[] = {
+      {12, {0, 1}, 1.409},        {36, {0, 1}, 2.449},           {72, {0, 1}, 3.464},
+      {12, {0, 1, 4}, 0.674},     {12, {0, 1, 4, 6}, 0.531},     {36, {0, 1, 6}, 0.781},
+      {36, {0, 1, 7, 11}, 0.579}, {36, {0, 1, 9, 11, 15}, 0.491}};
   for (const Clamping clamping : {Clamping::kReclamp, Clamping::kReseat}) {
-    for (const GainCase& c : cases) {
-      const Eigen::MatrixXd cov = BlockOf(TargetOf(c.n, c.shifts, clamping), Component::kEz, c.n);
-      const auto variance = [&](int k) { return HarmonicVariance(cov, k) / (kSigma_rad * kSigma_rad); };
-      for (int k = 1; k < c.n; ++k)
-        EXPECT_NEAR(variance(k) / ShiftVariance(c.n, c.shifts, k), 1.0, 1e-6) << k;  // asked for by the task
-      EXPECT_LT(variance(0), 1e-12 * ShiftVariance(c.n, c.shifts, 1));               // zero mean
-      EXPECT_NEAR(RootMeanGain(cov, kSigma_rad), c.gain, 6e-4) << c.n;               // three printed digits
+    for (const auto& [n, shifts, gain] : tabled) {
+      const Eigen::MatrixXd cov =
+          BlockOf(TargetOf(n, shifts, clamping), Component::kEz, n) / (kSigma_rad * kSigma_rad);
+      for (int k = 1; k < n; ++k)
+        EXPECT_NEAR(HarmonicVariance(cov, k) / ShiftVariance(n, shifts, k), 1.0, 1e-6)
+            << k;  // asked for by the task
+      EXPECT_LT(HarmonicVariance(cov, 0), 1e-12 * ShiftVariance(n, shifts, 1));               // zero mean
+      EXPECT_NEAR(RootMeanGain(cov, 1.0), gain, 6e-4) << n;  // three printed digits
     }
   }
 }
 
-struct RadialCase {
-  int n;
-  std::vector<int> shifts;
-  Clamping clamping;
-  double gain;
-};
-
 TEST(Separator, HasTheNoiseGainsOfOneRadialComponent) {
   // Noise gains of an independent study, without levers; two digits are printed.
-  const std::vector<RadialCase> cases = {
+  const std::tuple<int, std::vector<int>, Clamping, double> printed[] = {
       {12, {0, 1}, Clamping::kReseat, 0.86},    {36, {0, 1}, Clamping::kReseat, 1.53},
       {12, {0, 1, 4}, Clamping::kReseat, 0.60}, {36, {0, 1, 9}, Clamping::kReclamp, 1.46},
       {36, {0, 1, 2}, Clamping::kReclamp, 7.0}, {36, {0, 1, 4, 12}, Clamping::kReclamp, 0.69}};
-  for (const RadialCase& c : cases) {
-    const Eigen::MatrixXd cov = BlockOf(TargetOf(c.n, c.shifts, c.clamping, FlatBench()), Component::kDy, c.n);
-    EXPECT_NEAR(RootMeanGain(cov, kSigma_rad), c.gain, c.gain > 2 ? 0.06 : 0.006) << c.n;
+  for (const auto& [n, shifts, clamping, gain] : printed) {
+    const Eigen::MatrixXd cov = BlockOf(TargetOf(n, shifts, clamping, FlatBench()), Component::kDy, n);
+    EXPECT_NEAR(RootMeanGain(cov, kSigma_rad), gain, gain > 2 ? 0.06 : 0.006) << n;
   }
 }
 

@@ -3,6 +3,7 @@
 #include "tests/separate/shift_formulas.h"
 #include "tests/separate/turntable_run.h"
 #include "tests/support/kept_text.h"
+#include "tests/support/over_seeds.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::separate::turntable {
@@ -78,11 +79,10 @@ TEST(SeparateIndexing, PropagatesTheNoiseOfEveryHarmonicAsTheClosedFormAndTheShi
 
 /// Amplitude of order k in a series of n values.
 double Amplitude(const Eigen::VectorXd& values, int k) {
-  std::complex<double> sum = 0.0;
   const auto n = static_cast<double>(values.size());
-  for (Eigen::Index i = 0; i < values.size(); ++i)
-    sum += values[i] * std::polar(1.0, -2 * units::kPi * k * static_cast<double>(i) / n);
-  return std::abs(sum) * (2 * k == values.size() ? 1.0 : 2.0) / n;
+  const Eigen::ArrayXd phase = Eigen::ArrayXd::LinSpaced(values.size(), 0.0, units::turn * k * (n - 1.0) / n);
+  const double cosine = (values.array() * phase.cos()).mean(), sine = (values.array() * phase.sin()).mean();
+  return (2 * k == values.size() ? 1.0 : 2.0) * std::hypot(cosine, sine);
 }
 
 TEST(SeparateIndexing, CountsExactlyTheLostHarmonicsOfTheTeethAsTheTurntables) {
@@ -153,21 +153,18 @@ double ChiSquared(const AngleSeries& series, const Eigen::VectorXd& truth_rad) {
 }
 
 TEST(SeparateIndexing, StatesUncertaintiesThatMatchItsScatter) {
-  constexpr int kRuns = 60;
-  double turntable = 0.0, multitooth = 0.0, residual = 0.0;
-  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+  const Eigen::Array3d mean = test::MeanOverSeeds(60, [](std::uint64_t seed) {
     const auto [bench, stops] = ReadPublished(seed, 0.5 * arcsec, Seats(72, kFourOf72));
     const auto found = SeparateIndexing(stops, NoiseOf(0.5 * arcsec));
-    turntable += ChiSquared(found.turntable, TrueTurntable(bench, 72)) / kRuns;
-    multitooth += ChiSquared(found.multitooth, TrueTeeth(bench, found.multitooth)) / kRuns;
-    residual += found.chi2 / kRuns;
     EXPECT_NEAR(found.dof, 141.0, 1e-9);
-  }
+    return Eigen::Array3d(ChiSquared(found.turntable, TrueTurntable(bench, 72)),
+                          ChiSquared(found.multitooth, TrueTeeth(bench, found.multitooth)), found.chi2);
+  });
   // 71 degrees of freedom a run: standard deviation of the mean sqrt(2 * 71 / 60) = 1.5.
-  EXPECT_NEAR(turntable, 71.0, 5.0);
-  EXPECT_NEAR(multitooth, 71.0, 5.0);
+  EXPECT_NEAR(mean[0], 71.0, 5.0) << "turntable";
+  EXPECT_NEAR(mean[1], 71.0, 5.0) << "multi-tooth table";
   // 4 * 72 readings less 71 + 71 values, 4 constants and the roll: 141; sqrt(2 * 141 / 60) = 2.2.
-  EXPECT_NEAR(residual, 141.0, 7.0);
+  EXPECT_NEAR(mean[2], 141.0, 7.0);
 }
 
 TEST(SeparateIndexing, TakesTheNoiseFromRepeatsAndFromTheResidualsIfNothingWasReadTwice) {

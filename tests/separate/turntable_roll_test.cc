@@ -1,4 +1,5 @@
 #include "tests/separate/turntable_run.h"
+#include "tests/support/over_seeds.h"
 #include "twin/benches/turntable_autocollimator/estimators/equation_5.h"
 #include "twin/benches/turntable_autocollimator/estimators/roll.h"
 #include "twin/core/errors.h"
@@ -26,14 +27,12 @@ TEST(EstimateRoll, IsTheSlopeOfTheDifferencesOfTwoTilts) {
 
 /// Mean squared error over variance of `runs` estimates.
 double MeanSquaredPull(double u_rad, const std::vector<Seat>& seats, int n, bool stated) {
-  double sum = 0.0;
-  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+  return test::MeanOverSeeds(kRuns, [&](std::uint64_t seed) {
     const auto stops = ReadPublished(seed, u_rad, seats, n, stated ? 1 : 2).stops;
     const Roll roll = EstimateRoll(stops, stated ? Stated(u_rad) : AutocollimatorNoise{});
     EXPECT_EQ(roll.status, RollStatus::kOk);
-    sum += std::pow((roll.gamma_rad - 0.6 * deg) / roll.u_gamma_rad, 2) / kRuns;
-  }
-  return sum;
+    return std::pow((roll.gamma_rad - 0.6 * deg) / roll.u_gamma_rad, 2);
+  });
 }
 
 TEST(EstimateRoll, StatesAnUncertaintyThatMatchesItsScatter) {
@@ -48,16 +47,15 @@ TEST(EstimateRoll, StatesAnUncertaintyThatMatchesItsScatter) {
 TEST(EstimateRoll, IsNotPulledToZeroByTheNoiseOfY) {
   // A change of tilt of 2.5 arcsec against 0.5 arcsec of noise: the plain slope would lose 2 * 0.25 against
   // 0.5 * 2.5^2, 14 % or 0.05.
-  double sum = 0.0;
-  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+  const double mean = test::MeanOverSeeds(kRuns, [](std::uint64_t seed) {
     Stream stream(seed, "test.turntable");
     TrueBench bench = PublishedBench(0.5 * arcsec, stream);
     bench.gamma_rad = 20.0 * deg;
     const auto stops = ReadCircles(bench, {{0, 10 * arcsec, 0.4}, {0, 12.5 * arcsec, 0.4}}, 72, stream);
-    sum += std::tan(EstimateRoll(stops, Stated(0.5 * arcsec)).gamma_rad) / kRuns;
-  }
+    return std::tan(EstimateRoll(stops, Stated(0.5 * arcsec)).gamma_rad);
+  });
   // One run scatters by about 0.5 sqrt(2) / sqrt(36 * 2.5^2) = 0.05, their mean by 0.004.
-  EXPECT_NEAR(sum, std::tan(20.0 * deg), 0.012);
+  EXPECT_NEAR(mean, std::tan(20.0 * deg), 0.012);
 }
 
 TEST(EstimateRoll, SaysWhenTheTiltsAreTooMuchAlikeAndNeedsAThirdSetUpIfTheShiftsDiffer) {
@@ -92,12 +90,10 @@ TEST(EstimateRoll, IsNoneWhereASingleReadingIsLeftOverAndNobodyStatesTheNoise) {
 
 TEST(EstimateRoll, IsHardlyEverTakenFromTheNoiseOfAFewReadings) {
   const auto found_of = [](double other_tilt_rad, double other_azimuth_rad, int n) {
-    int found = 0;
-    for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
-      const auto stops = ReadPublished(seed, 0.5 * arcsec, {{0, 60 * arcsec, 0.4}, {0, other_tilt_rad, other_azimuth_rad}}, n).stops;
-      found += EstimateRoll(stops).status == RollStatus::kOk ? 1 : 0;
-    }
-    return found;
+    const std::vector<Seat> seats = {{0, 60 * arcsec, 0.4}, {0, other_tilt_rad, other_azimuth_rad}};
+    return test::CountOverSeeds(kRuns, [&](std::uint64_t seed) {
+      return EstimateRoll(ReadPublished(seed, 0.5 * arcsec, seats, n).stops).status == RollStatus::kOk;
+    });
   };
   // p < 0.001 of F, and the noise is taken across the line that fits best, which makes it some times smaller.
   for (const int n : {4, 6, 12}) EXPECT_LE(found_of(60 * arcsec, 0.4, n), 3) << n;

@@ -1,4 +1,5 @@
 #include "tests/support/noise.h"
+#include "tests/support/over_seeds.h"
 #include "twin/benches/turntable_autocollimator/estimators/collimator_sweep.h"
 #include "twin/core/units.h"
 
@@ -12,7 +13,7 @@ struct SweepOf {
   std::function<double(double)> x_arcsec, y_arcsec = {};
   double half_arcsec = 100.0, noise_arcsec = 0.05, backward_arcsec = 0.0;
   int points = 81;
-  unsigned seed = 1;
+  std::uint64_t seed = 1;
   bool both_ways = false;
 };
 
@@ -60,12 +61,11 @@ TEST(CollimatorSweep, FindsScaleAndRipple) {
 
 /// Whoever says that chance explains something in one of a thousand sweeps is wrong no more often.
 TEST(CollimatorSweep, FindsNothingInNoise) {
-  int found = 0;
-  for (unsigned seed = 1; seed <= 400; ++seed) {
+  const int found = test::CountOverSeeds(400, [](std::uint64_t seed) {
     const auto sweep =
         AnalyseSweep(Made({.x_arcsec = [](double a) { return 1.01 * a; }, .points = 41, .seed = seed}));
-    found += !sweep->axis.ripples.empty() || std::isfinite(sweep->axis.bend_rad.value) ? 1 : 0;
-  }
+    return !sweep->axis.ripples.empty() || std::isfinite(sweep->axis.bend_rad.value);
+  });
   EXPECT_LE(found, 6) << "three bounds of a thousandth, four hundred times: 1.2, and rarely more than five";
 }
 
@@ -104,23 +104,16 @@ TEST(CollimatorSweep, TakesTheAxisThatFollows) {
 
 /// u is the scatter of what comes out.
 TEST(CollimatorSweep, StatesWhatItScattersBy) {
-  double squares_scale = 0.0, squares_period = 0.0, squares_amplitude = 0.0;
-  constexpr int kTimes = 200;
-  for (unsigned seed = 1; seed <= kTimes; ++seed) {
+  const auto pull2 = [](const SweptValue& v, double truth) { return std::pow((v.value - truth) / v.u, 2); };
+  const Eigen::Array3d squares = test::MeanOverSeeds(200, [&](std::uint64_t seed) {
     const auto sweep = AnalyseSweep(Made(
         {.x_arcsec = [](double a) { return 1.02 * a + 0.15 * std::sin(units::turn * a / 23.0); }, .seed = seed}));
-    ASSERT_EQ(sweep->axis.ripples.size(), 1U) << seed;
-    squares_scale += std::pow((sweep->axis.scale.value - 1.02) / sweep->axis.scale.u, 2) / kTimes;
-    squares_period += std::pow((sweep->axis.ripples[0].period_rad.value / arcsec - 23.0) * arcsec /
-                                   sweep->axis.ripples[0].period_rad.u,
-                               2) /
-                      kTimes;
-    squares_amplitude += std::pow((sweep->axis.ripples[0].amplitude_rad.value / arcsec - 0.15) * arcsec /
-                                      sweep->axis.ripples[0].amplitude_rad.u,
-                                  2) /
-                         kTimes;
-  }
-  for (const double squares : {squares_scale, squares_period, squares_amplitude}) EXPECT_NEAR(squares, 1.0, 0.35);
+    EXPECT_EQ(sweep->axis.ripples.size(), 1U) << seed;
+    const auto& ripple = sweep->axis.ripples.at(0);
+    return Eigen::Array3d(pull2(sweep->axis.scale, 1.02), pull2(ripple.period_rad, 23.0 * arcsec),
+                          pull2(ripple.amplitude_rad, 0.15 * arcsec));
+  });
+  for (const double mean : squares) EXPECT_NEAR(mean, 1.0, 0.35);
 }
 
 }  // namespace
