@@ -3,7 +3,7 @@
 #include "tests/investigate/hidden_investigation.h"
 #include "tests/own_scenario/own_scenario.h"
 #include "tests/scores/sets.h"
-#include "tests/shelf/examine.h"
+#include "tests/shelf/judge.h"
 #include "tests/support/thresholds.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"

@@ -1,4 +1,4 @@
-#include "tests/shelf/examine.h"
+#include "tests/shelf/judge.h"
 
 #include "tests/hidden/judge.h"
 #include "tests/hidden/written_file.h"

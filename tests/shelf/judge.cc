@@ -1,7 +1,6 @@
 #include "tests/shelf/judge.h"
 
 #include "tests/hidden/judge.h"
-#include "tests/shelf/size.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/cause_groups.h"
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "tests/shelf/truth.h"
-#include "twin/diagnose/diagnosis.h"
 
-/// A diagnosis held against what is known to be in a recording.
+/// A diagnosis held against what is known to be in a recording; and recordings as people have them, imported by a
+/// plain guess, then diagnosed, as the two commands do it.
 namespace twinbench::shelf {
 
 inline constexpr double kNamed = 0.5;  // a cause, with all that these readings cannot tell from it
@@ -25,4 +25,18 @@ Judged Judge(const Truth& truth, const diagnose::Diagnosis& diagnosis);
 std::string InWords(const Expected& expected);
 std::string InWords(const Truth& truth);
 
+/// Numbers of the files in tests/data/shelf, in order.
+std::vector<std::string> CaseNames();
+
+struct Answer {
+  Judged judged;
+  std::string truth, words;  // in words; of a file that is refused, why
+  std::optional<std::string>
+      second;  // what a second diagnosis with the written file says; nothing: it was not asked
+};
+
+/// @param asks_again  Diagnose the same readings with the written file, with thresholds that are kept.
+Answer Examine(const std::string& name, bool asks_again);
+
 }  // namespace twinbench::shelf
+

@@ -1,5 +1,4 @@
-#include "tests/shelf/examine.h"
-#include "tests/shelf/size.h"
+#include "tests/shelf/judge.h"
 #include "twin/core/units.h"
 
 namespace twinbench::shelf {

@@ -1,5 +1,5 @@
 #include "tests/hidden/known_wrong.h"
-#include "tests/shelf/examine.h"
+#include "tests/shelf/judge.h"
 
 namespace twinbench::shelf {
 namespace {

@@ -1,8 +1,11 @@
 #pragma once
 
-#include "twin/core/reading.h"
+#include <optional>
 
-/// What is in the recordings of tests/data/shelf, and what may be said of them: truth.json.
+#include "twin/diagnose/diagnosis.h"
+
+/// What is in the recordings of tests/data/shelf, and what may be said of them: truth.json; and sizes of causes as
+/// it has them.
 namespace twinbench::shelf {
 
 /// One cause. A linear axis counts as `twinbench import` takes it: 360 mm are a turn, a millimetre is a degree.
@@ -38,5 +41,30 @@ struct Truth {
 
 /// @throws InputError if the file has no such case, or a key that is none.
 Truth ReadTruth(const std::string& path, const std::string& name);
+
+struct Size {
+  double value = kNaN, u = kNaN;  // SI; of a length, the angle it counts as
+  std::string kind;               // "angle", "time", "ratio", "rate"
+};
+
+/// @throws InputError if there is no such unit.
+Size InSI(double size, const std::string& unit);
+
+/// Order of what a cause does once, twice or k times a turn; NaN if it does nothing of the kind.
+double OrderOf(const diagnose::Cause& cause);
+
+/// The amplitude of one order that a cause has: of faults of the signals, to first order or by their curve. Nothing
+/// if it has no such order, or no size is told.
+std::optional<Size> AmplitudeOf(const diagnose::Cause& cause, double order);
+
+/// Of all causes of one order together, as far as amplitude and phase are told: one may be named in two pieces.
+std::optional<Size> AmplitudeTogether(const std::vector<diagnose::Cause>& causes, double order);
+
+/// What is told of a cause in place of the expected size: its amplitude, first parameter, ... Nothing if it is not
+/// told.
+std::optional<Size> SizeOf(const diagnose::Cause& cause, const Expected& expected);
+
+/// The orders are as good as the same.
+bool IsSameOrder(double a, double b);
 
 }  // namespace twinbench::shelf
