@@ -12,12 +12,6 @@ namespace {
 
 using units::arcsec, units::um;
 
-void StateAllOfTheDevice(Scenario& scenario) {
-  EncoderOf(scenario).device.lines = 30;
-  EncoderOf(scenario).device.teeth = 22;
-  EncoderOf(scenario).encoder_procedure.mounting_rad = {0.0, 0.5 * units::kPi};
-}
-
 void DrawTables(Stream& stream, Scenario& scenario) {
   for (TableSettings* table : {&RotaryOf(scenario).target, &RotaryOf(scenario).reference}) {
     const double size = UniformIn(stream, 0.6, 1.5);
@@ -36,16 +30,27 @@ void DrawRoom(Stream& stream, EnvironmentSettings& room) {
   room.random_walk_K_sqrt_h = UniformIn(stream, 0.0, 0.1);
 }
 
-/// What a reading shows by the channels of its bench, SI.
-double Shown(const std::string& bench, const Reading& r, int channel) {
-  if (bench == kRotaryBench) return r.mean_V[static_cast<std::size_t>(channel)] / kSensitivity_V_m;
+/// What a reading shows on its channels, and how much that is of one SI unit. Of circles it is not a field each.
+struct Shows {
+  std::vector<double*> channels;
+  double of_unit = 1.0;
+};
+
+Shows ShownBy(const std::string& bench, Reading& r) {
+  using namespace benches::freeform;
+  if (bench == kRotaryBench) return {{&r.mean_V[0], &r.mean_V[1], &r.mean_V[2], &r.mean_V[3]}, kSensitivity_V_m};
+  if (bench == kTurntableBench) return {{&r.autocollimator_yaw_rad, &r.autocollimator_tilt_rad}};
+  if (bench == kFreeformBench) return {{&kQpdX_V(r), &kQpdY_V(r), &kCcd_px(r)}};
+  return {{&r.measured_rad}};
+}
+
+double Shown(const std::string& bench, Reading& r, int channel) {
   if (bench == kCircularBench) {
     const benches::circular::Deviation shown = benches::circular::DeviationOf(r);
     return channel == 0 ? shown.radial_m : shown.tangential_m;
   }
-  if (bench != kFreeformBench) return r.measured_rad;
-  using namespace benches::freeform;
-  return channel == 0 ? kQpdX_V(r) : channel == 1 ? kQpdY_V(r) : kCcd_px(r);
+  const Shows shows = ShownBy(bench, r);
+  return *shows.channels[static_cast<std::size_t>(channel)] / shows.of_unit;
 }
 
 void AddToCircle(const Eigen::RowVectorXd& values, Reading& r) {
@@ -58,54 +63,6 @@ void AddToCircle(const Eigen::RowVectorXd& values, Reading& r) {
   const double c = std::cos(r.target_rad), s = std::sin(r.target_rad);
   kGridX_m(r) += c * values[0] - s * values[1];
   kGridY_m(r) += s * values[0] + c * values[1];
-}
-
-void AddToProbe(const Eigen::RowVectorXd& values, Reading& r) {
-  using namespace benches::freeform;
-  kQpdX_V(r) += values[0];
-  kQpdY_V(r) += values[1];
-  kCcd_px(r) += values[2];
-}
-
-void AddToReading(const std::string& bench, const Eigen::RowVectorXd& values, Reading& r) {
-  if (bench == kCircularBench) return AddToCircle(values, r);
-  if (bench == kFreeformBench) return AddToProbe(values, r);
-  if (bench == kRotaryBench) {
-    for (Eigen::Index c = 0; c < kChannels; ++c)
-      r.mean_V[static_cast<std::size_t>(c)] += kSensitivity_V_m * values[c];
-  } else if (bench == kTurntableBench) {
-    r.autocollimator_yaw_rad += values[0];
-    r.autocollimator_tilt_rad += values[1];
-  } else {
-    r.measured_rad += values[0];
-  }
-}
-
-/// Keys in which designs differ from their scenarios.
-std::vector<std::string> OverridesOf(Design design) {
-  if (design == Design::kTurntable) {
-    return {"turntable_procedure.phases=[\"calibration\", \"full_circle\"]", "turntable_procedure.positions=36",
-            "turntable_procedure.passes=[1, -1, -1, 1]", "turntable_procedure.eccentricities_um=[50.0, 1500.0]",
-            "turntable_procedure.dwell_s=[0.5, 2.0, 5.0]"};
-  }
-  if (design == Design::kHob) {
-    return {"mechanics.fidelity=kinematic",
-            "interferometer.noise_arcsec=0.3",  // else it decides at sizes where second orders matter
-            "hob_procedure.hob_speeds_rev_min=[50.0, 25.0]",
-            "hob_procedure.turns=1",
-            "hob_procedure.samples_per_turn=360",
-            "hob_procedure.poll_s=10.0"};
-  }
-  const std::vector<std::string> warm = {"environment.swing_mK=700.0", "environment.swing_period_s=7000.0"};
-  if (design == Design::kCircles)
-    return {"circular_procedure.points=72", "circular_procedure.stops=18", warm[0], warm[1]};
-  if (design == Design::kFreeform)
-    return {"freeform_procedure.poses=40", "optics.fidelity=closed", warm[0], warm[1]};
-  if (design == Design::kRotary) {  // two thirds of the stops, which tell everything apart
-    return {"mechanics.fidelity=kinematic", "procedure.positions=24", "procedure.shifts=[0, 1, 5, 8]"};
-  }
-  if (design == Design::kStopsInWarmRoom) return {warm[0], "environment.swing_period_s=2000.0"};
-  return {};
 }
 
 void DrawTurntable(Stream& stream, Scenario& scenario) {
@@ -132,10 +89,31 @@ void DrawTransmission(Stream& stream, Scenario& scenario) {
 }  // namespace
 
 const DesignNames& NamesOf(Design design) {
+  static const std::vector<std::string> warm = {"environment.swing_mK=700.0", "environment.swing_period_s=7000.0"};
+  static const std::string sweep = "encoder_procedure.kind=sweep", lines = "device.lines_per_turn=30",
+                           teeth = "device.teeth=22", mountings = "encoder_procedure.mounting_deg=[0.0, 90.0]";
   static const std::vector<DesignNames> names = {
-      {"rotary", kRotaryBench},  {"stops", kEncoderBench},    {"sweep", kEncoderBench},
-      {"stops+", kEncoderBench}, {"sweep+", kEncoderBench},   {"turntable", kTurntableBench},
-      {"hob", kHobBench},        {"circles", kCircularBench}, {"freeform", kFreeformBench}, {"warm stops", kEncoderBench}};
+      // Two thirds of the stops, which tell everything apart.
+      {"rotary", kRotaryBench,
+       {"mechanics.fidelity=kinematic", "procedure.positions=24", "procedure.shifts=[0, 1, 5, 8]",
+        "adc.every_sample=false"}},
+      {"stops", kEncoderBench, {}},
+      {"sweep", kEncoderBench, {sweep}},
+      {"stops+", kEncoderBench, {lines, teeth, mountings}},
+      // Two set-ups have twice the readings; half as many a second keep a case as quick as the others.
+      {"sweep+", kEncoderBench, {lines, teeth, mountings, sweep, "encoder_procedure.interval_s=0.16"}},
+      {"turntable", kTurntableBench,
+       {"turntable_procedure.phases=[\"calibration\", \"full_circle\"]", "turntable_procedure.positions=36",
+        "turntable_procedure.passes=[1, -1, -1, 1]", "turntable_procedure.eccentricities_um=[50.0, 1500.0]",
+        "turntable_procedure.dwell_s=[0.5, 2.0, 5.0]"}},
+      {"hob", kHobBench,
+       {"interferometer.noise_arcsec=0.3",  // else it decides at sizes where second orders matter
+        "mechanics.fidelity=kinematic", "hob_procedure.hob_speeds_rev_min=[50.0, 25.0]", "hob_procedure.turns=1",
+        "hob_procedure.samples_per_turn=360", "hob_procedure.poll_s=10.0"}},
+      {"circles", kCircularBench,
+       {"circular_procedure.points=72", "circular_procedure.stops=18", warm[0], warm[1]}},
+      {"freeform", kFreeformBench, {"freeform_procedure.poses=40", "optics.fidelity=closed", warm[0], warm[1]}},
+      {"warm stops", kEncoderBench, {warm[0], "environment.swing_period_s=2000.0"}}};
   return names[static_cast<std::size_t>(design)];
 }
 
@@ -146,14 +124,7 @@ double LogUniformIn(Stream& stream, double lower, double upper) {
 }
 
 Scenario Believed(Design design) {
-  Scenario scenario = LoadScenario(test::ScenarioPath(BenchOf(design) + ".toml"), OverridesOf(design));
-  if (design == Design::kRotary) RotaryOf(scenario).adc.every_sample = false;
-  if (design == Design::kSweep || design == Design::kSweepAllKnown)
-    EncoderOf(scenario).encoder_procedure.kind = "sweep";
-  // Two set-ups have twice the readings; half as many a second keep a case as quick as the others.
-  if (design == Design::kSweepAllKnown) EncoderOf(scenario).encoder_procedure.interval_s *= 2.0;
-  if (design == Design::kStopsAllKnown || design == Design::kSweepAllKnown) StateAllOfTheDevice(scenario);
-  return scenario;
+  return LoadScenario(test::ScenarioPath(BenchOf(design) + ".toml"), NamesOf(design).keys);
 }
 
 Scenario Drawn(Design design, std::uint64_t seed) {
@@ -170,8 +141,16 @@ Scenario Drawn(Design design, std::uint64_t seed) {
 std::vector<Reading> TakeReadings(const Scenario& actual) { return test::ReadingsOf(actual); }
 
 void AddTo(const std::string& bench, const Eigen::MatrixXd& signal, std::vector<Reading>& readings) {
-  for (std::size_t i = 0; i < readings.size(); ++i)
-    AddToReading(bench, signal.row(static_cast<Eigen::Index>(i)), readings[i]);
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const Eigen::RowVectorXd values = signal.row(static_cast<Eigen::Index>(i));
+    if (bench == kCircularBench) {
+      AddToCircle(values, readings[i]);
+      continue;
+    }
+    const Shows shows = ShownBy(bench, readings[i]);
+    for (std::size_t c = 0; c < shows.channels.size(); ++c)
+      *shows.channels[c] += shows.of_unit * values[static_cast<Eigen::Index>(c)];
+  }
 }
 
 const SignatureScale::Clean& SignatureScale::CleanRun(std::uint64_t seed) const {
@@ -188,7 +167,7 @@ const SignatureScale::Clean& SignatureScale::CleanRun(std::uint64_t seed) const 
 }
 
 /// What the readings show in the rows of the run.
-Eigen::VectorXd SignatureScale::Rows(const std::vector<Reading>& readings, const diagnose::LinearRun& clean) const {
+Eigen::VectorXd SignatureScale::Rows(std::vector<Reading> readings, const diagnose::LinearRun& clean) const {
   if (design_ == Design::kTurntable)
     return benches::turntable::Linear(readings, Believed(design_), Estimator::kRigorous).observed;
   if (design_ == Design::kHob)

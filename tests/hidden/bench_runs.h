@@ -27,6 +27,7 @@ enum class Design {
 };
 struct DesignNames {
   std::string name, bench;
+  std::vector<std::string> keys;  // in which it differs from the bench's scenario
 };
 const DesignNames& NamesOf(Design design);
 inline const std::string& BenchOf(Design design) { return NamesOf(design).bench; }
@@ -62,7 +63,7 @@ class SignatureScale {
   };
 
   const Clean& CleanRun(std::uint64_t seed) const;
-  Eigen::VectorXd Rows(const std::vector<Reading>& readings, const diagnose::LinearRun& clean) const;
+  Eigen::VectorXd Rows(std::vector<Reading> readings, const diagnose::LinearRun& clean) const;
 
   Design design_;
   mutable std::mutex one_at_a_time_;

@@ -85,14 +85,11 @@ std::vector<double*> StatedNoises(Scenario& scenario) {
 }
 
 /// Standard deviation of what each channel of a reading shows.
-Eigen::VectorXd Deviations(const Scenario& scenario, const Reading& r) {
-  if (scenario.bench == kTurntableBench) return Eigen::Vector2d::Constant(TurntableOf(scenario).autocollimator.noise_rad);
-  if (scenario.bench == kHobBench) return Eigen::VectorXd::Constant(1, HobOf(scenario).table_encoder.noise_rad);
-  if (scenario.bench == kEncoderBench) return Eigen::VectorXd::Constant(1, EncoderOf(scenario).device.noise_rad);
-  if (scenario.bench == kFreeformBench) {
-    const FreeformSettings& s = FreeformOf(scenario);
-    return Eigen::Vector3d(s.qpd.noise_V, s.qpd.noise_V, s.ccd.noise_px);
-  }
+Eigen::VectorXd Deviations(Scenario& scenario, const Reading& r) {
+  const std::vector<double*> stated = StatedNoises(scenario);
+  if (scenario.bench == kFreeformBench) return Eigen::Vector3d(*stated[0], *stated[0], *stated[1]);
+  if (scenario.bench != kCircularBench)
+    return Eigen::VectorXd::Constant(scenario.bench == kTurntableBench ? 2 : 1, *stated[0]);
   const CircularSettings& s = CircularOf(scenario);
   const bool bar = benches::circular::IsOfBar(r);
   const double radial_m = bar ? s.bar.noise_m : s.grid.noise_m;
@@ -108,7 +105,7 @@ std::string StreamOf(const std::string& bench, Eigen::Index channel) {
 
 /// Noise of this shape on readings that are taken without; the scenario states what the shape says.
 Case WithNoise(const NoiseShape& shape, Scenario actual, Case clean, std::uint64_t seed) {
-  const Scenario noisy = actual;
+  Scenario noisy = actual;
   for (double* noise : StatedNoises(actual)) *noise = 0.0;
   clean.readings = TakeReadings(actual);
   const Eigen::Index channels = Deviations(noisy, clean.readings.front()).size();

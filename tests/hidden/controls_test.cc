@@ -1,3 +1,4 @@
+#include "tests/diagnose/found_causes.h"
 #include "tests/hidden/known_wrong.h"
 #include "tests/hidden/placements.h"
 #include "tests/hidden/twin_cases.h"
@@ -99,13 +100,6 @@ TEST(Controls, ABackgroundTiesWithStrayLight) {
   EXPECT_THAT(background->next_measurement, testing::HasSubstr("power"));
 }
 
-/// What the diagnosis says of a cause that it cannot see.
-std::string CouldBias(const Diagnosis& d, const std::string& effect, const std::string& where) {
-  const auto found = std::ranges::find_if(
-      d.invisible, [&](const diagnose::Invisible& one) { return one.effect == effect && one.where == where; });
-  return found == d.invisible.end() ? "(it says that it would be seen)" : found->could_bias;
-}
-
 // Whatever turns the grating as a function of one table's angle is that table's error, as far as readings go.
 TEST(Controls, AFormOfTheGratingAndAnEncodersSubdivisionAreSaidToHideInTheTables) {
   Scenario actual = Drawn(Design::kRotary, kSeed);
@@ -121,10 +115,10 @@ TEST(Controls, AFormOfTheGratingAndAnEncodersSubdivisionAreSaidToHideInTheTables
     const Diagnosis d = Diagnosed(TakeReadings(actual), believed);
     SCOPED_TRACE(Judge({}, d).answer);
     EXPECT_EQ(d.verdict, diagnose::Verdict::kNone) << effect.name;
-    EXPECT_THAT(CouldBias(d, "encoder_subdivision", "target"), testing::HasSubstr("target.ez"));
-    EXPECT_THAT(CouldBias(d, "encoder_subdivision", "reference"), testing::HasSubstr("ez"));
+    EXPECT_THAT(diagnose::test::CouldBias(d, "encoder_subdivision", "target"), testing::HasSubstr("target.ez"));
+    EXPECT_THAT(diagnose::test::CouldBias(d, "encoder_subdivision", "reference"), testing::HasSubstr("ez"));
     for (const char* form : {"sphere", "astigmatism"})
-      EXPECT_THAT(CouldBias(d, "grating_form", form), testing::HasSubstr("arcsec")) << form;
+      EXPECT_THAT(diagnose::test::CouldBias(d, "grating_form", form), testing::HasSubstr("arcsec")) << form;
   }
 }
 
