@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/freeform/freeform_run.h"
+#include "tests/support/over_seeds.h"
 #include "twin/benches/freeform_five_axis/estimators/identification.h"
 #include "twin/benches/freeform_five_axis/estimators/volumetric.h"
 
@@ -97,25 +98,21 @@ TEST(FreeformEstimator, LeavesNothingOfTheOraclesRunAndPredictsItsUnseenPoses) {
 }
 
 TEST(FreeformEstimator, StatesUncertaintiesThatMatchItsScatter) {
-  double sum = 0.0;
-  int count = 0;
-  constexpr int kRuns = 6;
-  for (int run = 0; run < kRuns; ++run) {
-    const Scenario scenario = FreeformScenario("seed = " + std::to_string(run + 1) + "\n");
+  const Eigen::Array2d squares_and_count = test::MeanOverSeeds(6, [](std::uint64_t seed) {
+    const Scenario scenario = FreeformScenario("seed = " + std::to_string(seed) + "\n");
     const sim::DrawnBench drawn = sim::Draw(scenario);
     const Identification found =
         Identify(FreeformOf(scenario), PosesOf(RunOf(scenario, drawn), FreeformOf(scenario)));
-    EXPECT_TRUE(found.converged) << run;
-    const Eigen::VectorXd truth = UnknownsOf(drawn);
-    for (int k = 0; k < kOfMachine; ++k) {
-      if (!found.identified[static_cast<std::size_t>(k)]) continue;
-      sum += std::pow((found.unknowns[k] - truth[k]) / found.u[k], 2);
-      ++count;
-    }
-  }
-  ASSERT_GT(count, 30 * kRuns);
+    EXPECT_TRUE(found.converged) << seed;
+    const Eigen::ArrayXd pulls = (found.unknowns - UnknownsOf(drawn)).cwiseQuotient(found.u).head(kOfMachine);
+    Eigen::Array2d sums(0.0, 0.0);
+    for (Eigen::Index k = 0; k < kOfMachine; ++k)
+      if (found.identified[static_cast<std::size_t>(k)]) sums += Eigen::Array2d(std::pow(pulls[k], 2), 1.0);
+    return sums;
+  });
+  ASSERT_GT(squares_and_count[1], 30);
   // Mean square of some hundreds of standard deviations, correlated in a run: 1 within 20 %.
-  EXPECT_NEAR(sum / count, 1.0, 0.2);
+  EXPECT_NEAR(squares_and_count[0] / squares_and_count[1], 1.0, 0.2);
 }
 
 /// Where the machine stands is no error of its volume: a shift and a small turn about each axis leave nothing.

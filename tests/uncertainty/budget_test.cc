@@ -145,14 +145,11 @@ TEST(StatedQuantities, AreThoseWithAnUncertaintyInEachOfItsForms) {
   const auto json = nlohmann::json::parse(R"({"a": {"value": 1, "u": 0.1, "unit": "um"},
     "b": {"value_um": 2, "u_um": 0.2, "bias_um": 9}, "c": {"ez_arcsec": [3, 4], "u_ez_arcsec": [0.3, null],
     "position_deg": [0, 10]}, "d": [{"D_um": 5, "u_D_um": 0.5, "feed": 7}], "dof": 8})");
-  std::vector<std::string> names;
-  std::vector<double> values;
-  for (const Quantity& q : StatedQuantities(json)) {
-    names.push_back(q.name);
-    values.push_back(q.value);
-  }
-  EXPECT_THAT(names, testing::ElementsAre("a", "b_um", "c.ez_arcsec[0]", "c.ez_arcsec[1]", "d[0].D_um"));
-  EXPECT_THAT(values, testing::ElementsAre(1, 2, 3, 4, 5));
+  const auto is = [](const char* name, double value) {
+    return testing::AllOf(testing::Field(&Quantity::name, name), testing::Field(&Quantity::value, value));
+  };
+  EXPECT_THAT(StatedQuantities(json), testing::ElementsAre(is("a", 1), is("b_um", 2), is("c.ez_arcsec[0]", 3),
+                                                           is("c.ez_arcsec[1]", 4), is("d[0].D_um", 5)));
   EXPECT_EQ(QuantitiesOf(json).size(), 4U) << "without the one whose uncertainty is not known";
 }
 

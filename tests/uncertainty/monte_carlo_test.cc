@@ -5,7 +5,7 @@
 namespace twinbench::uncertainty {
 namespace {
 
-using test::FourInputs, test::Input, test::InputKeys;
+using test::Computing, test::FourInputs, test::Input, test::InputKeys;
 
 std::vector<Quantity> Sum(const Scenario& s) {
   double sum = 0.0;
@@ -33,17 +33,15 @@ TEST(MonteCarlo, StopsWhenTwoDigitsStand) {
   EXPECT_TRUE(result.settled);
   EXPECT_LT(result.trials, 20000);
   EXPECT_NEAR(result.spreads.at(0).sd, 2.0, 0.06);
-  MonteCarloOptions few;
-  few.most_trials = 1000;
-  EXPECT_FALSE(Propagate(FourOf(Distribution::kNormal), Sum, few).settled) << "and says when they do not";
+  EXPECT_FALSE(Propagate(FourOf(Distribution::kNormal), Sum, {.most_trials = 1000}).settled)
+      << "and says when they do not";
 }
 
 TEST(MonteCarlo, IsTheSameToTheBitOnAnyNumberOfThreads) {
-  MonteCarloOptions one, four;
-  one.most_trials = four.most_trials = 2000;
-  four.threads = 4;
-  const MonteCarlo a = Propagate(FourOf(Distribution::kTriangular), Sum, one),
-                   b = Propagate(FourOf(Distribution::kTriangular), Sum, four);
+  const auto by_threads = [](int threads) {
+    return Propagate(FourOf(Distribution::kTriangular), Sum, {.most_trials = 2000, .threads = threads});
+  };
+  const MonteCarlo a = by_threads(1), b = by_threads(4);
   ASSERT_EQ(a.trials, b.trials);
   EXPECT_EQ(a.spreads.at(0).sd, b.spreads.at(0).sd);
   EXPECT_EQ(a.spreads.at(0).shortest, b.spreads.at(0).shortest);
@@ -91,8 +89,6 @@ TEST(OneAtATime, KeepsWhatStaysBesideEveryOther) {
   EXPECT_TRUE(found.shares[1].alone.empty());
   EXPECT_NEAR(found.InQuadrature(0), 5.0, 1e-9);
 }
-
-using test::Computing;
 
 /// GUM and trials of every quantity.
 struct Both {

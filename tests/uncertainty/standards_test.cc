@@ -1,5 +1,6 @@
 #include <random>
 
+#include "tests/support/over_seeds.h"
 #include "tests/uncertainty/bench_budget.h"
 #include "twin/uncertainty/standards.h"
 
@@ -15,10 +16,8 @@ std::map<std::string, double> MeanSquares(std::size_t bench, int seeds) {
   std::map<std::string, std::pair<double, int>> sums;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Scenario scenario = Small(SmallBenches()[bench], {"seed=" + std::to_string(seed)});
-    const auto twin = BenchOf(scenario).make_twin(scenario);
-    const auto record = RunRecord::CreateInMemory({"", "twin", scenario.seed, "", scenario.bench});
-    twin->CarryOut(*record, [](const procedure::Progress&) {});
-    const auto score = BenchOf(scenario).score(scenario, record->Readings(), twin->Truth(), Estimator::kPublished);
+    const test::BenchRun run = test::RunBench(scenario);
+    const auto score = BenchOf(scenario).score(scenario, run.readings, run.truth, Estimator::kPublished);
     for (const report::ScoredValue& v : score.values) {
       EXPECT_GT(v.u, 0.0) << v.name;
       auto& [sum, count] = sums[KindOf(v.name)];
@@ -76,10 +75,8 @@ TEST(PublishedOfOtherBenches, NamesWhatTheEquationsOfThePatentMiss) {
 constexpr double kWavelength_nm = 0.02, kDistance_mm = 0.1, kStandard = 2e-3;
 
 Scenario Nominal() {
-  return LoadScenario(test::ScenarioPath("rotary_4dof.toml"),
-                      {"procedure.positions=12", "procedure.shifts=[0, 1, 5]", "mechanics.fidelity=kinematic",
-                       "optics.fidelity=closed", "adc.every_sample=false", "laser.u_wavelength_nm=0.02",
-                       "psd_a.u_distance_mm=0.1", "psd_b.u_distance_mm=0.1", "autocollimator.u_gain_error=0.002"});
+  return Small(SmallBenches()[0], {"laser.u_wavelength_nm=0.02", "psd_a.u_distance_mm=0.1",
+                                   "psd_b.u_distance_mm=0.1", "autocollimator.u_gain_error=0.002"});
 }
 
 /// A bench whose standards err by what was drawn; nobody who evaluates knows.
@@ -93,10 +90,6 @@ Scenario Drawn(std::mt19937_64& random) {
   return s;
 }
 
-std::vector<Quantity> Evaluated(const Scenario& scenario, const std::vector<Reading>& readings) {
-  return QuantitiesOf(BenchOf(scenario).evaluate(scenario, readings, Estimator::kRigorous).results);
-}
-
 double TypeB2(const Budget& budget) {
   double sum2 = 0.0;
   for (const Source& source : budget.sources) sum2 += !IsOfReadings(source) ? source.u * source.u : 0.0;
@@ -108,13 +101,13 @@ double TypeB2(const Budget& budget) {
 TEST(RotaryUncertainty, IsWhatStandardsThatErrDo) {
   const Scenario nominal = Nominal();
   const std::vector<Reading> readings = test::RunTwin(nominal).readings;
-  const auto budgets = Budgets(nominal, [&](const Scenario& s) { return Evaluated(s, readings); });
+  const auto budgets = Budgets(nominal, [&](const Scenario& s) { return test::QuantitiesFrom(s, readings); });
   ASSERT_FALSE(budgets.empty());
   std::mt19937_64 random(11);
   std::map<std::string, std::pair<double, int>> ratio2;  // by list: sum of squares and count
   constexpr int kBenches = 40;
   for (int bench = 0; bench < kBenches; ++bench) {
-    const std::vector<Quantity> found = Evaluated(nominal, test::RunTwin(Drawn(random)).readings);
+    const std::vector<Quantity> found = test::QuantitiesFrom(nominal, test::RunTwin(Drawn(random)).readings);
     ASSERT_EQ(found.size(), budgets.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
       const double u2 = TypeB2(budgets[i]), u_readings = budgets[i].quantity.u;
@@ -139,21 +132,17 @@ Scenario Hob(const std::string& u_arcsec) {
 /// Both parts of every order of the calibrator scatter as it states, and what the scenario has in it is gone.
 TEST(StandardsDrawn, DrawTheWavesOfACalibrator) {
   const Scenario scenario = Hob("0.2");
-  constexpr int kTrials = 400;
-  double real2 = 0.0, cross = 0.0;
-  for (int trial = 0; trial < kTrials; ++trial) {
-    const Scenario drawn = StandardsDrawn(scenario, 1, trial);
+  const Eigen::Array2d squares = test::MeanOverSeeds(400, [&](std::uint64_t trial) {
+    const Scenario drawn = StandardsDrawn(scenario, 1, static_cast<int>(trial));
     const auto& waves = HobOf(drawn).interferometer.calibrator;
-    ASSERT_EQ(waves.size(), 10U);
-    EXPECT_EQ(waves[0].order, 1.0);
-    const double real = waves[0].amplitude * std::cos(waves[0].phase_rad),
-                 imaginary = waves[0].amplitude * std::sin(waves[0].phase_rad);
-    real2 += real * real / kTrials;
-    cross += real * imaginary / kTrials;
-  }
-  const double u = 0.2 * units::arcsec;
-  EXPECT_NEAR(real2 / (u * u), 1.0, 0.25) << "400 trials: 7 % standard deviation";
-  EXPECT_NEAR(cross / (u * u), 0.0, 0.2);
+    EXPECT_EQ(waves.size(), 10U);
+    EXPECT_EQ(waves.at(0).order, 1.0);
+    const std::complex<double> wave =
+        std::polar(waves.at(0).amplitude / (0.2 * units::arcsec), waves.at(0).phase_rad);
+    return Eigen::Array2d(wave.real() * wave.real(), wave.real() * wave.imag());
+  });
+  EXPECT_NEAR(squares[0], 1.0, 0.25) << "400 trials: 7 % standard deviation";
+  EXPECT_NEAR(squares[1], 0.0, 0.2);
 }
 
 TEST(StandardsDrawn, LeaveACalibratorAloneThatIsSure) {
