@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include "tests/support/noise.h"
 #include "twin/core/reading.h"
 

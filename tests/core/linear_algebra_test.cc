@@ -141,18 +141,15 @@ VectorXd AsVector(const std::vector<double>& numbers) {
 }
 
 /// `model polynomial 0 5` are powers 0 to 5 of the only column, `model columns` a constant and all columns.
-VectorXd RowOf(const std::string& model, const std::vector<double>& data) {
+VectorXd RowOf(const std::string& model, std::vector<double> data) {
   std::istringstream words(model);
   std::string kind;
   int lowest = 0, highest = 0;
   words >> kind >> lowest >> highest;
+  data[0] = 1.0;
+  if (kind == "columns") return AsVector(data);
   std::vector<double> row;
-  if (kind == "columns") {
-    row = data;
-    row[0] = 1.0;
-  } else {
-    for (int power = lowest; power <= highest; ++power) row.push_back(std::pow(data[1], power));
-  }
+  for (int power = lowest; power <= highest; ++power) row.push_back(std::pow(data[1], power));
   return AsVector(row);
 }
 

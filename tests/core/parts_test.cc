@@ -20,14 +20,19 @@ TEST(Sha256, AgreesWithThePublishedExamples) {
   EXPECT_EQ(Sha256(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-TEST(ChiSquaredExceedance, OfNothingIsCertain) {
-  EXPECT_EQ(ChiSquaredExceedance(0.0, 3.0), 1.0);
+TEST(ChiSquaredExceedance, OfNothingIsCertainAlsoInThousandsOfDegreesOfFreedomAndUnknownWithoutAny) {
   EXPECT_EQ(ChiSquaredExceedance(-1e-17, 3.0), 1.0);
+  EXPECT_EQ(ChiSquaredExceedance(0.0, 3.0), 1.0);
+  for (const double chi2 : {0.0, 1e-20, 1.0}) EXPECT_EQ(ChiSquaredExceedance(chi2, 10000.0), 1.0) << chi2;
+  EXPECT_NEAR(ChiSquaredExceedance(10000.0, 10000.0), 0.5, 0.003);  // skewed by 2 / (3 sqrt(2 pi dof))
   EXPECT_EQ(ChiSquaredExceedance(INFINITY, 3.0), 0.0);
   EXPECT_TRUE(std::isnan(ChiSquaredExceedance(std::nan(""), 3.0)));
+  EXPECT_TRUE(std::isnan(ChiSquaredExceedance(5.0, 0.0)));
 }
 
-TEST(NormalExceededWith, IsANumberOfProbabilitiesOnly) {
+TEST(NormalExceededWith, IsTheInverseOfTheTailAndANumberOfProbabilitiesOnly) {
+  for (const double p : {0.4, 0.025, 1e-9})
+    EXPECT_NEAR(0.5 * std::erfc(NormalExceededWith(p) / std::sqrt(2.0)) / p, 1.0, 1e-12);
   EXPECT_NEAR(NormalExceededWith(0.025), 1.959964, 1e-6);
   EXPECT_EQ(NormalExceededWith(0.0), INFINITY);
   EXPECT_EQ(NormalExceededWith(1.0), -INFINITY);
@@ -45,12 +50,6 @@ TEST(ChiSquaredExceedance, AgreesWithTablesAndIsAnExponentialForTwoDegreesOfFree
   EXPECT_LT(ChiSquaredExceedance(5.0, 2.5), ChiSquaredExceedance(5.0, 3.0));
 }
 
-TEST(ChiSquaredExceedance, IsCertainForNothingInThousandsOfDegreesOfFreedomAndKnowsNothingWithoutAny) {
-  EXPECT_TRUE(std::isnan(ChiSquaredExceedance(5.0, 0.0)));
-  for (const double chi2 : {0.0, 1e-20, 1.0}) EXPECT_EQ(ChiSquaredExceedance(chi2, 10000.0), 1.0) << chi2;
-  EXPECT_NEAR(ChiSquaredExceedance(10000.0, 10000.0), 0.5, 0.003);  // skewed by 2 / (3 sqrt(2 pi dof))
-}
-
 TEST(VarianceRatioExceedance, AgreesWithTablesOfF) {
   // Upper 0.05 and 0.001 points as printed, to half a unit of their last digit.
   EXPECT_NEAR(VarianceRatioExceedance(4.9646, 1.0, 10.0), 0.05, 1e-6);
@@ -59,11 +58,6 @@ TEST(VarianceRatioExceedance, AgreesWithTablesOfF) {
   EXPECT_EQ(VarianceRatioExceedance(0.0, 3.0, 4.0), 1.0);
   EXPECT_EQ(VarianceRatioExceedance(std::numeric_limits<double>::infinity(), 3.0, 4.0), 0.0);
   EXPECT_TRUE(std::isnan(VarianceRatioExceedance(1.0, 3.0, 0.0)));
-}
-
-TEST(NormalExceededWith, IsTheInverseOfTheTail) {
-  for (const double p : {0.4, 0.025, 1e-9})
-    EXPECT_NEAR(0.5 * std::erfc(NormalExceededWith(p) / std::sqrt(2.0)) / p, 1.0, 1e-12);
 }
 
 TEST(LogDensities, AreThoseOfCauchyForOneDegreeOfFreedomAndOfANormalForVeryMany) {
@@ -178,14 +172,12 @@ std::string BoundsError(const std::string& text) { return MessageOf([&] { Requir
 
 TEST(TomlBounds, RefuseKeysOfManyPartsHoweverTheyAreWrittenAndOfManyLetters) {
   constexpr int kMany = 100000;
+  const std::string too_many = ": a key of 100001 parts; expected at most 64";
   for (const char* part : {"a.", "a . ", "\"a\".", "'a'."}) {
-    EXPECT_EQ(BoundsError("x = 1\n" + Repeated(part, kMany) + "a = 1\n"),
-              "a.toml:2: a key of 100001 parts; expected at most 64")
-        << part;
-    EXPECT_EQ(BoundsError("[" + Repeated(part, kMany) + "a]\n"),
-              "a.toml:1: a key of 100001 parts; expected at most 64");
-    EXPECT_EQ(BoundsError("x = {" + Repeated(part, kMany) + "a = 1}"),
-              "a.toml:1: a key of 100001 parts; expected at most 64");
+    const std::string parts = Repeated(part, kMany);
+    EXPECT_EQ(BoundsError("x = 1\n" + parts + "a = 1\n"), "a.toml:2" + too_many) << part;
+    EXPECT_EQ(BoundsError("[" + parts + "a]\n"), "a.toml:1" + too_many);
+    EXPECT_EQ(BoundsError("x = {" + parts + "a = 1}"), "a.toml:1" + too_many);
   }
   EXPECT_EQ(BoundsError(std::string(200000, 'k') + "= 1"),
             "a.toml:1: a key of 200000 letters; expected at most 1024");

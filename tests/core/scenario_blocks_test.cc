@@ -8,9 +8,12 @@
 namespace twinbench {
 namespace {
 
+using testing::DoubleEq, testing::ElementsAre, testing::FieldsAre;
+
 Scenario Parse(const std::string& bench, const std::string& block) {
   return ParseScenario("bench = \"" + bench + "\"\n[[effect]]\nname = \"signal\"\n" + block, "s.toml", ".");
 }
+
 TEST(ScenarioSignal, IsReadInSIWithAnAmplitudeOfItsBenchsKind) {
   const EffectSettings signal = Parse("rotary_4dof",
                                       "point = \"psd_b_y\"\nsignal = \"harmonic\"\nby = \"target\"\n"
@@ -42,8 +45,6 @@ TEST(ScenarioSignal, IsWrittenAsItIsRead) {
 
 // What a diagnosis adds to a scenario: findings in [[effect]] blocks, and [[empirical]] blocks.
 
-using testing::ElementsAre;
-
 Scenario Parsed(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return ParseScenario("bench = \"rotary_4dof\"\n" + text, "s.toml", "", overrides);
 }
@@ -52,11 +53,8 @@ TEST(ScenarioFinding, TakesUncertaintiesToSIKeepsTheRestAndIsNotNeeded) {
   const Scenario s = Parsed(
       "[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\nroll_mrad = 2\nu_roll_mrad = 0.1\n"
       "log_evidence = 31.5\nprobability = 0.97\nprovenance = \"run 7\"\n");
-  const EffectFinding& finding = s.effects.at(0).finding;
-  EXPECT_EQ(finding.u.at("roll"), 0.1 * units::mrad);
-  EXPECT_EQ(finding.log_evidence, 31.5);
-  EXPECT_EQ(finding.probability, 0.97);
-  EXPECT_EQ(finding.provenance, "run 7");
+  EXPECT_THAT(s.effects.at(0).finding,
+              FieldsAre(ElementsAre(testing::Pair("roll", 0.1 * units::mrad)), 31.5, 0.97, "run 7"));
   const Scenario without = Parsed("[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\n");
   EXPECT_TRUE(without.effects.at(0).finding.u.empty());
   EXPECT_TRUE(std::isnan(without.effects.at(0).finding.probability));
@@ -83,12 +81,11 @@ TEST(ScenarioUncertainty, IsReadInTheUnitOfItsKeyAlsoOnTheCommandLine) {
   const Scenario s = Parsed(
       "[laser]\nu_wavelength_nm = 0.01\n[psd_a]\nu_distance_mm = { half_width = 0.3, distribution = \"uniform\" "
       "}\n");
-  ASSERT_EQ(s.uncertainties.size(), 2U);
-  EXPECT_EQ(s.uncertainties[0].key, "laser.wavelength_nm");
-  EXPECT_DOUBLE_EQ(s.uncertainties[0].u, 0.01 * units::nm);
-  EXPECT_TRUE(std::isinf(s.uncertainties[0].dof));
-  EXPECT_EQ(s.uncertainties[1].distribution, Distribution::kUniform);
-  EXPECT_DOUBLE_EQ(s.uncertainties[1].u, 0.3 * units::mm / std::sqrt(3.0));
+  EXPECT_THAT(
+      s.uncertainties,
+      ElementsAre(FieldsAre("laser.wavelength_nm", DoubleEq(0.01 * units::nm), Distribution::kNormal, INFINITY),
+                  FieldsAre("psd_a.distance_mm", DoubleEq(0.3 * units::mm / std::sqrt(3.0)), Distribution::kUniform,
+                            INFINITY)));
 }
 
 TEST(ScenarioUncertainty, ComesBackFromTheFileThatIsWritten) {
@@ -96,7 +93,9 @@ TEST(ScenarioUncertainty, ComesBackFromTheFileThatIsWritten) {
       "[psd_b]\nu_distance_mm = { u = 0.25, dof = 8, distribution = \"triangular\" }\n[grating]\nu_point_mm = "
       "0.5\n");
   const Scenario again = ParseScenario(WriteScenario(s), "again.toml", "");
-  const auto same = [](const StatedUncertainty& one) { return testing::FieldsAre(one.key, one.u, one.distribution, one.dof); };
+  const auto same = [](const StatedUncertainty& one) {
+    return FieldsAre(one.key, one.u, one.distribution, one.dof);
+  };
   EXPECT_THAT(again.uncertainties, ElementsAre(same(s.uncertainties.at(0)), same(s.uncertainties.at(1))));
 }
 
@@ -132,15 +131,8 @@ std::vector<Place> ReadPlaces(const std::string& text) {
 std::string RecordError(const std::string& text) { return MessageOf([&] { ReadPlaces(text); }); }
 
 TEST(RecordList, IsReplacedAsAWholeAndWhatATableLeavesOutKeepsItsDefault) {
-  const std::vector<Place> places =
-      ReadPlaces("[run]\nplaces = [{ what = \"grid\", at_mm = 60 }, { turns = 3 }]\n");
-  ASSERT_EQ(places.size(), 2u);
-  EXPECT_EQ(places[0].what, "grid");
-  EXPECT_EQ(places[0].at_m, 0.060);
-  EXPECT_EQ(places[0].turns, 2);
-  EXPECT_EQ(places[1].what, "bar");
-  EXPECT_EQ(places[1].at_m, 0.5);
-  EXPECT_EQ(places[1].turns, 3);
+  EXPECT_THAT(ReadPlaces("[run]\nplaces = [{ what = \"grid\", at_mm = 60 }, { turns = 3 }]\n"),
+              ElementsAre(FieldsAre("grid", 0.060, 2), FieldsAre("bar", 0.5, 3)));
   EXPECT_EQ(ReadPlaces("").size(), 1u);
 }
 

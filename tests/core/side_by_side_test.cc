@@ -1,10 +1,6 @@
 #include "twin/core/side_by_side.h"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
-#include <stdexcept>
-#include <vector>
 
 namespace twinbench {
 namespace {
