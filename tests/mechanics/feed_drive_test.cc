@@ -14,18 +14,16 @@ constexpr double kCircle_m = 0.11023;
 constexpr double kSlow_m_s = 40e-3 / 60.0, kFast_m_s = 1.0 / 60.0;
 constexpr double kNm = 1e-9, kUm = 1e-6;
 
-FeedDriveParameters FreeDrive() {
+FeedDriveParameters WithFriction(double coulomb_N, double viscous_N_s_m) {
   FeedDriveParameters p;
-  p.friction.coulomb_N = p.friction.viscous_N_s_m = 0.0;
+  p.friction.coulomb_N = coulomb_N;
+  p.friction.viscous_N_s_m = viscous_N_s_m;
   return p;
 }
 
-FeedDriveParameters RubbingDrive() {
-  FeedDriveParameters p;
-  p.friction.coulomb_N = 200.0;
-  p.friction.viscous_N_s_m = 2000.0;
-  return p;
-}
+FeedDriveParameters FreeDrive() { return WithFriction(0.0, 0.0); }
+
+FeedDriveParameters RubbingDrive() { return WithFriction(200.0, 2000.0); }
 
 CircleMotion CircleAt(double feed_m_s, double from_rad = -0.25 * kPi) {
   return {kCircle_m, from_rad, feed_m_s / kCircle_m, 0.0};

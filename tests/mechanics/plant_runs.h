@@ -22,6 +22,28 @@ inline StackParameters EccentricStack() {
   return p;
 }
 
+inline StackParameters ReseatedStack() {
+  StackParameters p = EccentricStack();
+  p.payload.azimuth_rad = 0.6;
+  p.geometry.reseat_rad = -0.7;
+  return p;
+}
+
+/// The same on tables that are not mounted straight either.
+inline StackParameters CrookedStack() {
+  StackParameters p = ReseatedStack();
+  p.geometry.centring_m = {30e-6, -20e-6};
+  p.geometry.mount_tilt_rad = {100e-6, 150e-6};
+  return p;
+}
+
+/// Bullet's bodies, integrated more closely.
+inline StackParameters Fine(StackParameters p, double step_s = 250e-6) {
+  p.integrator = Integrator::kRungeKutta4;
+  p.step_s = step_s;
+  return p;
+}
+
 inline std::array<double, 14> Numbers(const StackState& s) {
   const BearingPose &t = s.target_bearing, &r = s.reference_bearing;
   return {s.target_rad, s.reference_rad, s.target_encoder_rad, s.reference_encoder_rad,
@@ -40,14 +62,32 @@ struct Difference {
       worst = std::max(worst, std::abs(x[i] - y[i]));
     }
   }
-  /// Both go on side by side.
-  void GoOn(Plant& a, Plant& b, int steps, double step_s) {
+};
+
+/// Two plants that are sent and go on side by side.
+struct Both {
+  std::unique_ptr<Plant> a, b;
+  Difference difference = {};
+
+  void Send(Axis axis, double to_rad, double duration_s = 0.6) {
+    for (Plant* plant : {a.get(), b.get()}) plant->StartMove(axis, to_rad, duration_s);
+  }
+  void Counter(int position) {
+    Send(Axis::kTarget, position * kTenDegrees);
+    Send(Axis::kReference, -position * kTenDegrees);
+  }
+  void GoOn(int steps, double step_s, Difference& into) const {
     for (int k = 0; k < steps; ++k) {
-      a.Advance(step_s);
-      b.Advance(step_s);
-      Include(a.State(), b.State());
+      a->Advance(step_s);
+      b->Advance(step_s);
+      into.Include(a->State(), b->State());
     }
   }
+  void GoOn(int steps, double step_s) { GoOn(steps, step_s, difference); }
 };
+
+inline Both LinearAndBullet(const StackParameters& p) {
+  return {MakePlant(Fidelity::kLinear, p), MakePlant(Fidelity::kBullet, p)};
+}
 
 }  // namespace twinbench::mechanics

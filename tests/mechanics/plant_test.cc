@@ -6,13 +6,6 @@
 namespace twinbench::mechanics {
 namespace {
 
-StackParameters ReseatedStack() {
-  StackParameters p = EccentricStack();
-  p.payload.azimuth_rad = 0.6;
-  p.geometry.reseat_rad = -0.7;
-  return p;
-}
-
 void StartCounterRotation(Plant& plant, int position, double duration_s = 0.6) {
   plant.StartMove(Axis::kTarget, position * kTenDegrees, duration_s);
   plant.StartMove(Axis::kReference, -position * kTenDegrees, duration_s);
@@ -55,88 +48,71 @@ TEST(KinematicPlant, EqualsTheChainOfItsCommandedAngles) {
 }
 
 TEST(Plant, AllFidelitiesRestAtTheSamePose) {
-  const auto kinematic = MakePlant(Fidelity::kKinematic, ReseatedStack());
   for (const Fidelity fidelity : kBodies) {
-    const auto plant = MakePlant(fidelity, ReseatedStack());
+    Both both{MakePlant(Fidelity::kKinematic, ReseatedStack()), MakePlant(fidelity, ReseatedStack())};
     for (int i = 1; i <= 3; ++i) {
-      for (Plant* each : {kinematic.get(), plant.get()}) {
-        StartCounterRotation(*each, i);
+      both.Counter(i);
+      for (Plant* each : {both.a.get(), both.b.get()}) {
         each->AdvanceUntilSettled(2.0);
         ASSERT_TRUE(each->Settled());
       }
-      Difference difference;
-      difference.Include(kinematic->State(), plant->State());
-      // Settled means within 0.01 arcsec; the bearings have had 60 ms to ring down.
-      EXPECT_LT(difference.yaw_rad, 0.01 * kArcsec);
-      EXPECT_LT(difference.tilt_rad, 1e-3 * kArcsec);
-      EXPECT_LT(difference.position_m, 1e-9);
+      both.difference.Include(both.a->State(), both.b->State());
     }
+    // Settled means within 0.01 arcsec; the bearings have had 60 ms to ring down.
+    EXPECT_LT(both.difference.yaw_rad, 0.01 * kArcsec);
+    EXPECT_LT(both.difference.tilt_rad, 1e-3 * kArcsec);
+    EXPECT_LT(both.difference.position_m, 1e-9);
   }
-}
-
-/// Bullet's bodies, integrated more closely.
-StackParameters Fine(StackParameters p) {
-  p.integrator = Integrator::kRungeKutta4;
-  p.step_s = 250e-6;
-  return p;
 }
 
 TEST(LinearPlant, FollowsBulletThroughMovesWithinAThousandthOfAnArcsecond) {
-  const StackParameters p = Fine(ReseatedStack());
-  const auto linear = MakePlant(Fidelity::kLinear, p), bullet = MakePlant(Fidelity::kBullet, p);
-  Difference difference;
+  Both both = LinearAndBullet(Fine(ReseatedStack()));
   for (int i = 1; i <= 2; ++i) {  // the second starts from the first one's remainder
-    for (Plant* plant : {linear.get(), bullet.get()}) StartCounterRotation(*plant, i);
-    difference.GoOn(*linear, *bullet, 350, 2e-3);
+    both.Counter(i);
+    both.GoOn(350, 2e-3);
   }
   // Asked: 1e-3 arcsec in yaw. Left are RK4's own 1e-6 arcsec and squares of deflections of 1e-6 rad.
-  EXPECT_LT(difference.yaw_rad, 1e-5 * kArcsec);
-  EXPECT_LT(difference.tilt_rad, 1e-5 * kArcsec);
-  EXPECT_LT(difference.position_m, 1e-9);
+  EXPECT_LT(both.difference.yaw_rad, 1e-5 * kArcsec);
+  EXPECT_LT(both.difference.tilt_rad, 1e-5 * kArcsec);
+  EXPECT_LT(both.difference.position_m, 1e-9);
 }
 
 TEST(LinearPlant, FollowsBulletWhenOneTableMovesAndTheOtherHolds) {
-  const StackParameters p = Fine(ReseatedStack());
-  const auto linear = MakePlant(Fidelity::kLinear, p), bullet = MakePlant(Fidelity::kBullet, p);
-  for (Plant* plant : {linear.get(), bullet.get()}) plant->StartMove(Axis::kReference, kTenDegrees, 0.6);
-  Difference difference;
+  Both both = LinearAndBullet(Fine(ReseatedStack()));
+  both.Send(Axis::kReference, kTenDegrees);
   double reaction_rad = 0.0;
   for (int k = 0; k < 350; ++k) {
-    difference.GoOn(*linear, *bullet, 1, 2e-3);
-    reaction_rad = std::max(reaction_rad, std::abs(bullet->State().target_rad));
+    both.GoOn(1, 2e-3);
+    reaction_rad = std::max(reaction_rad, std::abs(both.b->State().target_rad));
   }
-  EXPECT_GT(reaction_rad, 0.5 * kArcsec);         // there is something to agree about
-  EXPECT_LT(reaction_rad, 20.0 * kArcsec);        // a few arcsec for 0.6 s (3.7 in the study of such a stack)
-  EXPECT_LT(difference.yaw_rad, 1e-4 * kArcsec);  // payload swings round by 10 deg: Coriolis terms are left out
-  EXPECT_LT(difference.tilt_rad, 1e-4 * kArcsec);
+  EXPECT_GT(reaction_rad, 0.5 * kArcsec);   // there is something to agree about
+  EXPECT_LT(reaction_rad, 20.0 * kArcsec);  // a few arcsec for 0.6 s (3.7 in the study of such a stack)
+  // The payload swings round by 10 deg: Coriolis terms are left out.
+  EXPECT_LT(both.difference.yaw_rad, 1e-4 * kArcsec);
+  EXPECT_LT(both.difference.tilt_rad, 1e-4 * kArcsec);
 }
 
 TEST(LinearPlant, GivesTheSameForKeptResponsesAndStepByStep) {
-  // A friction too small to matter rules superposition out.
-  StackParameters p = ReseatedStack();
-  const auto kept = MakePlant(Fidelity::kLinear, p);
-  p.table[0].friction.viscous_Nm_s = 1e-300;
-  const auto stepped = MakePlant(Fidelity::kLinear, p);
-  Difference difference;
+  StackParameters p = ReseatedStack(), stepped = p;
+  stepped.table[0].friction.viscous_Nm_s = 1e-300;  // too small to matter, and rules superposition out
+  Both both{MakePlant(Fidelity::kLinear, p), MakePlant(Fidelity::kLinear, stepped)};
   for (int i = 1; i <= 3; ++i) {
-    for (Plant* plant : {kept.get(), stepped.get()}) StartCounterRotation(*plant, i);
-    difference.GoOn(*kept, *stepped, 700, 1e-3);
+    both.Counter(i);
+    both.GoOn(700, 1e-3);
   }
   // Exact superposition; the commands' rounding (1e-16 of 10 deg at 0.5 ms) drives the difference.
-  EXPECT_LT(difference.yaw_rad, 1e-7 * kArcsec);
-  EXPECT_LT(difference.tilt_rad, 1e-7 * kArcsec);
+  EXPECT_LT(both.difference.yaw_rad, 1e-7 * kArcsec);
+  EXPECT_LT(both.difference.tilt_rad, 1e-7 * kArcsec);
 }
 
 TEST(LinearPlant, CarriesOnWhenAMoveStartsDuringAnother) {
-  const auto linear = MakePlant(Fidelity::kLinear, ReseatedStack());
-  const auto bullet = MakePlant(Fidelity::kBullet, ReseatedStack());
-  Difference difference;
-  for (Plant* plant : {linear.get(), bullet.get()}) plant->StartMove(Axis::kTarget, kTenDegrees, 0.3);
-  difference.GoOn(*linear, *bullet, 50, 2e-3);
-  for (Plant* plant : {linear.get(), bullet.get()}) plant->StartMove(Axis::kReference, -2.0 * kTenDegrees, 0.5);
-  difference.GoOn(*linear, *bullet, 350, 2e-3);
-  EXPECT_LT(difference.yaw_rad, 1e-3 * kArcsec);  // the leapfrog of this Bullet plant errs by about 1e-4 arcsec
-  EXPECT_TRUE(linear->Settled());
+  Both both = LinearAndBullet(ReseatedStack());
+  both.Send(Axis::kTarget, kTenDegrees, 0.3);
+  both.GoOn(50, 2e-3);
+  both.Send(Axis::kReference, -2.0 * kTenDegrees, 0.5);
+  both.GoOn(350, 2e-3);
+  EXPECT_LT(both.difference.yaw_rad, 1e-3 * kArcsec);  // the leapfrog of this Bullet plant errs by some 1e-4 arcsec
+  EXPECT_TRUE(both.a->Settled());
 }
 
 TEST(Plant, SettlesFasterWithAFasterServo) {
@@ -210,12 +186,10 @@ TEST(Plant, BacklashHoldsTheRotorBackByHalfTheGapInBothDirectionsAndEquallyByLin
     EXPECT_LE(std::abs(lag(0.5 * kTenDegrees)), 2.0 + 1e-9);
   }
   p.integrator = Integrator::kRungeKutta4;
-  const auto linear = MakePlant(Fidelity::kLinear, p), bullet = MakePlant(Fidelity::kBullet, p);
-  for (Plant* plant : {linear.get(), bullet.get()}) {
-    StartCounterRotation(*plant, 1);
-    plant->AdvanceUntilSettled(2.0);
-  }
-  EXPECT_NEAR(linear->State().target_rad, bullet->State().target_rad, 1e-4 * kArcsec);  // as their yaw
+  Both both = LinearAndBullet(p);
+  both.Counter(1);
+  for (Plant* plant : {both.a.get(), both.b.get()}) plant->AdvanceUntilSettled(2.0);
+  EXPECT_NEAR(both.a->State().target_rad, both.b->State().target_rad, 1e-4 * kArcsec);  // as their yaw
 }
 
 TEST(Plant, SleepsWhenSettledAndWakesForTheNextMove) {
@@ -247,7 +221,7 @@ TEST(Plant, AReactionThatPushesATableOutOfItsWindowUnsettlesIt) {
     plant->StartMove(Axis::kReference, kTenDegrees, 0.6);
     EXPECT_TRUE(plant->Settled(Axis::kTarget)) << "nothing has happened to it yet";
     plant->Advance(
-        0.2);  // some arcsec, see ReactionTorqueTurnsTheTableThatHolds; the kinematic plant knows no torque
+        0.2);  // some arcsec, see ReactionTorqueTurnsTheTableThatHolds; a kinematic plant knows no torque
     EXPECT_EQ(plant->Settled(Axis::kTarget), fidelity == Fidelity::kKinematic);
     plant->AdvanceUntilSettled(2.0);
     EXPECT_TRUE(plant->Settled(Axis::kTarget));

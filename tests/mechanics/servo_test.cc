@@ -114,29 +114,15 @@ TEST(MoveResponse, ScaledAndAddedIsTheResponseToTheMove) {
 }
 
 /// Both tables, then the reference alone, each time followed while they move, and for as long behind the arrival.
-std::pair<Difference, Difference> FromFineSteps(StackParameters p) {
-  const auto adaptive = MakePlant(Fidelity::kBullet, p);
-  p.integrator = Integrator::kRungeKutta4;
-  p.step_s = 125e-6;
-  const auto fine = MakePlant(Fidelity::kBullet, p);
+std::pair<Difference, Difference> FromFineSteps(const StackParameters& p) {
+  Both both{MakePlant(Fidelity::kBullet, p), MakePlant(Fidelity::kBullet, Fine(p, 125e-6))};
   Difference moving, arrived;
   for (int move = 1; move <= 2; ++move) {
-    for (Plant* plant : {adaptive.get(), fine.get()}) {
-      if (move == 1) plant->StartMove(Axis::kTarget, kTenDegrees, 0.6);
-      plant->StartMove(Axis::kReference, -move * kTenDegrees, 0.6);
-    }
-    for (Difference* difference : {&moving, &arrived}) difference->GoOn(*adaptive, *fine, 600, 1e-3);
+    if (move == 1) both.Send(Axis::kTarget, kTenDegrees);
+    both.Send(Axis::kReference, -move * kTenDegrees);
+    for (Difference* difference : {&moving, &arrived}) both.GoOn(600, 1e-3, *difference);
   }
   return {moving, arrived};
-}
-
-StackParameters CrookedStack() {
-  StackParameters p = EccentricStack();
-  p.payload.azimuth_rad = 0.6;
-  p.geometry.reseat_rad = -0.7;
-  p.geometry.centring_m << 30e-6, -20e-6;
-  p.geometry.mount_tilt_rad << 100e-6, 150e-6;
-  return p;
 }
 
 TEST(AdaptiveStack, GoesTheWayOfFineSteps) {
@@ -152,16 +138,10 @@ TEST(AdaptiveStack, GoesTheWayOfFineSteps) {
 
 TEST(AdaptiveStack, RestsWhereTheMotionWouldHaveLedTo) {
   const StackParameters p = CrookedStack();
-  const auto asked_late = MakePlant(Fidelity::kBullet, p);
-  StackParameters fine_p = p;
-  fine_p.integrator = Integrator::kRungeKutta4;
-  const auto fine = MakePlant(Fidelity::kBullet, fine_p);
-  for (Plant* plant : {asked_late.get(), fine.get()}) {
-    plant->StartMove(Axis::kTarget, kTenDegrees, 0.3);
-    plant->Advance(2.3);  // the slow pole of 30 Hz, 81 / s, leaves e^-160
-  }
-  Difference apart;
-  apart.Include(asked_late->State(), fine->State());
+  Both both{MakePlant(Fidelity::kBullet, p), MakePlant(Fidelity::kBullet, Fine(p, p.step_s))};
+  both.Send(Axis::kTarget, kTenDegrees, 0.3);
+  both.GoOn(1, 2.3);  // the slow pole of 30 Hz, 81 / s, leaves e^-160
+  const Difference& apart = both.difference;
   EXPECT_LT(apart.position_m, 1e-13);
   EXPECT_LT(std::max(apart.yaw_rad, apart.tilt_rad), 1e-7 * kArcsec);  // rounding of 10 deg in 8000 steps
 }
