@@ -24,11 +24,9 @@ class LightDice {
 };
 
 Isometry3d RandomPose(LightDice& dice) {
-  const double as = kArcsec;
-  return Translation3d(dice.Within(1e-4), dice.Within(1e-4), dice.Within(1e-4)) *
-         AngleAxisd(dice.Within(1000.0 * as), Vector3d::UnitZ()) *
-         AngleAxisd(dice.Within(1000.0 * as), Vector3d::UnitY()) *
-         AngleAxisd(dice.Within(1000.0 * as), Vector3d::UnitX());
+  Isometry3d pose(Translation3d(dice.Within(1e-4), dice.Within(1e-4), dice.Within(1e-4)));
+  for (const int axis : {2, 1, 0}) pose.rotate(AngleAxisd(dice.Within(1000.0 * kArcsec), Vector3d::Unit(axis)));
+  return pose;
 }
 
 PsdParameters RandomPsd(LightDice& dice) {
