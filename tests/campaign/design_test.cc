@@ -83,9 +83,7 @@ TEST(Standards, AreRefusedWhereTheScenarioStatesNone) {
   EXPECT_KEPT(MessageOf([] { ParseStudy(StudyOf("standards = true\n"), "study.toml", ""); }));
 }
 
-Design DesignOf(const std::string& lines) {
-  return Design(ParseStudy(StudyOf(lines), "study.toml", ""));
-}
+Design DesignOf(const std::string& lines) { return Design(ParseStudy(StudyOf(lines), "study.toml", "")); }
 
 constexpr const char* kTwoUniform = R"([[vary]]
 key = "device.noise_deg"
@@ -174,10 +172,7 @@ TEST(Design, GivesATrialTheSameWhereverTheStudyEnds) {
 TEST(Design, GivesEveryTrialASeedOfItsOwn) {
   const Design one = DesignOf("trials = 1000\nseed = 1\n"), other = DesignOf("trials = 1000\nseed = 2\n");
   std::set<std::uint64_t> seeds;
-  for (std::int64_t trial = 0; trial < 1000; ++trial) {
-    seeds.insert(one.SeedOf(trial));
-    seeds.insert(other.SeedOf(trial));
-  }
+  for (std::int64_t trial = 0; trial < 1000; ++trial) seeds.insert({one.SeedOf(trial), other.SeedOf(trial)});
   EXPECT_EQ(seeds.size(), 2000u);
 }
 

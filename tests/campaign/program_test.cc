@@ -24,10 +24,8 @@ class CampaignProgram : public Program {
  protected:
   CampaignProgram() { Write("study.toml", campaign::StudyOf(kVaried)); }
 
-  void MakeTable(const std::string& name, const std::vector<std::string>& options) {
-    std::vector<std::string> arguments = {"campaign", "study.toml", "-o", name};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    Succeed(arguments);
+  void MakeTable(const std::string& name, const std::vector<std::string>& options = {}) {
+    Succeed(With({"campaign", "study.toml", "-o", name}, options));
   }
 
   /// All that a table holds, in the order of its keys.
@@ -64,14 +62,10 @@ class CampaignProgram : public Program {
 };
 
 TEST_F(CampaignProgram, MakesTheSameTableOnAnyNumberOfThreads) {
-  MakeTable("one.sqlite", {"--threads", "1"});
-  MakeTable("two.sqlite", {"--threads", "2"});
-  MakeTable("five.sqlite", {"--threads", "5"});
-  const std::string one = Dump("one.sqlite");
-  EXPECT_EQ(Ask("one.sqlite", "SELECT count(*) FROM trials WHERE failure = ''"), "20");
-  EXPECT_GT(std::stoi(Ask("one.sqlite", "SELECT count(error) FROM results")), 20);
-  EXPECT_EQ(one, Dump("two.sqlite"));
-  EXPECT_EQ(one, Dump("five.sqlite"));
+  for (const char* threads : {"1", "2", "5"}) MakeTable(threads, {"--threads", threads});
+  EXPECT_EQ(Ask("1", "SELECT count(*) FROM trials WHERE failure = ''"), "20");
+  EXPECT_GT(std::stoi(Ask("1", "SELECT count(error) FROM results")), 20);
+  for (const char* threads : {"2", "5"}) EXPECT_EQ(Dump("1"), Dump(threads)) << threads;
 }
 
 TEST_F(CampaignProgram, MakesTheSameTableOnTwoRanks) {
@@ -100,10 +94,9 @@ TEST_F(CampaignProgram, GoesOnAfterAKillAsIfNothingHadHappened) {
   for (const int tenths : {1, 4, 2}) {
     Process run(At(""), {"campaign", "study.toml", "-o", "killed.sqlite", "--threads", "2", "--resume"});
     while (run.Runs() && run.ProgressLines() < tenths) std::this_thread::yield();
-    if (run.Runs()) {
-      run.Kill();
-      ++cut_short;
-    }
+    if (!run.Runs()) continue;
+    run.Kill();
+    ++cut_short;
   }
   EXPECT_GE(cut_short, 2) << "the kills came too late to show anything";
   const int kept = std::stoi(Ask("killed.sqlite", "SELECT count(*) FROM trials"));

@@ -233,39 +233,29 @@ TEST_P(NoiseFree, TheRigorousEstimatorReturnsTheInjectedErrorsAlsoBehindRealisti
 INSTANTIATE_TEST_SUITE_P(ClampingsAndSeeds, NoiseFree,
                          ::testing::Combine(::testing::Values("reclamp", "reseat"), ::testing::Values(1, 2, 3)));
 
-std::string Text(const Scenario& scenario) {
-  std::ostringstream out;
-  WriteReadingsCsv(test::RunTwin(scenario).readings, kRotaryBench, out);
-  return out.str();
-}
-
 /// Runs seeds 1..count on this many threads, each taking the next seed that is free.
 std::vector<std::string> RunSeeds(const Scenario& scenario, std::size_t count, int threads) {
   std::vector<std::string> texts(count);
   test::InParallel(count, threads, [&](std::size_t k) {
     Scenario mine = scenario;
     mine.seed = k + 1;
-    texts[k] = Text(mine);
+    texts[k] = test::TextOf(test::RunTwin(mine).readings);
   });
   return texts;
 }
 
-TEST(SameSeed, GivesTheSameBitsOnAnyNumberOfThreads) {
+TEST(SameSeed, GivesTheSameBitsOnAnyNumberOfThreadsAlsoInFullDynamics) {
+  const Scenario few =
+      LoadScenario(test::ScenarioPath("rotary_4dof.toml"), {"procedure.positions=12", "procedure.shifts=[0, 1]"});
   for (const char* fidelity : {"kinematic", "linear"}) {
-    const Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"), {std::string("mechanics.fidelity=") + fidelity,
-                                                                                    "procedure.positions=12", "procedure.shifts=[0, 1]"});
+    const Scenario scenario = Altered(few, {std::string("mechanics.fidelity=") + fidelity});
     const auto alone = RunSeeds(scenario, 6, 1);
-    EXPECT_EQ(alone, RunSeeds(scenario, 6, 2)) << fidelity;
-    EXPECT_EQ(alone, RunSeeds(scenario, 6, 5)) << fidelity;
+    for (const int threads : {2, 5}) EXPECT_EQ(alone, RunSeeds(scenario, 6, threads)) << fidelity;
     EXPECT_NE(alone[0], alone[1]) << "another seed must give other bits";
   }
-}
-
-TEST(SameSeed, GivesTheSameBitsInFullDynamics) {
-  const Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"),
-                                         {"mechanics.fidelity=bullet", "procedure.phases=[\"full_circle\"]", "procedure.positions=4",
-                                          "procedure.shifts=[0, 1]", "procedure.passes=[1]"});
-  EXPECT_EQ(RunSeeds(scenario, 2, 1), RunSeeds(scenario, 2, 2));
+  const Scenario bodies = Altered(few, {"mechanics.fidelity=bullet", "procedure.phases=[\"full_circle\"]",
+                                        "procedure.positions=4", "procedure.passes=[1]"});
+  EXPECT_EQ(RunSeeds(bodies, 2, 1), RunSeeds(bodies, 2, 2));
 }
 
 TEST(OneCauseOneStream, SwitchingOneNoiseOffDoesNotChangeAnother) {

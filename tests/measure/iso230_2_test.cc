@@ -50,9 +50,6 @@ Targets Simulated(int targets, int runs, double scatter, Stream& noise) {
 TEST(EvaluatePositioning, GivesTheDefinitionsOnFiguresFoundByHand) {
   // s is 1 and 2 at the first target, 3 and 1 at the second.
   const auto p = EvaluatePositioning({TwoRuns(10.0, 1.0, 4.0, 2.0), TwoRuns(-5.0, 3.0, 1.0, 1.0)});
-  const auto expect = [&](AxisValue value, double by_hand) {
-    EXPECT_NEAR(p[value].value, by_hand, 1e-13) << kAxisValueNames[static_cast<std::size_t>(value)];  // rounding
-  };
   EXPECT_NEAR(p.targets[0].mean, 7.0, 1e-13);
   EXPECT_NEAR(p.targets[0].reversal, 6.0, 1e-13);
   EXPECT_NEAR(p.targets[1].reversal, -6.0, 1e-13);
@@ -60,18 +57,14 @@ TEST(EvaluatePositioning, GivesTheDefinitionsOnFiguresFoundByHand) {
   EXPECT_NEAR(p.targets[0].backward.Repeatability(), 8.0, 1e-13);
   EXPECT_NEAR(p.targets[0].repeatability.value, 12.0, 1e-13);  // 2 + 4 + 6
   EXPECT_NEAR(p.targets[1].repeatability.value, 14.0, 1e-13);  // 6 + 2 + 6
-  expect(kB, 6.0);
-  expect(kMeanB, 0.0);
-  expect(kRForward, 12.0);
-  expect(kRBackward, 8.0);
-  expect(kR, 14.0);
-  expect(kEForward, 15.0);
-  expect(kEBackward, 3.0);
-  expect(kE, 15.0);
-  expect(kM, 9.0);          // 7 and -2
-  expect(kAForward, 23.0);  // 12 - (-11)
-  expect(kABackward, 9.0);  // 4 + 4 and 4 - 4, 1 + 2 and 1 - 2: 8 - (-1)
-  expect(kA, 23.0);
+  const std::map<AxisValue, double> by_hand = {{kB, 6.0},         {kMeanB, 0.0}, {kRForward, 12.0},
+                                               {kRBackward, 8.0}, {kR, 14.0},    {kEForward, 15.0},
+                                               {kEBackward, 3.0}, {kE, 15.0},    {kM, 9.0},  // 7 and -2
+                                               {kAForward, 23.0},                            // 12 - (-11)
+                                               {kABackward, 9.0},  // 4 + 4 and 4 - 4, 1 + 2 and 1 - 2: 8 - (-1)
+                                               {kA, 23.0}};
+  for (const auto& [value, expected] : by_hand)
+    EXPECT_NEAR(p[value].value, expected, 1e-13) << kAxisValueNames[static_cast<std::size_t>(value)];  // rounding
 }
 
 TEST(EvaluatePositioning, TakesTheLargestOfThreeForTheBidirectionalRepeatability) {
@@ -286,38 +279,37 @@ TEST(PositioningOf, TakesARunFromEachPassAtEachStopAlsoIfPositionIsARunningNumbe
   }
 }
 
-TEST(PositioningOf, PutsTheTargetWhereTheReferenceStoodInTheMean) {
+/// Of these stops with each reading changed.
+PositioningStops Changed(const std::function<void(Reading&)>& change) {
   std::vector<Reading> readings = Stops();
-  for (Reading& r : readings) r.reference_rad += r.pass * units::arcsec;  // 0, 1, 2, 3
-  const PositioningStops stops = PositioningOf(readings, 0);
-  EXPECT_NEAR(stops.targets[2].position, kTurn_rad / 4.0 + 1.5 * units::arcsec, 1e-15);  // rounding
-  EXPECT_THAT(stops.notes, IsEmpty());
+  std::ranges::for_each(readings, change);
+  return PositioningOf(readings, 0);
 }
 
-TEST(PositioningOf, OrdersTargetsByAngle) {
-  std::vector<Reading> readings = Stops();
-  for (Reading& r : readings) r.position = 7 - r.position;
-  const PositioningStops stops = PositioningOf(readings, 0);
-  EXPECT_DOUBLE_EQ(stops.targets[1].position, kTurn_rad / 8.0);
-  ExpectRuns(stops.targets[1].forward, {1.5, 21.5});
+TEST(PositioningOf, PutsTheTargetWhereTheReferenceStoodInTheMeanAndOrdersTargetsByAngle) {
+  const PositioningStops drifting =
+      Changed([](Reading& r) { r.reference_rad += r.pass * units::arcsec; });               // 0, 1, 2, 3
+  EXPECT_NEAR(drifting.targets[2].position, kTurn_rad / 4.0 + 1.5 * units::arcsec, 1e-15);  // rounding
+  EXPECT_THAT(drifting.notes, IsEmpty());
+  const PositioningStops renumbered = Changed([](Reading& r) { r.position = 7 - r.position; });
+  EXPECT_DOUBLE_EQ(renumbered.targets[1].position, kTurn_rad / 8.0);
+  ExpectRuns(renumbered.targets[1].forward, {1.5, 21.5});
 }
 
-TEST(PositioningOf, DoesNotMindADeviceThatLosesItsTurns) {
-  std::vector<Reading> readings = Stops();
-  for (Reading& r : readings) r.measured_rad = std::fmod(r.measured_rad + 0.25 * kTurn_rad, kTurn_rad);
-  const PositioningStops stops = PositioningOf(readings, 0);
+TEST(PositioningOf, DoesNotMindADeviceThatLosesItsTurnsOrAReferenceThatBeginsAgainAtATurn) {
+  const PositioningStops losing =
+      Changed([](Reading& r) { r.measured_rad = std::fmod(r.measured_rad + 0.25 * kTurn_rad, kTurn_rad); });
   const double quarter_arcsec = 0.25 * kTurn_rad / units::arcsec;
-  for (int i : {0, 7})
-    ExpectRuns(stops.targets[static_cast<std::size_t>(i)].forward, {quarter_arcsec + i + 0.5, quarter_arcsec + i + 20.5});
-}
-
-TEST(PositioningOf, DoesNotMindAReferenceThatBeginsAgainAtATurn) {
-  std::vector<Reading> readings = Stops();
-  readings.back().reference_rad += kTurn_rad;  // position 0, last pass: 360 deg instead of 0
-  const PositioningStops stops = PositioningOf(readings, 0);
-  EXPECT_THAT(stops.notes, IsEmpty());
-  EXPECT_NEAR(stops.targets[0].position, 0.0, 1e-15);
-  ExpectRuns(stops.targets[0].backward, {9.5, 29.5});
+  for (std::size_t i : {0u, 7u}) {
+    const double at_arcsec = quarter_arcsec + static_cast<double>(i);
+    ExpectRuns(losing.targets[i].forward, {at_arcsec + 0.5, at_arcsec + 20.5});
+  }
+  const PositioningStops again = Changed([](Reading& r) {  // position 0, last pass: 360 deg instead of 0
+    if (r.reading == 31) r.reference_rad += kTurn_rad;
+  });
+  EXPECT_THAT(again.notes, IsEmpty());
+  EXPECT_NEAR(again.targets[0].position, 0.0, 1e-15);
+  ExpectRuns(again.targets[0].backward, {9.5, 29.5});
 }
 
 TEST(PositioningOf, LeavesOutWhatIsNoStopAndCountsIt) {
