@@ -1,8 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <cmath>
-
 #include "tests/import/importing.h"
 
 /// Logs of a controller with several axes, and what it told them.
@@ -55,8 +50,7 @@ TEST_F(Importing, TakesOneOfSeveralAxesAndSaysWhichThereAre) {
       const Imported imported = Take(text, fmt::format("[course]\naxis_number = {}\n", axis));
       EXPECT_EQ(imported.readings.size(), 900u);
       EXPECT_NEAR(ScaleOf(imported), 0.01 * axis, 1e-4) << axis;
-      EXPECT_THAT(imported.story, HasSubstr("3 axes are in the file"));
-      EXPECT_THAT(imported.story, HasSubstr("--axis-number"));
+      EXPECT_THAT(imported.story, Says("3 axes are in the file", "--axis-number"));
     }
     EXPECT_NEAR(ScaleOf(Take(text)), 0.01, 1e-4) << "the first";
     EXPECT_THAT(MessageOf([&] { Take(text, "[course]\naxis_number = 4\n"); }), HasSubstr("1 to 3"));

@@ -149,8 +149,7 @@ std::string GridPlate(const std::string& header, double x_mm, double y_mm, const
 
 TEST_F(Importing, TakesAGridPlateAboutTheCentreOfItsCommandedCircle) {
   const Imported taken = Take(GridPlate("Soll X [mm];Soll Y [mm];Ist X [mm];Ist Y [mm]\n", 250.0, 120.0, "{:.7f};{:.7f};{:.7f};{:.7f}\n"));
-  EXPECT_THAT(taken.story, HasSubstr("taken as --map grid"));
-  EXPECT_THAT(taken.story, HasSubstr("the feed is not stated: taken as 1000 mm/min"));
+  EXPECT_THAT(taken.story, Says("taken as --map grid", "the feed is not stated: taken as 1000 mm/min"));
   ASSERT_EQ(taken.readings.size(), 144U) << taken.story;
   const Quantity x_m{"commanded_x_mm"}, y_m{"commanded_y_mm"}, grid_x_m{"grid_x_mm"};
   for (const Reading& r : taken.readings) {
@@ -239,9 +238,7 @@ TEST_F(BallBar, MayBeRunsInJSON) {
 
 // What software of ball bars exports: tags, then the values of each run, one a line.
 
-double Bar_um(double angle_deg) {
-  return 4.0 * std::sin(2.0 * angle_deg * kDeg) + 0.01 * angle_deg;
-}
+double Bar_um(double angle_deg) { return 4.0 * std::sin(2.0 * angle_deg * kDeg) + 0.01 * angle_deg; }
 
 /// @param from_deg, to_deg  Of the values, both of them there.
 std::string BarValues(double from_deg, double to_deg, int count, const char* form = "{:.4f}\n",

@@ -15,9 +15,7 @@ constexpr int kFaces = 10;
 double TableError_arcsec(int place) {
   return 2.0 * std::sin(0.7 + units::turn * place / kFaces) + 0.6 * std::cos(2.0 * units::turn * place / kFaces);
 }
-double FaceError_arcsec(int face) {
-  return 1.3 * std::sin(2.9 * (((face % kFaces) + kFaces) % kFaces) + 0.4);
-}
+double FaceError_arcsec(int face) { return 1.3 * std::sin(2.9 * (((face % kFaces) + kFaces) % kFaces) + 0.4); }
 /// @param face  That stands before the autocollimator with the table at a place.
 double Shown_arcsec(int place, int face, int clamping) {
   return TableError_arcsec(place) + FaceError_arcsec(face) + 4.0 * std::sin(1.7 * clamping);
@@ -83,8 +81,7 @@ TEST_F(ClampingTable, SaysOffsetsInNamesOfColumnsEitherWayRound) {
     }
     const Imported taken = Take(text, "face_table");
     ExpectApart(taken, 3);
-    EXPECT_THAT(taken.story, HasSubstr("what the readings fit"));
-    EXPECT_THAT(taken.story, HasSubstr("are the table's"));
+    EXPECT_THAT(taken.story, Says("what the readings fit", "are the table's"));
   }
 }
 

@@ -1,8 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <cmath>
-
 #include "tests/import/importing.h"
 
 /// Files whose names do not say which columns are one axis: what the columns hold says it.

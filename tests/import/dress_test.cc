@@ -10,12 +10,8 @@ using testing::HasSubstr;
 
 constexpr int kRows = 72;
 
-double Angle_deg(int i) {
-  return 5.0 * i;
-}
-double Shown_deg(int i) {
-  return Angle_deg(i) + 0.05 * test::Cosine(1.0, Angle_deg(i), 40.0);
-}
+double Angle_deg(int i) { return 5.0 * i; }
+double Shown_deg(int i) { return Angle_deg(i) + 0.05 * test::Cosine(1.0, Angle_deg(i), 40.0); }
 
 /// @param row  Prints angle and shown, in deg.
 template <class Row>

@@ -10,9 +10,7 @@ namespace {
 
 using testing::Contains, testing::HasSubstr, testing::Not;
 
-double Certified_arcsec(int face) {
-  return 1.5 * std::sin(2.3 * face);
-}
+double Certified_arcsec(int face) { return 1.5 * std::sin(2.3 * face); }
 double Table_arcsec(double angle_deg, int direction) {
   return 3.0 * std::sin(angle_deg * units::deg) + (direction < 0 ? 0.2 : 0.0);
 }

@@ -7,9 +7,7 @@ namespace {
 
 using testing::HasSubstr, testing::Not;
 
-double NoError(double, int) {
-  return 0.0;
-}
+double NoError(double, int) { return 0.0; }
 
 std::string TwoColumns(const char* separator, bool comma) {
   std::string text = fmt::format("Zeit [s]{0}Soll [deg]{0}Ist [deg]\r\n", separator);
@@ -88,9 +86,7 @@ TEST_F(Importing, JoinsChannelsThatAreStampedOneByOne) {
   EXPECT_NEAR(imported.readings[0].reference_rad / units::deg, 1.4, 0.01) << "not the value of last week";
   // The device is stamped 0.04 s after it was read: 0.4 deg at this speed, forward and backward.
   EXPECT_NEAR(Worst_deg(imported.readings), 0.4, 0.02);
-  EXPECT_THAT(imported.story, HasSubstr("is taken to the clock of"));
-  EXPECT_THAT(imported.story, HasSubstr("3 reversals"));
-  EXPECT_THAT(imported.story, HasSubstr("4 rests"));
+  EXPECT_THAT(imported.story, Says("is taken to the clock of", "3 reversals", "4 rests"));
 }
 
 TEST_F(Importing, JoinsTwoFilesWithClocksOfTheirOwn) {

@@ -38,6 +38,12 @@ class Importing : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+/// A text in which all of these stand.
+template <class... Words>
+auto Says(const Words&... words) {
+  return testing::AllOf(testing::HasSubstr(words)...);
+}
+
 /// The scenario that is made for what was imported.
 inline Scenario Made(const Imported& taken) {
   return ParseScenario("bench = \"" + taken.bench + "\"\n", "raw.csv", "", taken.set);

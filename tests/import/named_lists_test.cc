@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
 #include "tests/import/importing.h"
 #include "tests/support/noise.h"
 #include "twin/import/layouts.h"
@@ -31,10 +28,8 @@ std::string OnePose(const char* mark) {
 TEST_F(Importing, ComparesEachJointWithItsOwnOrder) {
   for (const char* mark : {":", " = "}) {
     const Imported taken = Take(OnePose(mark));
-    EXPECT_THAT(taken.story, HasSubstr("records of lists under names"));
-    EXPECT_THAT(taken.story, HasSubstr("reference <- Order given.2 [rad]"));
-    EXPECT_THAT(taken.story, HasSubstr("measured <- Actual position.2 [rad]"));
-    EXPECT_THAT(taken.story, HasSubstr("60 s between rows"));
+    EXPECT_THAT(taken.story, Says("records of lists under names", "reference <- Order given.2 [rad]",
+                                  "measured <- Actual position.2 [rad]", "60 s between rows"));
     ASSERT_EQ(taken.readings.size(), 60u);
     double mean_rad = 0.0;
     for (const Reading& r : taken.readings) mean_rad += (r.measured_rad - r.reference_rad) / 60.0;
@@ -65,8 +60,7 @@ TEST_F(Importing, TakesPairsOfOneAxisOfARobotThatIsCorrectedByItsSensor) {
   std::string text = "X_RIst,Y_RIst,Z_RIst,X_RSol,Y_RSol,Z_RSol,MotorAmps\n";
   for (int i = 0; i < 100; ++i) text += fmt::format("{:.1f},{:.1f},977.3,1279.5,{:.1f},977.3,{}\n", 1279.5 + 0.1 * (i % 2), 3.0 * i + 0.2, 3.0 * i, 40 + i % 5);
   const std::string story = Take(text).story;
-  EXPECT_THAT(story, HasSubstr("reference <- Y_RSol"));
-  EXPECT_THAT(story, HasSubstr("measured <- Y_RIst"));
+  EXPECT_THAT(story, Says("reference <- Y_RSol", "measured <- Y_RIst"));
 }
 
 /// The order in which readings were taken is nobody's command.

@@ -17,9 +17,7 @@ std::string Scaled(const std::string& names, double step = 5.0, const char* sepa
   return text;
 }
 
-double Last_deg(const Imported& imported) {
-  return imported.readings.back().reference_rad / units::deg;
-}
+double Last_deg(const Imported& imported) { return imported.readings.back().reference_rad / units::deg; }
 
 TEST_F(Importing, TakesLengthsInTheUnitsThatPeopleWrite) {
   const std::vector<std::pair<const char*, double>> in_mm = {{"cm", 10.0},    {"dm", 100.0},      {"m", 1000.0}, {"mm", 1.0},
@@ -51,8 +49,7 @@ TEST_F(Importing, TakesThePlaceOfAServoAndNotItsGainsOrTorques) {
   std::string text = "MotorCmdKd,MotorCmdKp,MotorCmdTor,MotorCmdPos,MotorFbTor,MotorFbPos,q_m\n";
   for (int i = 0; i < 72; ++i) text += fmt::format("{},{},{},{},{},{},{}\n", i % 2, i % 3, i * i, 5 * i, i, 5 * i + 1, 0.01 * i);
   const std::string story = Take(text).story;
-  EXPECT_THAT(story, HasSubstr("from \"MotorCmdPos\""));
-  EXPECT_THAT(story, HasSubstr("from \"MotorFbPos\""));
+  EXPECT_THAT(story, Says("from \"MotorCmdPos\"", "from \"MotorFbPos\""));
 }
 
 TEST_F(Importing, TakesColumnsInOtherLanguagesInAnyOrder) {
@@ -185,8 +182,7 @@ TEST_F(Importing, TakesListsOfPythonAndMatlabSideBySide) {
   }
   for (const std::string& text : {python + python_shown, matlab}) {
     const Imported taken = Take(text);
-    EXPECT_THAT(taken.story, HasSubstr("2 arrays in a program text, 20 entries each"));
-    EXPECT_THAT(taken.story, HasSubstr("measured_mm [mm]"));
+    EXPECT_THAT(taken.story, Says("2 arrays in a program text, 20 entries each", "measured_mm [mm]"));
     EXPECT_NEAR(taken.readings.back().measured_rad / taken.readings.back().reference_rad, 1.01, 1e-9);
     EXPECT_EQ(taken.readings.size(), text == matlab ? 20u : 19u);
   }
@@ -374,8 +370,7 @@ TEST_F(Importing, TakesTheDeviceOfRollForTheMotorOfRoll) {
 
 TEST_F(Importing, TakesADistanceWithoutAUnitForALength) {
   const Imported imported = Take(Scaled("distance_set,distance_measured", 10.0));
-  EXPECT_THAT(imported.story, HasSubstr("a linear axis"));
-  EXPECT_THAT(imported.story, HasSubstr("its unit is not said and taken as mm"));
+  EXPECT_THAT(imported.story, Says("a linear axis", "its unit is not said and taken as mm"));
 }
 
 /// What the message proposes leaves the error of the scale, here 1 %, where it is.

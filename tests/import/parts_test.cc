@@ -159,13 +159,13 @@ TEST(Course, FindsReversalsAndRests) {
   const std::vector<double> x = UpAndDown();
   const Course course = CourseOf(x, Clocked(x.size()), {}, 0.0);
   EXPECT_FALSE(course.stops);
-  EXPECT_EQ(course.reversals, 1);
-  EXPECT_EQ(course.rests, 1);
-  EXPECT_EQ(course.direction[50], 1);
-  EXPECT_EQ(course.direction[110], 0);
-  EXPECT_EQ(course.direction[200], -1);
-  EXPECT_EQ(course.motion[110], Motion::kRest);
-  EXPECT_EQ(course.motion[50], Motion::kSteady);
+  EXPECT_EQ(std::pair(course.reversals, course.rests), std::pair(1, 1));
+  const std::tuple<std::size_t, int, Motion> rows[] = {
+      {50, 1, Motion::kSteady}, {110, 0, Motion::kRest}, {200, -1, Motion::kSteady}};
+  for (const auto& [row, direction, motion] : rows) {
+    EXPECT_EQ(course.direction[row], direction) << row;
+    EXPECT_EQ(course.motion[row], motion) << row;
+  }
   EXPECT_NEAR(course.velocity[50], 10.0 * units::deg, 1e-9);
   EXPECT_EQ(course.pass[50] + 1, course.pass[200]);
 }

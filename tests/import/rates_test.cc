@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
 #include "tests/import/importing.h"
 #include "twin/import/column_words.h"
 

@@ -51,9 +51,7 @@ inline std::vector<AxisSample> DriveAxis(const AxisMotion& motion, const AxisErr
   return samples;
 }
 
-inline double OnceRound(double angle_deg) {
-  return angle_deg - 360.0 * std::floor(angle_deg / 360.0);
-}
+inline double OnceRound(double angle_deg) { return angle_deg - 360.0 * std::floor(angle_deg / 360.0); }
 
 // Raw files in the layouts that other programs write, of an axis of one's own. The layouts are those of real
 // samples: TwinCAT scope exports, `camonitor`, PHD2 guide logs, tables of stepper firmwares, `halsampler`, ISO

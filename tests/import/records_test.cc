@@ -7,9 +7,7 @@ namespace {
 
 using testing::Contains, testing::HasSubstr;
 
-double Goal_rad(int i) {
-  return 1.5 * std::sin(0.02 * i);
-}
+double Goal_rad(int i) { return 1.5 * std::sin(0.02 * i); }
 
 /// A servo that is where it was told 0.06 s ago, every 0.02 s.
 std::string Record(int i) {

@@ -62,8 +62,7 @@ TEST_F(Importing, TakesACommandThatIsHeldForAFewRowsAsMotion) {
   }
   const Imported imported = Take(text);
   ASSERT_EQ(imported.readings.size(), 150u) << "of each value that is new";
-  EXPECT_THAT(imported.story, HasSubstr("taken as motion"));
-  EXPECT_THAT(imported.story, HasSubstr("was held that is not new"));
+  EXPECT_THAT(imported.story, Says("taken as motion", "was held that is not new"));
   for (const Reading& r : imported.readings) EXPECT_NEAR(r.reference_rad / units::deg, sine(ToSeconds(r.time)), 0.001);
 }
 

@@ -159,8 +159,7 @@ TEST_F(SpindleProbe, LooksAtWhatTheFileHas) {
   std::string text = "angle_deg,probe_x_um\n";
   for (int k = 0; k < 144; ++k) text += fmt::format("{},{:.4f}\n", 5 * k, 0.01 * (k % 72));
   const Seen seen = Look({File("raw.csv", text)}, {});
-  EXPECT_THAT(seen.text, HasSubstr("spindle_probe"));
-  EXPECT_THAT(seen.text, HasSubstr("probe_1_um"));
+  EXPECT_THAT(seen.text, Says("spindle_probe", "probe_1_um"));
   EXPECT_THAT(seen.text, Not(HasSubstr("alone")));
 }
 

@@ -30,18 +30,13 @@ class TwoCommands : public Program {
   nlohmann::json found_;
 };
 
-double LostMotion(double, int sense) {
-  return sense > 0 ? 0.0 : 0.05;
-}
-double OncePerTurn(double angle_deg, int) {
-  return 0.05 * Cosine(1.0, angle_deg, 40.0);
-}
+double LostMotion(double, int sense) { return sense > 0 ? 0.0 : 0.05; }
+double OncePerTurn(double angle_deg, int) { return 0.05 * Cosine(1.0, angle_deg, 40.0); }
 
 TEST_F(TwoCommands, TakeAPositioningReportToItsReversalError) {
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> noise(0.0, 0.0006);
+  Noise noise(0.0006, 3);
   const auto actual_mm = [&](double target, int sense, int) {
-    return target - (sense < 0 ? 0.012 : 0.0) + noise(random);
+    return target - (sense < 0 ? 0.012 : 0.0) + noise();
   };
   EXPECT_THAT(
       Named("report.md", PositioningReport({0.0, 50.1, 99.8, 150.3, 200.2, 249.9, 300.4, 349.7}, 5, actual_mm),
@@ -69,8 +64,7 @@ TEST_F(TwoCommands, TakeABallBarToTheErrorsOfTheMachine) {
   EXPECT_THAT(named, testing::IsSupersetOf({"squareness", "backlash", "scale"}));
   EXPECT_NEAR(Parameter("squareness", "angle"), 8.25, 0.15);
   EXPECT_NEAR(Parameter("backlash", "width"), 4.0, 0.1);
-  const nlohmann::json results = nlohmann::json::parse(Read("run/results.json"));
-  const nlohmann::json& errors = results.at("errors");
+  const nlohmann::json results = JsonIn("run/results.json"), &errors = results.at("errors");
   EXPECT_NEAR(errors.at("machine.squareness_arcsec").at("value").get<double>(), 8.25, 0.1);
   EXPECT_NEAR(errors.at("machine.scale_mismatch_um_m").at("value").get<double>(), 17.0, 1.0);
   EXPECT_FALSE(errors.contains("machine.scale_x_um_m")) << "a radius does not show it";
@@ -96,10 +90,9 @@ TEST_F(TwoCommands, TakeAGearTrainToItsOrdersAndItsBacklash) {
 
 /// In even steps the lines of an encoder that nobody stated would be read at one phase.
 TEST_F(TwoCommands, FindNothingInAGearTrainReadInEvenSteps) {
-  std::mt19937_64 random(12);
-  std::normal_distribution<double> noise_arcsec(0.0, 1.0);
+  Noise noise_deg(1.0 / 3600.0, 12);
   std::string text = "hob_deg,table_deg\n";
-  for (int k = 0; k < 432; ++k) text += fmt::format("{:.4f},{:.6f}\n", 30.0 * k, 2.5 * k + noise_arcsec(random) / 3600.0);
+  for (int k = 0; k < 432; ++k) text += fmt::format("{:.4f},{:.6f}\n", 30.0 * k, 2.5 * k + noise_deg());
   EXPECT_THAT(Named("even.csv", text, {}), testing::IsEmpty());
 }
 
@@ -122,12 +115,12 @@ TEST_F(TwoCommands, TakeAGearTrainWithFewRowsATurn) {
 
 /// 12 faces whose certified deviations are taken out; the table errs by 3 arcsec once a turn, and stands 0.2 arcsec off from the other side.
 TEST_F(TwoCommands, TakeAFaceTableToTheErrorsOfTheTable) {
-  std::mt19937_64 random(12);
-  std::normal_distribution<double> noise(0.0, 0.02);
+  Noise noise(0.02, 12);
   std::string text = "face,nominal_deg,certified_arcsec,reading_forward_arcsec,reading_reverse_arcsec\n";
   for (int k = 0; k < 12; ++k) {
     const double certified = 1.5 * std::sin(2.3 * k), table = 3.0 * Cosine(1.0, 30.0 * k, 40.0);
-    text += fmt::format("{},{},{:.3f},{:.3f},{:.3f}\n", k + 1, 30 * k, certified, table + certified + noise(random), table + certified + 0.2 + noise(random));
+    text += fmt::format("{},{},{:.3f},{:.3f},{:.3f}\n", k + 1, 30 * k, certified, table + certified + noise(),
+                        table + certified + 0.2 + noise());
   }
   EXPECT_THAT(Named("faces.csv", text, {}), Contains("backlash"));
   EXPECT_NEAR(Parameter("backlash", "width"), 0.2, 0.03);

@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
 #include "tests/import/importing.h"
 
 /// Two files that are the two sides of one comparison, without a clock or names that would say so.
