@@ -14,9 +14,7 @@ namespace {
 namespace py = pybind11;
 
 /// One interpreter for the whole program: numpy does not stand a second one.
-void NeedInterpreter() {
-  static const py::scoped_interpreter interpreter;
-}
+void NeedInterpreter() { static const py::scoped_interpreter interpreter; }
 
 py::object ClosedFormBench(const Scenario& scenario) {
   NeedInterpreter();
@@ -41,9 +39,7 @@ BenchBackend PythonBackend() {
   return {"Python", make, true, false};
 }
 #else
-BenchBackend PythonBackend() {
-  return {"Python", {}, true, false, "the Python package was not built"};
-}
+BenchBackend PythonBackend() { return {"Python", {}, true, false, "the Python package was not built"}; }
 #endif
 
 }  // namespace twinbench::test

@@ -25,6 +25,10 @@ class RotaryBenchContract : public ::testing::TestWithParam<BenchBackend> {
   }
   RotaryBench NewBench() { return NewBench(test::RotaryScenario()); }
 
+  static void GoTo(RotaryTable& table, double to_deg) {
+    table.StartMove(to_deg * units::deg);
+    table.WaitSettled();
+  }
   static void GoTo(RotaryBench& bench, double target_rad, double reference_rad) {
     bench.target.StartMove(target_rad);
     bench.reference.StartMove(reference_rad);
@@ -67,7 +71,7 @@ TEST_P(RotaryBenchContract, TablesReachTheirAnglesAndStayThereAndCounterRotation
   }
 }
 
-TEST_P(RotaryBenchContract, StartMoveOfOneTableReturnsAtOnceAndWaitSettledTakesTheTimeAndTheOtherStays) {
+TEST_P(RotaryBenchContract, StartMoveOfOneTableReturnsAtOnceAndWaitSettledTakesTheTimeNoneAtRestAndTheOtherStays) {
   RotaryBench bench = NewBench();
   const Time before = bench.clock.Now();
   bench.target.StartMove(10.0 * units::deg);
@@ -76,15 +80,9 @@ TEST_P(RotaryBenchContract, StartMoveOfOneTableReturnsAtOnceAndWaitSettledTakesT
   bench.target.WaitSettled();
   EXPECT_GE(bench.clock.Now() - before, milliseconds(600));
   EXPECT_NEAR(bench.reference.EncoderAngle_rad(), 0.0, kInPosition_rad) << "the other stays";
-}
-
-TEST_P(RotaryBenchContract, WaitSettledOfATableAtRestReturns) {
-  RotaryBench bench = NewBench();
-  GoTo(bench, 10.0 * units::deg, 0.0);
   const Time settled = bench.clock.Now();
   bench.target.WaitSettled();
-  bench.target.StartMove(10.0 * units::deg);  // where it already stands
-  bench.target.WaitSettled();
+  GoTo(bench.target, 10.0);  // where it already stands
   EXPECT_LT(bench.clock.Now() - settled, seconds(2));
   EXPECT_NEAR(bench.target.EncoderAngle_rad(), 10.0 * units::deg, kInPosition_rad);
 }
@@ -101,28 +99,11 @@ TEST_P(RotaryBenchContract, AMoveDuringAMoveIsRefusedOrReplacesItButNeverLost) {
   }
   bench.target.WaitSettled();
   EXPECT_NEAR(bench.target.EncoderAngle_rad(), end_deg * units::deg, kInPosition_rad);
-  bench.target.StartMove(-5.0 * units::deg);
-  bench.target.WaitSettled();
+  GoTo(bench.target, -5.0);
   EXPECT_NEAR(bench.target.EncoderAngle_rad(), -5.0 * units::deg, kInPosition_rad);
 }
 
-TEST_P(RotaryBenchContract, AStopBringsATableToRestOnItsWayAndTheNextMoveGoesOn) {
-  RotaryBench bench = NewBench();
-  bench.target.StartMove(90.0 * units::deg);
-  bench.clock.Wait(milliseconds(1500));
-  bench.target.Stop();
-  bench.target.WaitSettled();
-  const double rest_deg = bench.target.EncoderAngle_rad() / units::deg;
-  EXPECT_GT(rest_deg, 5.0);
-  EXPECT_LT(rest_deg, 85.0);
-  bench.clock.Wait(seconds(2));
-  EXPECT_NEAR(bench.target.EncoderAngle_rad() / units::deg, rest_deg, kInPosition_rad / units::deg);
-  bench.target.StartMove(90.0 * units::deg);
-  bench.target.WaitSettled();
-  EXPECT_NEAR(bench.target.EncoderAngle_rad(), 90.0 * units::deg, kInPosition_rad);
-}
-
-TEST_P(RotaryBenchContract, StateTellsOfMotionAndRest) {
+TEST_P(RotaryBenchContract, StateTellsOfMotionAndRestAndAStopBringsATableToRestOnItsWayAndTheNextMoveGoesOn) {
   RotaryBench bench = NewBench();
   EXPECT_TRUE(bench.target.State().in_position);
   EXPECT_TRUE(bench.target.State().referenced);
@@ -134,7 +115,16 @@ TEST_P(RotaryBenchContract, StateTellsOfMotionAndRest) {
   EXPECT_NEAR(state.commanded_rad, 90.0 * units::deg, 1e-12);
   EXPECT_LT(state.encoder_rad, 60.0 * units::deg);
   EXPECT_FALSE(bench.target.Settles(milliseconds(1)));
+  bench.clock.Wait(milliseconds(1000));
+  bench.target.Stop();
   bench.target.WaitSettled();
+  const double rest_deg = bench.target.EncoderAngle_rad() / units::deg;
+  EXPECT_GT(rest_deg, 5.0);
+  EXPECT_LT(rest_deg, 85.0);
+  bench.clock.Wait(seconds(2));
+  EXPECT_NEAR(bench.target.EncoderAngle_rad() / units::deg, rest_deg, kInPosition_rad / units::deg);
+  GoTo(bench.target, 90.0);
+  EXPECT_NEAR(bench.target.EncoderAngle_rad(), 90.0 * units::deg, kInPosition_rad);
   EXPECT_FALSE(bench.target.State().moving);
   EXPECT_TRUE(bench.target.State().in_position);
 }
@@ -313,9 +303,8 @@ TEST_P(RotaryBenchContract, TheAutocollimatorReadsTheGoniometerAndTheThermometer
 
 TEST_P(RotaryBenchContract, SameSeedSameBits) {
   if (!GetParam().repeats_its_bits) GTEST_SKIP() << "a real bench has no seed";
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).reference.seating_sd[2] = 5.0 * units::arcsec;
-  RotaryOf(scenario).target.repeatability_sd[0] = 1.0 * units::arcsec;
+  Scenario scenario =
+      Altered(RotaryScenario(), {"reference.seating.ez_arcsec=5", "target.repeatability.ex_arcsec=1"});
   const auto session = [&](std::uint64_t seed) {
     scenario.seed = seed;
     RotaryBench bench = NewBench(scenario);

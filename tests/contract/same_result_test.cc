@@ -22,8 +22,7 @@ class SameResult : public ::testing::TestWithParam<Way> {
 
 TEST_P(SameResult, ThroughTheRealBackendsAsInThisProgram) {
   for (const char* fidelity : {"kinematic", "linear", "bullet"}) {
-    Scenario scenario = RestlessBench();
-    RotaryOf(scenario).mechanics.fidelity = fidelity;
+    const Scenario scenario = Altered(RestlessBench(), {std::string("mechanics.fidelity=") + fidelity});
     const ServedTwin served(scenario);
     const ServedRun run = RunServed(served, scenario, options_);
     EXPECT_EQ(run.stopped_by, "") << run.said;
@@ -34,9 +33,7 @@ TEST_P(SameResult, ThroughTheRealBackendsAsInThisProgram) {
 
 TEST_P(SameResult, WithServosThatSettleSlowly) {
   // 6 Hz ring on long behind the in-position window: when the tables are quiet is found by looking.
-  Scenario scenario = RestlessBench();
-  RotaryOf(scenario).mechanics.fidelity = "linear";
-  RotaryOf(scenario).mechanics.servo_Hz = {6.0, 6.0};
+  const Scenario scenario = Altered(RestlessBench(), {"mechanics.fidelity=linear", "mechanics.servo_Hz=[6, 6]"});
   const ServedTwin served(scenario);
   EXPECT_EQ(RunServed(served, scenario, options_).Readings(), InProcess(scenario));
 }

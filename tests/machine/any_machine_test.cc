@@ -6,9 +6,7 @@
 namespace twinbench::test {
 namespace {
 
-std::string NameOfMachine(const ::testing::TestParamInfo<AnyMachine>& machine) {
-  return machine.param.name;
-}
+std::string NameOfMachine(const ::testing::TestParamInfo<AnyMachine>& machine) { return machine.param.name; }
 
 class AnyMachineContract : public ::testing::TestWithParam<AnyMachine> {
  protected:

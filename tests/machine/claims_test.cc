@@ -132,9 +132,7 @@ TEST(InPosition, OfALinearAxisIsToldInMicrometres) {
   EXPECT_KEPT(MessageOf([&] { hw::TieToClaim(file, axes, "x", 0.2 * units::um, ""); }));
 }
 
-double Between_s(const Reading& one, const Reading& other) {
-  return ToSeconds(other.time - one.time);
-}
+double Between_s(const Reading& one, const Reading& other) { return ToSeconds(other.time - one.time); }
 
 /// The last reading of the first set-up and the first of the second.
 std::pair<Reading, Reading> AtTheChange(const std::vector<Reading>& plan) {
@@ -143,10 +141,8 @@ std::pair<Reading, Reading> AtTheChange(const std::vector<Reading>& plan) {
 }
 
 TEST(Schedules, OfPosesAreAsFarApartAsTheScenarioSays) {
-  Scenario scenario = ShortFreeform();
-  FreeformOf(scenario).freeform_procedure.interval_s = 0.5;
-  FreeformOf(scenario).freeform_procedure.remount_s = 30.0;
-  const std::vector<Reading> plan = procedure::FreeformSchedule(scenario);
+  const std::vector<Reading> plan = procedure::FreeformSchedule(
+      Altered(ShortFreeform(), {"freeform_procedure.interval_s=0.5", "freeform_procedure.remount_s=30"}));
   EXPECT_NEAR(Between_s(plan[0], plan[1]), 0.5, 1e-9);
   const auto [before, behind] = AtTheChange(plan);
   EXPECT_NEAR(Between_s(before, behind), 30.5, 1e-9);
@@ -170,9 +166,7 @@ std::string Refusal(const std::string& text) {
 }
 
 /// At these lines of the bench file.
-void ExpectRefused(const std::vector<Refused>& files) {
-  twinbench::ExpectRefused("bench.toml", Refusal, files);
-}
+void ExpectRefused(const std::vector<Refused>& files) { twinbench::ExpectRefused("bench.toml", Refusal, files); }
 
 std::string Changed(const std::string& from, const std::string& to) {
   std::string text = kWhole;

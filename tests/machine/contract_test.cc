@@ -15,9 +15,7 @@ struct ShortBench {
   Scenario (*scenario)();
 };
 
-std::string NameOf(const ::testing::TestParamInfo<ShortBench>& bench) {
-  return bench.param.name;
-}
+std::string NameOf(const ::testing::TestParamInfo<ShortBench>& bench) { return bench.param.name; }
 
 class MachineContract : public ::testing::TestWithParam<ShortBench> {
  protected:

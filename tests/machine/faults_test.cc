@@ -148,10 +148,7 @@ TEST(MachineFaults, ASpindleThatTurnsBeyondItsLimitsIsStopped) {
 }
 
 TEST(MachineFaults, CountersThatNobodyEmptiesInTimeEndARun) {
-  Scenario scenario = ShortHob();
-  HobOf(scenario).hob_procedure.fifo_samples = 2;
-  HobOf(scenario).hob_procedure.poll_s = 60.0;
-  DrivenTwin twin(scenario);
+  DrivenTwin twin(Altered(ShortHob(), {"hob_procedure.fifo_samples=2", "hob_procedure.poll_s=60"}));
   EXPECT_EQ(twin.Fault(), "overrun");
   EXPECT_EQ(twin.log.readings.size(), 2u) << "those behind them are lost, those before are not";
 }

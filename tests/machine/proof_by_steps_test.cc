@@ -37,18 +37,11 @@ class ChangedInstruments : public PassingInstruments {
   Reading shown_;
 };
 
-struct RunEnd {
-  std::string fault;
-  std::size_t kept;
-};
+using RunEnd = std::pair<std::string, std::size_t>;  // its fault, and how many readings were kept
 
-void ExpectWhole(const RunEnd& run, std::size_t readings) {
-  EXPECT_EQ(run.fault, "");
-  EXPECT_EQ(run.kept, readings);
-}
 void ExpectEnded(const RunEnd& run, std::size_t behind) {
-  EXPECT_NE(run.fault, "");
-  EXPECT_EQ(run.kept, behind);
+  EXPECT_NE(run.first, "");
+  EXPECT_EQ(run.second, behind);
 }
 
 /// Of a run whose readings are proved.
@@ -80,16 +73,16 @@ TEST(ProofBySteps, InstrumentsWhoseSignsAxesOrUnitsChangeAreNoticedAtOnceWhereSi
                                                    Case{ShortPolygon(), "autocollimator_x_arcsec", "autocollimator_y_arcsec", true},
                                                    Case{ShortFreeform(), "qpd_x_V", "qpd_y_V", false}}) {
     const auto value = [&, &s = scenario](Reading& r, const std::string& column) -> double& { return In(r, s, column); };
-    EXPECT_EQ(RunWith(scenario, 0, 0, {}).fault, "") << scenario.bench;
+    EXPECT_EQ(RunWith(scenario, 0, 0, {}).first, "") << scenario.bench;
     std::vector<Changes> changes = {[&, &a = x](Reading& r, const Reading&) { value(r, a) = -value(r, a); },
                                     [&, &a = x, &b = y](Reading& r, const Reading&) { std::swap(value(r, a), value(r, b)); }};
     if (is_of_size) changes.push_back([&, &a = x](Reading& r, const Reading&) { value(r, a) *= 0.206; });
     for (const Changes& change : changes) {
       for (const std::size_t good : {0u, 5u, 14u}) {
-        const RunEnd run = RunWith(scenario, static_cast<int>(good), kForGood, change);
-        EXPECT_EQ(run.fault, "moved") << scenario.bench << " " << good;
-        EXPECT_LE(run.kept, good + (is_of_size ? 0 : kUnsure)) << scenario.bench;
-        EXPECT_GE(run.kept, good) << scenario.bench;
+        const auto [fault, kept] = RunWith(scenario, static_cast<int>(good), kForGood, change);
+        EXPECT_EQ(fault, "moved") << scenario.bench << " " << good;
+        EXPECT_LE(kept, good + (is_of_size ? 0 : kUnsure)) << scenario.bench;
+        EXPECT_GE(kept, good) << scenario.bench;
       }
     }
   }
@@ -134,34 +127,26 @@ TEST(ProofBySteps, AtStopsOnACircleBarAndGridGoWithAMachineThatGoesOffIt) {
     ChangedInstruments instruments(twin.bench.instruments, changes ? static_cast<int>(good) : 1000, 1000, changes);
     return EndOf(twin, AsHardware(twin.bench, machine, instruments));
   };
-  EXPECT_EQ(end_of(1000, 1.0, {}).fault, "");
-  for (const double share : {0.0, -1.0, 1e-3}) {
-    const RunEnd run = end_of(kStops + 3, share, {});
-    EXPECT_EQ(run.fault, "moved") << share;
-    EXPECT_EQ(run.kept, kStops + 3) << share;
-  }
+  EXPECT_EQ(end_of(1000, 1.0, {}).first, "");
+  for (const double share : {0.0, -1.0, 1e-3})
+    EXPECT_EQ(end_of(kStops + 3, share, {}), RunEnd("moved", kStops + 3)) << share;
   const auto value = [&](Reading& r, const char* column) -> double& { return In(r, scenario, column); };
   const std::pair<std::size_t, Changes> changes[] = {
       {0, [&](Reading& r, const Reading&) { value(r, "bar_um") = -value(r, "bar_um"); }},
       {0, [&](Reading& r, const Reading&) { value(r, "bar_um") *= 1e-3; }},
       {8, [&](Reading& r, const Reading&) { std::swap(value(r, "grid_x_mm"), value(r, "grid_y_mm")); }},
       {8, [&](Reading& r, const Reading&) { value(r, "grid_y_mm") = -value(r, "grid_y_mm"); }}};
-  for (const auto& [from, change] : changes) {  // from a reading at rest on
-    const RunEnd run = end_of(from, 1.0, change);
-    EXPECT_EQ(run.fault, "moved") << from;
-    EXPECT_EQ(run.kept, from == 0 ? kStops : 2 * kStops + 8) << from;
-  }
+  for (const auto& [from, change] : changes)  // from a reading at rest on
+    EXPECT_EQ(end_of(from, 1.0, change), RunEnd("moved", from == 0 ? kStops : 2 * kStops + 8)) << from;
 }
 
 TEST(ProofBySteps, BehindASweepTheBarGoesWithTheMachineOrNothingOfItIsKept) {
   const Scenario scenario = ShortCircles();
   constexpr int kFromTheBegin = -1;  // before any reading at rest
-  EXPECT_EQ(RunWith(scenario, 0, 0, {}).fault, "");
+  EXPECT_EQ(RunWith(scenario, 0, 0, {}).first, "");
   for (const double factor : {-1.0, 1e-3, 1.4}) {
-    const RunEnd run = RunWith(scenario, kFromTheBegin, 1000,
-                               [&](Reading& r, const Reading&) { In(r, scenario, "bar_um") *= factor; });
-    EXPECT_EQ(run.fault, "moved") << factor;
-    EXPECT_EQ(run.kept, 0u) << factor;
+    const Changes scaled = [&](Reading& r, const Reading&) { In(r, scenario, "bar_um") *= factor; };
+    EXPECT_EQ(RunWith(scenario, kFromTheBegin, 1000, scaled), RunEnd("moved", 0)) << factor;
   }
 }
 
@@ -171,7 +156,7 @@ TEST(ProofBySteps, OneLateAnswerOfBothEncodersCostsAnAttemptWhereNothingBeforeIt
   };
   DrivenTwin twin(ShortStops());
   ChangedInstruments instruments(twin.bench.instruments, 24, 1, late);
-  EXPECT_EQ(EndOf(twin, AsHardware(twin.bench, instruments)).fault, "");
+  EXPECT_EQ(EndOf(twin, AsHardware(twin.bench, instruments)).first, "");
   ASSERT_EQ(twin.log.attempts.size(), 1u);
   EXPECT_EQ(twin.log.attempts[0].reading, 24);
 }
@@ -281,7 +266,7 @@ TEST(ProofBySteps, TablesThatStandOrAreMirroredAndChannelsOfAnotherUnitOrOrderLe
   const std::pair<const char*, std::size_t> phases[] = {{"full_circle", 24}, {"calibration", 12}, {"verification", 7}};
   for (const auto& [phase, readings] : phases) {
     SCOPED_TRACE(phase);
-    ExpectWhole(EndOfTables(1000, {}, {}, phase), readings);
+    EXPECT_EQ(EndOfTables(1000, {}, {}, phase), RunEnd("", readings));
     for (const ChangesVolts& changes : WrongVolts()) ExpectEnded(EndOfTables(kGoodBlocks, changes, {}, phase), kGood);
     for (const TableShares shares : kWrongShares) ExpectEnded(EndOfTables(kGoodBlocks, {}, shares, phase), kGood);
   }
@@ -299,7 +284,7 @@ TEST(ProofBySteps, AnAutocollimatorWhoseSignsUnitsOrAxesChangeLeavesNoReadingOfA
 }
 
 TEST(ProofBySteps, InAStabilityTestTablesGoAStepBeforeItsFirstReadingAndBehindItsLast) {
-  ExpectWhole(EndOfTables(1000, {}, {}, "stability"), 6);
+  EXPECT_EQ(EndOfTables(1000, {}, {}, "stability"), RunEnd("", 6));
   ExpectEnded(EndOfTables(0, {}, {0.0, 0.0}, "stability"), 0);
   ExpectEnded(EndOfTables(3 + 3, {}, {0.0, 0.0}, "stability"), 5);  // three blocks come before
 }
@@ -320,15 +305,11 @@ TEST(ProofByClosing, AZeroThatJumpsBetweenTwoPassesEndsTheMountingOnEveryBench) 
         Case{ShortPolygon(), "autocollimator_x_arcsec", 10.0 * units::arcsec, 4, 7},
         Case{stops, "measured_deg", 0.02 * units::deg, 12, 23}}) {
     const Changes jumps = [&, &in = scenario, &name = column, &by = jump](Reading& r, const Reading&) { In(r, in, name) += by; };
-    EXPECT_EQ(RunWith(scenario, 0, 0, {}).fault, "") << scenario.bench;
-    const RunEnd run = RunWith(scenario, turned, kForGood, jumps);
-    EXPECT_EQ(run.fault, "changed") << scenario.bench;
-    EXPECT_EQ(run.kept, last) << scenario.bench;
+    EXPECT_EQ(RunWith(scenario, 0, 0, {}).first, "") << scenario.bench;
+    EXPECT_EQ(RunWith(scenario, turned, kForGood, jumps), RunEnd("changed", last)) << scenario.bench;
   }
   const ChangesVolts jumps = [](Blocks& c, const Blocks&) { c[0].mean_V += 0.5, c[2].mean_V += 0.5; };
-  const RunEnd run = EndOfTables(3 * 6, jumps, {});
-  EXPECT_EQ(run.fault, "changed");
-  EXPECT_EQ(run.kept, 11u);
+  EXPECT_EQ(EndOfTables(3 * 6, jumps, {}), RunEnd("changed", 11));
 }
 
 /// As of an axis whose zero jumps while nobody looks.
@@ -336,10 +317,8 @@ TEST(ProofByClosing, AZeroOfAFiveAxisMachineThatJumpsIsNoticedBehindTheTenthPose
   constexpr double kJump_V = 0.6;  // 20 um of X
   const Scenario scenario = ShortFreeform();
   const Changes jumps = [&](Reading& r, const Reading&) { In(r, scenario, "qpd_x_V") += kJump_V; };
-  EXPECT_EQ(RunWith(scenario, 0, 0, {}).fault, "");
-  const RunEnd run = RunWith(scenario, 3, 1000, jumps);
-  EXPECT_EQ(run.fault, "changed");
-  EXPECT_EQ(run.kept, 9u);
+  EXPECT_EQ(RunWith(scenario, 0, 0, {}).first, "");
+  EXPECT_EQ(RunWith(scenario, 3, 1000, jumps), RunEnd("changed", 9));
 }
 
 /// By the bench's clock, of a run whose readings are proved, with hands that take as long as the scenario says.

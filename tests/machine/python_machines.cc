@@ -35,8 +35,6 @@ std::vector<AnyMachine> PythonMachinesThatAreSent() {
           PythonMachine("Shaft", ShortStops)};
 }
 
-AnyMachine PythonMachineThatTurns() {
-  return PythonMachine("HobbingMachine", ShortHob);
-}
+AnyMachine PythonMachineThatTurns() { return PythonMachine("HobbingMachine", ShortHob); }
 
 }  // namespace twinbench::test
