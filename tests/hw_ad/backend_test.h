@@ -42,26 +42,28 @@ std::string FaultIn(const Call& call) {
   return kind ? FaultName(*kind) : "none";
 }
 
+inline std::string IiodAddress(const HeldTwin& served) { return "127.0.0.1:" + std::to_string(served.iiod_port()); }
+
 inline hw::AdSettings IioSettings(const HeldTwin& served) {
-  hw::AdSettings settings;
-  settings.kind = "iio";
-  settings.uri = "ip:127.0.0.1:" + std::to_string(served.iiod_port());
-  settings.device = "psd-adc16";
-  settings.channels = {"voltage0", "voltage1", "voltage2", "voltage3"};
-  settings.light = "light";
-  settings.timeout_s = 0.5;
-  return settings;
+  return {.kind = "iio",
+          .uri = "ip:" + IiodAddress(served),
+          .device = "psd-adc16",
+          .channels = {"voltage0", "voltage1", "voltage2", "voltage3"},
+          .light = "light",
+          .serial = {},
+          .calibration_file = {},
+          .timeout_s = 0.5};
 }
 
 inline hw::AdSettings ComediSettings(const HeldTwin& served) {
-  setenv("TWINBENCH_COMEDI_TWIN", ("127.0.0.1:" + std::to_string(served.iiod_port())).c_str(), 1);
-  hw::AdSettings settings;
-  settings.kind = "comedi";
-  settings.device = "/dev/comedi0";
-  settings.channels = {"0", "1", "2", "3"};
-  settings.light = "1";
-  settings.timeout_s = 0.5;
-  return settings;
+  setenv("TWINBENCH_COMEDI_TWIN", IiodAddress(served).c_str(), 1);
+  return {.kind = "comedi",
+          .device = "/dev/comedi0",
+          .channels = {"0", "1", "2", "3"},
+          .light = "1",
+          .serial = {},
+          .calibration_file = {},
+          .timeout_s = 0.5};
 }
 
 inline double SecondsSince(std::chrono::steady_clock::time_point start) {
@@ -71,6 +73,7 @@ inline double SecondsSince(std::chrono::steady_clock::time_point start) {
 /// Fault kind as it is injected into the served twin and as it is told.
 struct Struck {
   const char *injected, *fault;
+  static std::string Name(const ::testing::TestParamInfo<Struck>& tested) { return tested.param.injected; }
 };
 
 /// A served twin whose converter is opened through a backend.

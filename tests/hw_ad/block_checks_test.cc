@@ -10,9 +10,7 @@ namespace {
 
 using test::FourLevels, test::kLsb_V, test::kNoise_V, test::RawBlock;
 
-CheckSettings Known(double noise_V) {
-  return {.noise_lsb = noise_V / kLsb_V};
-}
+CheckSettings Known(double noise_V) { return {.noise_lsb = noise_V / kLsb_V}; }
 
 int Alarms(const BlockFindings& found) {
   return (found.stuck_mask != 0) + (found.floating_mask != 0) + (found.slip.scan >= 0);

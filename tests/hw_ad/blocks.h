@@ -33,12 +33,7 @@ inline void LoseAWord(std::vector<std::int16_t>& raw, std::size_t word) {
   raw.push_back(raw[raw.size() - kChannels]);  // as the next scan would begin
 }
 
-/// Bit for bit; NaN equals NaN.
-inline void ExpectSameBits(double a, double b) {
-  EXPECT_EQ(std::bit_cast<std::uint64_t>(a), std::bit_cast<std::uint64_t>(b)) << a << " and " << b;
-}
-
-/// Everything but the stamp, which the twin has none of.
+/// Everything but the stamp, which the twin has none of; numbers bit for bit, and NaN equals NaN.
 inline void ExpectSameBlock(const Acquisition& a, const Acquisition& b) {
   EXPECT_EQ(a.start, b.start);
   EXPECT_EQ(a.status, b.status);
@@ -48,10 +43,11 @@ inline void ExpectSameBlock(const Acquisition& a, const Acquisition& b) {
     EXPECT_EQ(a.raw, b.raw);
   }
   for (std::size_t k = 0; k < kChannels; ++k) {
-    ExpectSameBits(a.channel[k].mean_V, b.channel[k].mean_V);
-    ExpectSameBits(a.channel[k].std_V, b.channel[k].std_V);
-    ExpectSameBits(a.channel[k].min_V, b.channel[k].min_V);
-    ExpectSameBits(a.channel[k].max_V, b.channel[k].max_V);
+    for (const auto number :
+         {&ChannelBlock::mean_V, &ChannelBlock::std_V, &ChannelBlock::min_V, &ChannelBlock::max_V})
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(a.channel[k].*number),
+                std::bit_cast<std::uint64_t>(b.channel[k].*number))
+          << "channel " << k << ": " << a.channel[k].*number << " and " << b.channel[k].*number;
   }
 }
 

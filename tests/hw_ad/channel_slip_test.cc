@@ -119,9 +119,7 @@ TEST(ChannelSlip, IsNotSeenInASpikeOfOneScanNorInAFlickeringLastDigit) {
 }
 
 /// One channel of which is that far from the three others.
-std::array<double, kChannels> Apart(double by_lsb) {
-  return {by_lsb, 0.0, 0.0, 0.0};
-}
+std::array<double, kChannels> Apart(double by_lsb) { return {by_lsb, 0.0, 0.0, 0.0}; }
 
 /// How many of 300 blocks of so many scans show the word that they lost in their middle.
 int Seen(double apart_lsb, int scans) {

@@ -20,12 +20,9 @@ class ComediSourceTest : public ::testing::Test {
 
 TEST_F(ComediSourceTest, GivesTheServedTwinsOwnBlocksAlsoInAnotherRangeAndResolution) {
   ServedCard(ComediSettings).ExpectTheTwinsOwnBlocks();
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).adc.rate_Hz = 100e3;
-  RotaryOf(scenario).adc.range_V = 5.0;
-  RotaryOf(scenario).adc.bits = 12;
-  RotaryOf(scenario).amplifier.offset_V[2] = -6.0;
-  ServedCard(ComediSettings, scenario).ExpectTheTwinsOwnBlocks();
+  const Scenario other = Altered(test::RotaryScenario(), {"adc.rate_kHz=100", "adc.range_V=5", "adc.bits=12",
+                                                          "amplifier.offset_mV=[0, 0, -6000, 0]"});
+  ServedCard(ComediSettings, other).ExpectTheTwinsOwnBlocks();
 }
 
 TEST_F(ComediSourceTest, TellsWhatTheCardIs) {
@@ -51,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(Every, ComediFault,
                                            Struck{"gap", "overrun"}, Struck{"stall", "timeout"},
                                            Struck{"short", "dropped"}, Struck{"slip", "channel_slip"},
                                            Struck{"stuck", "stuck"}, Struck{"float", "signal_lost"}),
-                         [](const auto& instance) { return std::string(instance.param.injected); });
+                         Struck::Name);
 
 TEST_F(ComediSourceTest, SaysAsWhatTheDriverGaveUpAFullFifo) {
   const ServedCard card(ComediSettings);

@@ -14,11 +14,8 @@ using test::FaultIn, test::HeldTwin, test::IioSettings, test::ServedCard, test::
 
 TEST(IioSource, GivesTheServedTwinsOwnBlocksAlsoAtAnotherRateRangeAndResolution) {
   ServedCard(IioSettings).ExpectTheTwinsOwnBlocks();
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).adc.rate_Hz = 192e3;  // a scan takes 20833.3 ns
-  RotaryOf(scenario).adc.range_V = 5.0;
-  RotaryOf(scenario).adc.bits = 12;
-  ServedCard(IioSettings, scenario).ExpectTheTwinsOwnBlocks();
+  const Scenario other = Altered(test::RotaryScenario(), {"adc.rate_kHz=192", "adc.range_V=5", "adc.bits=12"});
+  ServedCard(IioSettings, other).ExpectTheTwinsOwnBlocks();  // a scan takes 20833.3 ns
 }
 
 TEST(IioSource, TellsWhatTheCardIs) {
@@ -43,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(Every, IioFault,
                                            Struck{"short", "dropped"}, Struck{"error", "dropped"},
                                            Struck{"gap", "gap"}, Struck{"slip", "channel_slip"},
                                            Struck{"stuck", "stuck"}, Struck{"float", "signal_lost"}),
-                         [](const auto& instance) { return std::string(instance.param.injected); });
+                         Struck::Name);
 
 TEST(IioSource, ComesBackToACardThatWasSwitchedOffAndOn) {
   Scenario scenario = test::RotaryScenario();

@@ -5,9 +5,7 @@
 
 namespace twinbench::test {
 
-void PrintTo(const Conversation& conversation, std::ostream* out) {
-  *out << conversation.name;
-}
+void PrintTo(const Conversation& conversation, std::ostream* out) { *out << conversation.name; }
 
 namespace {
 

@@ -136,9 +136,7 @@ TEST(HeldClockOfTheBench, RestartedAsAnotherRunItHasTheBitsOfThatRunOfTheTwinAnd
 }
 
 TEST(HeldClockOfTheBench, ScansAreStampedAtTheirInstants) {
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).adc.rate_Hz = 3e5;  // 75 kHz a channel: 13333.3 ns from scan to scan
-  ServedTwin served(OnFreePorts(kAtOnce), scenario);
+  ServedTwin served(Altered(RotaryScenario(), {"adc.rate_kHz=300"}));  // 75 a channel: 13333.3 ns from scan to scan
   TcpClient scpi(served.at().scpi_port);
   EXPECT_EQ(scpi.Ask("CLOC:HOLD ON;WAIT? 1000"), "1000");
   const Scans scans = BufferClient(served.at().iiod_port, 100).Read(100);

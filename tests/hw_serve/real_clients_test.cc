@@ -24,9 +24,7 @@ std::string Output(const std::string& command) {
   return output;
 }
 
-std::string Uri(int port) {
-  return "ip:127.0.0.1:" + std::to_string(port);
-}
+std::string Uri(int port) { return "ip:127.0.0.1:" + std::to_string(port); }
 
 /// What the running converter of a new twin delivers, taken here in blocks of 4 ms.
 std::string RawStream(int scans) {
@@ -159,9 +157,7 @@ std::string Python(const std::string& script, const std::string& resource) {
 std::string Printed(const std::string& script) {
   return Contents(TWINBENCH_TEST_DATA "/clients/" + script + ".txt");
 }
-std::string Socket(int port) {
-  return "TCPIP0::127.0.0.1::" + std::to_string(port) + "::SOCKET";
-}
+std::string Socket(int port) { return "TCPIP0::127.0.0.1::" + std::to_string(port) + "::SOCKET"; }
 
 bool HasModule(const std::string& module) {
   return std::system(("/usr/bin/python3 -c 'import " + module + "' >/dev/null 2>&1").c_str()) == 0;

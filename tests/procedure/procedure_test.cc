@@ -31,18 +31,15 @@ Scenario With(const std::vector<std::string>& phases) {
   return scenario;
 }
 
-Scenario FullCircleOnly(int positions, std::vector<int> shifts, std::vector<int> passes) {
-  Scenario scenario = With({"full_circle"});
-  RotaryOf(scenario).procedure.positions = positions;
-  RotaryOf(scenario).procedure.shifts = std::move(shifts);
-  RotaryOf(scenario).procedure.passes = std::move(passes);
-  return scenario;
+Scenario FullCircleOnly(int positions, const std::string& shifts, const std::string& passes) {
+  return Altered(With({"full_circle"}), {fmt::format("procedure.positions={}", positions),
+                                         "procedure.shifts=" + shifts, "procedure.passes=" + passes});
 }
 
 TEST(FullCircle, CountsTurnsOnInsteadOfRewindingBetweenPassesOfTheSameDirection) {
   std::vector<double> angles_deg;
   std::vector<int> positions;
-  for (const Reading& r : CarriedOut(FullCircleOnly(4, {0}, {1, -1, -1, 1})).readings) {
+  for (const Reading& r : CarriedOut(FullCircleOnly(4, "[0]", "[1, -1, -1, 1]")).readings) {
     angles_deg.push_back(std::round(r.target_rad / kDegree));
     positions.push_back(r.position);
   }
@@ -52,7 +49,7 @@ TEST(FullCircle, CountsTurnsOnInsteadOfRewindingBetweenPassesOfTheSameDirection)
 
 TEST(FullCircle, ApproachesEveryStopInTheDirectionOfItsPass) {
   std::vector<double> moves_rad;
-  for (const DeviceCall& call : CarriedOut(FullCircleOnly(4, {0}, {1, -1})).calls)
+  for (const DeviceCall& call : CarriedOut(FullCircleOnly(4, "[0]", "[1, -1]")).calls)
     if (call.device == "target" && call.request.starts_with("move "))
       moves_rad.push_back(std::stod(call.request.substr(5)));
   // Mounting, run-up, 4 stops, run-up, 4 stops.
@@ -90,7 +87,7 @@ TEST(Stability, ReadsTheRestingBenchAtItsInterval) {
 }
 
 TEST(CarryOut, TheSeedFixesTheDwellTimes) {
-  Scenario scenario = FullCircleOnly(36, {0}, {1});
+  Scenario scenario = FullCircleOnly(36, "[0]", "[1]");
   RotaryOf(scenario).procedure.dwell_s = {1.0, 2.0, 4.0};
   const auto dwell_times = [&](std::uint64_t seed) {
     scenario.seed = seed;
@@ -103,7 +100,7 @@ TEST(CarryOut, TheSeedFixesTheDwellTimes) {
 }
 
 TEST(CarryOut, AsksForRawBlocksOnlyWhereTheyAreKept) {
-  Scenario scenario = FullCircleOnly(4, {0}, {1});
+  Scenario scenario = FullCircleOnly(4, "[0]", "[1]");
   const auto raw_blocks = [&] {
     return std::ranges::count_if(CarriedOut(scenario).calls, [](const DeviceCall& call) {
       return call.request.starts_with("acquire ") && call.request.ends_with(" raw");

@@ -224,9 +224,8 @@ TEST(Recovery, AnImplausibleRoomOrAJumpOfTheSpotStopsTheRun) {
 }
 
 TEST(Recovery, AFifoThatIsTooSmallEndsTheRunInsteadOfLosingEveryReading) {
-  Scenario scenario = test::RestlessBench();
-  RotaryOf(scenario).adc.fifo_samples = 64;
-  RotaryOf(scenario).adc.drain_rate_Hz = 100e3;  // slower than the converter
+  const Scenario scenario =
+      Altered(test::RestlessBench(), {"adc.fifo_samples=64", "adc.drain_rate_kHz=100"});  // slow
   MemoryLog log;
   EXPECT_NE(EndOnTwin(log, {}, scenario), "none");
   EXPECT_TRUE(log.readings.empty());

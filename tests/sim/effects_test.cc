@@ -240,13 +240,10 @@ TEST(Effects, BacklashLeavesTheRotorBehindOnEitherSide) {
 }
 
 TEST(Effects, ReclampFrameMakesAReseatRunReadLikeAReclampRun) {
-  Scenario scenario = Quiet();
-  RotaryOf(scenario).procedure.phases = {"full_circle"};
-  RotaryOf(scenario).procedure.positions = 12;
-  RotaryOf(scenario).procedure.shifts = {0, 4};
-  RotaryOf(scenario).reference.random_rms[0] = 5.0 * units::arcsec;
-  Scenario reclamp = scenario, hidden = scenario;
-  RotaryOf(reclamp).procedure.clamping = "reclamp";
+  const Scenario scenario = Altered(Quiet(), {"procedure.phases=[\"full_circle\"]", "procedure.positions=12",
+                                              "procedure.shifts=[0, 4]", "reference.random.ex_arcsec=5"});
+  const Scenario reclamp = Altered(scenario, {"procedure.clamping=reclamp"});
+  Scenario hidden = scenario;
   hidden.effects = {Effect("reclamp_frame", "", {})};
   const auto expected = test::RunTwin(reclamp).readings, shown = test::RunTwin(hidden).readings;
   const auto honest = test::RunTwin(scenario).readings;

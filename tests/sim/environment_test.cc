@@ -23,10 +23,8 @@ FixtureSettings CubeAt(const Vector3& position_m) {
 Vector3 BeforePsdA() { return 0.060 * Vector3(kSine, kCosine, 0.0); }
 
 Acquisition ReadWith(const std::vector<FixtureSettings>& fixtures, const char* beam = "chief_ray") {
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).laser.beam = beam;
-  RotaryOf(scenario).laser.yaw_rad = 0.3 * units::mrad;  // spots out of the centres, so that bits can differ
-  RotaryOf(scenario).laser.pitch_rad = -0.7 * units::mrad;
+  Scenario scenario = Altered(test::RotaryScenario(), {std::string("laser.beam=") + beam, "laser.yaw_mrad=0.3",
+                                                       "laser.pitch_mrad=-0.7"});  // not centred: bits can differ
   scenario.fixtures = fixtures;
   Twin twin(scenario);
   return twin.Bench().adc.Acquire(20, false);
@@ -184,9 +182,7 @@ TEST(ThermalLengths, ADistanceThatGrowsMakesALongerWay) {
 }
 
 TEST(ThermalLengths, TheDiodeHopsToItsNextModeAsItWarms) {
-  Scenario scenario = Quiet();
-  RotaryOf(scenario).laser.mode_hop_K = 2.0;
-  RotaryOf(scenario).laser.mode_spacing_m = 0.25e-9;
+  Scenario scenario = Altered(Quiet(), {"laser.mode_hop_K=2", "laser.mode_spacing_nm=0.25"});
   const auto wavelengths_off = [&](double above_K) {
     scenario.environment.temperature_degC = scenario.environment.reference_degC + above_K;
     const double turned_rad = 0.25e-9 * 600e3 / std::sqrt(1.0 - 0.39 * 0.39);  // of one hop

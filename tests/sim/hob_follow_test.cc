@@ -10,19 +10,16 @@ using units::arcsec, units::deg;
 
 /// A noise-free run with errors of everything, two heads, both directions, an interferometer.
 Scenario Machine() {
-  Scenario s;
-  s.bench = kHobBench;
-  s.noise_free = true;
-  HobOf(s).transmission.harmonics = {{Component::kEz, 1.0, 8.0 * arcsec, 0.5},
-                                     {Component::kEz, 3.0, 2.0 * arcsec, 1.5},
-                                     {Component::kEz, 22.0, 2.0 * arcsec, 2.5},
-                                     {Component::kEz, 90.0, 0.5 * arcsec, 0.2}};
-  HobOf(s).table_encoder.eccentricity_m = 2.8e-6;
-  HobOf(s).hob_encoder.lines = 8192;
-  HobOf(s).hob_procedure.heads_rad = {10.0 * deg, 187.0 * deg};
-  HobOf(s).hob_procedure.turns = 1;
-  HobOf(s).hob_procedure.samples_per_turn = 180;
-  return s;
+  return ParseScenario(R"(bench = "hob_transmission"
+noise_free = true
+transmission.harmonics = [
+  { order = 1, amplitude_arcsec = 8, phase_deg = 29 }, { order = 3, amplitude_arcsec = 2, phase_deg = 86 },
+  { order = 22, amplitude_arcsec = 2, phase_deg = 143 }, { order = 90, amplitude_arcsec = 0.5, phase_deg = 11 }]
+table_encoder.eccentricity_um = 2.8
+hob_encoder.lines = 8192
+hob_procedure = { heads_deg = [10, 187], turns = 1, samples_per_turn = 180 }
+)",
+                       "machine.toml", "");
 }
 
 /// All orders are the scenario's to say.

@@ -52,30 +52,29 @@ double Apart_m(const test::TwinRun& run) {
 
 /// A bench of which nothing is at its ideal value.
 Scenario RichBench() {
-  return Altered(
-      test::SmallNoiseFree(),
-      {"target.harmonics=[{ component = \"ez\", order = 1, amplitude_arcsec = 20, phase_deg = 17 }, "
-       "{ component = \"dy\", order = 2, amplitude_um = 3, phase_deg = 57 }]",
-       "reference.harmonics=[{ component = \"ex\", order = 1, amplitude_arcsec = 10, phase_deg = 6 }, "
-       "{ component = \"dx\", order = 1, amplitude_um = 2 }]",
-       "reference.centring_um=[4, -3]",
-       "reference.mount_tilt_arcsec=[15, -10]",
-       "target.half_frequency_tilt_arcsec=1",
-       "target.backlash_arcsec=2",
-       "laser.position_mm=[0.5, 200, 0]",
-       "laser.yaw_mrad=0.05",
-       "laser.pointing_yaw_per_kelvin_urad=20",
-       "laser.wavelength_per_kelvin_nm=0.1",
-       "psd_a.tilt_u_mrad=20",
-       "psd_b.tilt_v_mrad=30",
-       "amplifier.hum_mV=20",
-       "amplifier.offset_mV=[10, -20, 30, 5]",
-       "autocollimator.gain_error=0.002",
-       "environment.drift_K_h=0.4",
-       "environment.swing_mK=200",
-       "mechanics.payload_mass_kg=5",
-       "mechanics.payload_radius_mm=50",
-       "procedure.dwell_s=[0.5, 1, 4]"});
+  return Altered(test::SmallNoiseFree(),
+                 {"target.harmonics=[{ component = \"ez\", order = 1, amplitude_arcsec = 20, phase_deg = 17 }, "
+                  "{ component = \"dy\", order = 2, amplitude_um = 3, phase_deg = 57 }]",
+                  "reference.harmonics=[{ component = \"ex\", order = 1, amplitude_arcsec = 10, phase_deg = 6 }, "
+                  "{ component = \"dx\", order = 1, amplitude_um = 2 }]",
+                  "reference.centring_um=[4, -3]",
+                  "reference.mount_tilt_arcsec=[15, -10]",
+                  "target.half_frequency_tilt_arcsec=1",
+                  "target.backlash_arcsec=2",
+                  "laser.position_mm=[0.5, 200, 0]",
+                  "laser.yaw_mrad=0.05",
+                  "laser.pointing_yaw_per_kelvin_urad=20",
+                  "laser.wavelength_per_kelvin_nm=0.1",
+                  "psd_a.tilt_u_mrad=20",
+                  "psd_b.tilt_v_mrad=30",
+                  "amplifier.hum_mV=20",
+                  "amplifier.offset_mV=[10, -20, 30, 5]",
+                  "autocollimator.gain_error=0.002",
+                  "environment.drift_K_h=0.4",
+                  "environment.swing_mK=200",
+                  "mechanics.payload_mass_kg=5",
+                  "mechanics.payload_radius_mm=50",
+                  "procedure.dwell_s=[0.5, 1, 4]"});
 }
 
 // What is left is rounding in the chain and Newton's last step at the autocollimator.
@@ -110,12 +109,9 @@ std::string BeamFile() {
 }
 
 TEST(RotaryFollow, SaysWhatAMeasuredBeamShowsToANanometre) {
-  Scenario s = RichBench();
-  RotaryOf(s).laser.beam = "profile";
-  RotaryOf(s).laser.profile_file = BeamFile();
-  RotaryOf(s).psd_a.cubic_per_m2 = RotaryOf(s).psd_b.cubic_per_m2 = 1000.0;
-  RotaryOf(s).procedure.positions = 6;
-  const test::TwinRun run = test::RunTwin(s);
+  const test::TwinRun run = test::RunTwin(
+      Altered(RichBench(), {"laser.beam=profile", "laser.profile_file=" + BeamFile(), "psd_a.cubic_per_m2=1000",
+                            "psd_b.cubic_per_m2=1000", "procedure.positions=6"}));
   EXPECT_GT(run.rays_traced, 4u * 4096u * run.readings.size());  // every pixel, at four slopes
   EXPECT_LT(Apart_m(run), 1e-9);
 }
@@ -295,12 +291,9 @@ TEST(RotaryFollow, ShowsWhatAKeyChanges) {
 }
 
 Scenario Bench(const std::string& kind) {
-  Scenario s = LoadScenario(test::ScenarioPath("encoder_comparison.toml"), {"encoder_procedure.kind=" + kind});
-  s.noise_free = true;
-  EncoderOf(s).device.lines = 30;
-  EncoderOf(s).device.teeth = 22;
-  EncoderOf(s).encoder_procedure.mounting_rad = {0.0, 1.0};
-  return s;
+  return LoadScenario(test::ScenarioPath("encoder_comparison.toml"),
+                      {"encoder_procedure.kind=" + kind, "noise_free=true", "device.lines_per_turn=30",
+                       "device.teeth=22", "encoder_procedure.mounting_deg=[0, 57]"});
 }
 
 double Apart_rad(const Scenario& scenario) {

@@ -84,12 +84,9 @@ EmpiricalSettings ByTime() {
 
 TEST(Empirical, GoesStraightBetweenItsTimesAndStaysOutside) {
   const EmpiricalSignal signal({ByTime()}, "psd_b_y");
-  EXPECT_DOUBLE_EQ(signal.At(1, 10.0), 1e-6);
-  EXPECT_DOUBLE_EQ(signal.At(1, 12.5), 1.5e-6);
-  EXPECT_DOUBLE_EQ(signal.At(7, 30.0), 1e-6);
-  EXPECT_DOUBLE_EQ(signal.At(7, 40.0), -1e-6);
-  EXPECT_EQ(signal.At(1, 9.0), 1e-6);
-  EXPECT_EQ(signal.At(1, 400.0), -1e-6);
+  for (const auto& [time_s, value_m] :
+       {std::pair(9.0, 1e-6), {10.0, 1e-6}, {12.5, 1.5e-6}, {30.0, 1e-6}, {40.0, -1e-6}, {400.0, -1e-6}})
+    EXPECT_DOUBLE_EQ(signal.At(7, time_s), value_m) << time_s;
   EXPECT_EQ(EmpiricalSignal({ByTime()}, "psd_a_y").At(1, 20.0), 0.0);
 }
 

@@ -133,20 +133,21 @@ TEST(TurntableTwin, ShowsNothingBeyondTheRange) {
 
 /// A noise-free run with errors of both tables, two set-ups, all phases.
 Scenario Careful() {
-  Scenario s;
-  s.bench = kTurntableBench;
-  s.noise_free = true;
-  TurntableOf(s).turntable.harmonics = {{Component::kEz, 1.0, 6.0 * arcsec, 0.3},
-                                        {Component::kEx, 2.0, 2.0 * arcsec, 1.0}};
-  TurntableOf(s).multitooth_table.harmonics = {{Component::kEz, 3.0, 1.0 * arcsec, 0.4}};
-  TurntableOf(s).collimator.roll_rad = 5e-3;
-  TurntableOf(s).turntable_procedure.phases = {"calibration", "full_circle", "verification"};
-  TurntableOf(s).turntable_procedure.positions = 12;
-  TurntableOf(s).turntable_procedure.tilt_azimuths_rad = {20.0 * deg, 130.0 * deg};
-  TurntableOf(s).turntable_procedure.shifts = {0, 30};
-  TurntableOf(s).turntable_procedure.dwell_s = {0.5, 2.0, 8.0};
-  TurntableOf(s).turntable_procedure.verification_positions = 7;
-  return s;
+  return ParseScenario(R"(bench = "turntable_autocollimator"
+noise_free = true
+turntable.harmonics = [{ order = 1, amplitude_arcsec = 6, phase_deg = 17 },
+                       { component = "ex", order = 2, amplitude_arcsec = 2, phase_deg = 57 }]
+multitooth.harmonics = [{ order = 3, amplitude_arcsec = 1, phase_deg = 23 }]
+autocollimator.roll_mrad = 5
+[turntable_procedure]
+phases = ["calibration", "full_circle", "verification"]
+positions = 12
+tilt_azimuths_deg = [20, 130]
+shifts_teeth = [0, 30]
+dwell_s = [0.5, 2, 8]
+verification_positions = 7
+)",
+                       "careful.toml", "");
 }
 
 Eigen::VectorXd Each(const std::vector<Reading>& readings, const std::function<double(const Reading&)>& value) {

@@ -41,7 +41,5 @@ std::string TextWithoutAddress(Call call) {
 }  // namespace twinbench::test
 
 namespace twinbench {
-inline void PrintTo(FaultKind kind, std::ostream* out) {
-  *out << FaultName(kind);
-}
+inline void PrintTo(FaultKind kind, std::ostream* out) { *out << FaultName(kind); }
 }  // namespace twinbench

@@ -20,9 +20,7 @@ inline std::vector<CsvRow> ReadCsvRows(const std::string& path) {
   return rows;
 }
 
-inline double Number(const CsvRow& row, const std::string& column) {
-  return std::stod(row.at(column));
-}
+inline double Number(const CsvRow& row, const std::string& column) { return std::stod(row.at(column)); }
 
 /// ex, ey, ez [rad] and dx, dy, dz [m] of a table, in the frame of its base.
 using OracleError = std::array<double, 6>;

@@ -17,40 +17,35 @@ inline Scenario RotaryScenario() {
 /// A short run of a bench on which everything changes: noise, drift, seating, repeatability, hum. Whatever state of
 /// it is not restored after a fault shows in the readings.
 inline Scenario RestlessBench() {
-  Scenario scenario = RotaryScenario();
-  scenario.seed = 23;
-  RotaryOf(scenario).procedure.positions = 6;
-  RotaryOf(scenario).procedure.shifts = {0, 1};
-  RotaryOf(scenario).procedure.passes = {1, -1};
-  RotaryOf(scenario).procedure.sweep_points = 3;
-  RotaryOf(scenario).procedure.dwell_s = {1.0, 2.0, 7.0};
-  RotaryOf(scenario).procedure.remount_s = 60.0;
-  scenario.environment.drift_K_h = 2.0;
-  scenario.environment.random_walk_K_sqrt_h = 0.1;
-  RotaryOf(scenario).laser.pointing_yaw_per_kelvin_rad = 1e-5;
-  RotaryOf(scenario).reference.seating_sd[2] = 20.0 * units::arcsec;
-  RotaryOf(scenario).reference.seating_sd[0] = 20.0 * units::arcsec;
-  RotaryOf(scenario).amplifier.hum_V = 0.01;
-  RotaryOf(scenario).target.repeatability_sd[0] = 1.0 * units::arcsec;
-  RotaryOf(scenario).target.random_rms = {4e-5, 4e-5, 4e-5, 2e-6, 2e-6, 1e-6};
-  return scenario;
+  return Altered(RotaryScenario(), {"seed=23",
+                                    "procedure.positions=6",
+                                    "procedure.shifts=[0, 1]",
+                                    "procedure.passes=[1, -1]",
+                                    "procedure.sweep_points=3",
+                                    "procedure.dwell_s=[1, 2, 7]",
+                                    "procedure.remount_s=60",
+                                    "environment.drift_K_h=2",
+                                    "environment.random_walk_K_sqrt_h=0.1",
+                                    "laser.pointing_yaw_per_kelvin_urad=10",
+                                    "reference.seating.ex_arcsec=20",
+                                    "reference.seating.ez_arcsec=20",
+                                    "amplifier.hum_mV=10",
+                                    "target.repeatability.ex_arcsec=1",
+                                    "target.random.ex_arcsec=8",
+                                    "target.random.ey_arcsec=8",
+                                    "target.random.ez_arcsec=8",
+                                    "target.random.dx_um=2",
+                                    "target.random.dy_um=2",
+                                    "target.random.dz_um=1"});
 }
 
 }  // namespace twinbench::test
 
 namespace twinbench::sim {
 
-inline Scenario Quiet() {
-  Scenario scenario = test::RotaryScenario();
-  scenario.noise_free = true;
-  return scenario;
-}
+inline Scenario Quiet() { return Altered(test::RotaryScenario(), {"noise_free=true"}); }
 
 /// With noise, but none of the amplifier.
-inline Scenario OnlyTheLightsNoise() {
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).amplifier.noise_V = 0.0;
-  return scenario;
-}
+inline Scenario OnlyTheLightsNoise() { return Altered(test::RotaryScenario(), {"amplifier.noise_mV=0"}); }
 
 }  // namespace twinbench::sim

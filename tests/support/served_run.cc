@@ -47,9 +47,7 @@ hw::BenchFile BenchFileOf(const ServedTwin& served, const RunOptions& options) {
   return file;
 }
 
-std::string ServedRun::Readings() const {
-  return TextOf(log.readings);
-}
+std::string ServedRun::Readings() const { return TextOf(log.readings); }
 
 ServedRun RunServed(const ServedTwin& served, const Scenario& scenario, const RunOptions& options,
                     const ServedRun* before) {

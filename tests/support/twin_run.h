@@ -46,9 +46,7 @@ inline separate::Separation Evaluate(const TwinRun& run, Estimator estimator = E
   return separate::Separate(measure::Measure(run.readings, geometry, calibration, estimator), geometry, options);
 }
 
-inline std::string DataPath(const std::string& name) {
-  return std::string(TWINBENCH_TEST_DATA) + "/" + name;
-}
+inline std::string DataPath(const std::string& name) { return std::string(TWINBENCH_TEST_DATA) + "/" + name; }
 inline std::string ScenarioPath(const std::string& name) {
   return std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/" + name;
 }

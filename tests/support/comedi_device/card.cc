@@ -22,13 +22,9 @@ std::array<comedi_krange, kRanges> RangesOf(double range_V) {
   return {{{-2 * range_uV, 2 * range_uV, UNIT_volt}, {-range_uV, range_uV, UNIT_volt}, {0, range_uV, UNIT_volt}}};
 }
 
-bool Mask(unsigned& source, unsigned supported) {
-  return (source &= supported) != 0;
-}
+bool Mask(unsigned& source, unsigned supported) { return (source &= supported) != 0; }
 
-bool Set(unsigned& argument, unsigned value) {
-  return std::exchange(argument, value) == value;
-}
+bool Set(unsigned& argument, unsigned value) { return std::exchange(argument, value) == value; }
 
 bool AtLeast(unsigned& argument, unsigned least) {
   if (argument >= least) return true;
@@ -181,9 +177,7 @@ int Card::Instruct(const comedi_insnlist& list) {
   return static_cast<int>(list.n_insns);
 }
 
-unsigned Card::ConvertPeriod_ns() const {
-  return static_cast<unsigned>(std::lround(1e9 / traits_.conversions_Hz));
-}
+unsigned Card::ConvertPeriod_ns() const { return static_cast<unsigned>(std::lround(1e9 / traits_.conversions_Hz)); }
 
 int Card::Test(comedi_cmd& command) const {
   if (command.subdev != kAnalogue) return -EINVAL;
