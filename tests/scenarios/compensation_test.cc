@@ -9,7 +9,7 @@ namespace twinbench {
 namespace {
 
 using separate::Compensation, separate::CompensationCheck, separate::IndexErrors, separate::LineFate;
-using separate::RootMeanSquare, testing::ElementsAre, units::arcsec, units::deg;
+using separate::RootMeanSquare, testing::ElementsAre, units::arcsec;
 
 IndexErrors Measured(const Scenario& scenario) {
   return BenchOf(scenario).index_errors(scenario, test::ReadingsOf(scenario));
@@ -63,8 +63,6 @@ void ExpectLeftWithWhatWasPredicted(Scenario scenario, int seeds) {
     EXPECT_TRUE(compensation.IsAliased() || std::ranges::none_of(HarmonicsOf(scenario), is_high)) << seed;
   }
 }
-
-const CompensationTable kThirds{{0.0, 120.0 * deg, 240.0 * deg}, {0.0, 6.0 * arcsec, -3.0 * arcsec}};
 
 Scenario Spectrum(const std::vector<std::string>& overrides = {}) {
   return LoadScenario(test::ScenarioPath("turntable_spectrum.toml"), overrides);
@@ -120,42 +118,6 @@ TEST(HobDriveOrders, RefusesMoreFromFewSamples) {
 
 TEST(HobDriveOrders, AreLeftWithWhatWasPredictedOverManySeeds) {
   ExpectLeftWithWhatWasPredicted(DriveOrders(), test::ByNight(8, 1));
-}
-
-/// The gearbox takes back what the gears err; the ring's error is not the machine's and stays.
-TEST(CommandedCompensation, MovesTheTableOfTheHobbingMachine) {
-  Scenario scenario = DriveOrders({"noise_free=true", "transmission.harmonics=[]"});
-  HobOf(scenario).table_encoder.eccentricity_m = 0.0;
-  HobOf(scenario).transmission.compensation = kThirds;
-  const IndexErrors moved = Measured(scenario);
-  Eigen::VectorXd sent_rad(moved.Count());
-  for (Eigen::Index i = 0; i < sent_rad.size(); ++i)
-    sent_rad[i] = kThirds.At(moved.position_rad[static_cast<std::size_t>(i)]);
-  const Eigen::VectorXd off_rad = AboutGroups(moved, moved.value_rad) - AboutGroups(moved, sent_rad);
-  EXPECT_LT(off_rad.cwiseAbs().maxCoeff() / arcsec, 2e-3);
-}
-
-/// Nothing errs, and nothing is random.
-Scenario PlainTurntable() {
-  Scenario scenario = Spectrum({"noise_free=true", "turntable.repeatability.ez_arcsec=0"});
-  TurntableOf(scenario).turntable.harmonics = {};
-  TurntableOf(scenario).multitooth.tooth_rms_rad = 0.0;
-  return scenario;
-}
-
-TEST(CommandedCompensation, MovesTheTurntableAndNotTheReading) {
-  Scenario scenario = PlainTurntable();
-  const std::vector<Reading> without = test::ReadingsOf(scenario);
-  TurntableOf(scenario).turntable.compensation = kThirds;
-  const std::vector<Reading> with = test::ReadingsOf(scenario);
-  ASSERT_EQ(with.size(), without.size());
-  for (std::size_t i = 0; i < with.size(); ++i) {
-    EXPECT_EQ(with[i].target_rad, without[i].target_rad);
-    const double moved_rad = with[i].autocollimator_yaw_rad - without[i].autocollimator_yaw_rad;
-    const double sent_rad = kThirds.At(with[i].target_rad);
-    // The roll of 10 mrad takes 5e-5 of it, the roundness of the crosshair's scale less.
-    EXPECT_NEAR(moved_rad / arcsec, sent_rad / arcsec, 1e-3) << i;
-  }
 }
 
 TEST(CommandedCompensation, TakesTheIndexErrorOutOfTheRotaryTarget) {
