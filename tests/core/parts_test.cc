@@ -1,3 +1,4 @@
+#include <atomic>
 #include <random>
 
 #include "tests/core/input_error.h"
@@ -6,6 +7,7 @@
 #include "twin/core/elapsed_time.h"
 #include "twin/core/happened_once.h"
 #include "twin/core/number_text.h"
+#include "twin/core/side_by_side.h"
 #include "twin/core/toml_bounds.h"
 
 namespace twinbench {
@@ -191,6 +193,24 @@ TEST(TomlBounds, LetLongValuesAndCommentsPass) {
   EXPECT_NO_THROW(RequireModestKeys("x = [" + numbers + "]\ny = \"" + words + "\"\n", "a.toml"));
   EXPECT_NO_THROW(RequireModestKeys("# " + words + "\nx = '''\n" + words + "'''\nz = 1", "a.toml"));
   EXPECT_NO_THROW(RequireModestKeys("x = \"an escaped \\\" and a # that is none = " + words + "\"", "a.toml"));
+}
+
+TEST(SideBySide, DoesEachPieceOnceByAnyNumberOfThreads) {
+  for (const int threads : {1, 2, 7, 100}) {
+    std::vector<int> times(50);
+    SideBySide(50, threads, [&](int k) { ++times[static_cast<std::size_t>(k)]; });
+    EXPECT_EQ(times, std::vector<int>(50, 1)) << threads;
+  }
+  SideBySide(0, 3, [](int) { FAIL() << "there is no piece"; });
+}
+
+TEST(SideBySide, ThrowsWhatAPieceThrowsAndBeginsNoMore) {
+  std::atomic<int> begun = 0;
+  const auto work = [&](int) {
+    if (++begun > 2) throw std::runtime_error("third");
+  };
+  EXPECT_THROW(SideBySide(1000, 2, work), std::runtime_error);
+  EXPECT_LT(begun, 10);
 }
 
 }  // namespace
