@@ -33,8 +33,8 @@ class Dialogue {
   void Open(const std::string& device, Duration patience);
 
   /// Makes sure that a word which cannot wait goes out before anything else that is said from here on: at once behind a new
-  /// opening, before anybody is identified (with a greeting before it that it does not wait for, where one is needed), and where an answer lies about that nobody asked for. Where the conversation is in order nothing is
-  /// sent.
+  /// opening, before anybody is identified (with a greeting before it that it does not wait for, where one is needed), and where an
+  /// answer lies about that nobody asked for. Where the conversation is in order nothing is sent.
   /// @param word  With its end; it is not answered.
   /// @throws DeviceFault as Open.
   void SayFirst(const std::string& word, const std::string& device, Duration patience);

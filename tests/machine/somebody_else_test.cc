@@ -238,6 +238,25 @@ TEST(SomebodyElse, WhoStopsACounterLeavesNoSampleOfTheLookInWhichItStood) {
     EXPECT_NEAR(std::remainder(left_rad(r) - left_rad(twin.log.readings[0]), units::turn), 0.0, 1.0 * units::deg) << r.reading;
 }
 
+/// Hears another speed wherever it is told to end turning, as through a line with noise.
+class TurnsOn : public PassingMachine {
+ public:
+  using PassingMachine::PassingMachine;
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override {
+    inner_.StartTurning(axis, speed_rad_s == 0.0 ? 1e-4 : speed_rad_s, ramp);
+  }
+};
+
+TEST(SomebodyElse, WhatWasToEndTurningAndTurnsOnIsAtRestBehindTheLastReading) {
+  Scenario scenario = ShortHob();
+  HobOf(scenario).interferometer.used = false;  // at rest it would be seen
+  HobOf(scenario).hob_procedure.heads_rad = {0.0};
+  DrivenTwin twin(scenario);
+  TurnsOn machine(twin.bench.machine);
+  EXPECT_EQ(twin.FaultOn(AsHardware(twin.bench, machine, twin.bench.instruments)), "") << twin.said;
+  EXPECT_FALSE(twin.bench.machine.State()[0].moving);
+}
+
 INSTANTIATE_TEST_SUITE_P(Benches, SomebodyElse, testing::Values(ShortCircles, ShortFreeform, ShortTurntable, ShortStops));
 
 }  // namespace

@@ -111,6 +111,12 @@ void HomeAgain(MachineBench& bench, const MachineRunState& state, const MachineO
   if (options.log) options.log->AppendEvent(bench.clock.Now(), "machine", "has found its origin again");
 }
 
+/// A controller tells no speed back that it was sent: what was to end may turn on, unseen by anybody who looks no more.
+void LeaveAtRest(MachineBench& bench, const MachineSequencer& sequencer, const MachineOptions& options) {
+  if (bench.simulation || !sequencer.HasTurned() || StopMachine(bench, options).is_sure) return;
+  throw DeviceFault(FaultKind::kFollowing, "machine", "turns on behind the last reading");
+}
+
 }  // namespace
 
 void RequireOneRotaryAxis(const std::vector<MachineAxis>& axes, const std::string& axis) {
@@ -131,7 +137,8 @@ void CarryOutPlan(MachineBench& bench, const MachinePlan& plan, const MachineWay
       journal.BeginAttempt();
       if (bench.simulation) state.mounted.reset();
       way(sequencer);
-      return sequencer.Flush();
+      sequencer.Flush();
+      return LeaveAtRest(bench, sequencer, options);
     } catch (const DeviceFault& fault) {
       if (options.hear_fault) options.hear_fault(fault);
       const Standstill stands = StopMachine(bench, options);

@@ -98,6 +98,8 @@ class MachineSequencer {
   /// What the instruments show on the way to a reading.
   Reading Look();
 
+  /// Whether anything was told to turn on and on.
+  bool HasTurned() const { return turning_.WasTold(); }
   /// Keeps what has been taken. Called by itself every now and then; to be called at the end and behind a fault.
   void Flush();
 

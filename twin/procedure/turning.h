@@ -16,6 +16,7 @@ class Turning {
   /// @throws DeviceFault kStalled for an axis that stands where it should turn; kFollowing for one whose way since the look before
   ///         is not that of its speed, within a tenth and what the times leave open.
   void Look(const MachineAxis& axis, double encoder_rad, Time before, Time after);
+  bool WasTold() const { return !told_.empty(); }
 
  private:
   struct Command {
