@@ -99,7 +99,9 @@ std::optional<FittedCauses> BetterLed(const TwinFit& fit, const FittedCauses& no
       const double noise = std::max(of_rest, as_exact * now.causes[k].explained / kBetter);
       const double more = other->Costs(noise) - now.Costs(noise);
       if (more < -0.5 * kBetter) return other;
-      if (IsLoop(now.causes[k].effect.name) && IsLoop(now.causes[k].causes[j].effect) && now.causes[k].causes[j].probability == 0.0) continue;
+      // A loop that was added beside a loop (AddLagsAndLoops) leads where it is better, and ties with none: the search knew both.
+      const bool is_added = now.causes[k].causes[j].probability == 0.0;
+      if (is_added && IsLoop(now.causes[k].effect.name) && IsLoop(now.causes[k].causes[j].effect)) continue;
       if (IsCrossedTooSoon(*other, k)) continue;
       if (more <= kBetter || DifferInSecondOrder(fit, now, *other, k)) ties.back().push_back(now.causes[k].causes[j]);
     }
