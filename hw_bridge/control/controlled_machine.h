@@ -1,6 +1,5 @@
 #pragma once
 
-
 #include "hw_bridge/control/allowed_motion.h"
 #include "hw_bridge/control/command_numbers.h"
 #include "hw_bridge/control/device_line.h"

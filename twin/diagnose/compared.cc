@@ -87,15 +87,15 @@ Schedule ByTurns(Schedule s, const Eigen::VectorXd& angle_rad) {
 }
 
 /// Of samples that come again in every turn: a quarter of the way between two of them, and no more than a stop's width.
-double SameAngle_rad(const std::vector<Reading>& used, const Eigen::VectorXd& angle_rad) {
+double SameAngle_rad(const Schedule& s, const Eigen::VectorXd& angle_rad) {
   constexpr double kWidest_rad = 1e-5 * units::turn, kOfStep = 0.25;
-  const double step_rad = model::TypicalStep_rad(model::CourseOf(used), angle_rad);
+  const double step_rad = model::TypicalStep_rad(s, angle_rad);
   return step_rad > 0.0 ? std::min(kWidest_rad, kOfStep * step_rad) : kWidest_rad;
 }
 
 /// Of the channels whose noise nobody states.
-void EstimateNoise(const std::vector<Reading>& used, const TwinComparison& comparison, LinearRun& run) {
-  const double same_rad = comparison.sampled ? SameAngle_rad(used, run.schedule.target_rad) : units::urad;
+void EstimateNoise(const TwinComparison& comparison, LinearRun& run) {
+  const double same_rad = comparison.sampled ? SameAngle_rad(run.schedule, run.schedule.target_rad) : units::urad;
   const Schedule schedule = comparison.sampled ? ByTurns(run.schedule, run.schedule.target_rad) : run.schedule;
   for (int c = 0; c < run.Channels(); ++c) {
     const auto of_channel = Eigen::seq(c, Eigen::last, run.Channels());
@@ -165,7 +165,7 @@ Compared CompareReadings(const std::vector<Reading>& readings, const std::vector
                    {weights, comparison.free_rank, comparison.free_rounds, kHold});
   c.predicted = ByRow(c.twin.Predict(c.free.Disturbances()));
   run.residual = read.matrix().cwiseProduct(run.observed - c.predicted);
-  EstimateNoise(used, comparison, run);
+  EstimateNoise(comparison, run);
   run.sigma = (read > 0.0).select(run.sigma, kNoWeight * run.sigma);
   PredictWithoutNoise(readings, scenario, comparison, c);
   c.readings = run.schedule;

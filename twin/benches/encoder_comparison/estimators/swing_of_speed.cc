@@ -3,20 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <cstddef>
 
-#include "twin/core/units.h"
+#include "twin/separate/fourier.h"
 
 namespace twinbench::separate::encoder {
 namespace {
-
-using TurnRoots = std::vector<std::complex<double>>;
-
-TurnRoots TurnRootsOf(std::size_t points) {
-  TurnRoots roots(points);
-  for (std::size_t j = 0; j < points; ++j) roots[j] = std::polar(1.0, units::turn * static_cast<double>(j) / static_cast<double>(points));
-  return roots;
-}
 
 /// First order of a turn: angle by which the shaft stands beside its course, each order a column.
 Eigen::RowVectorXcd FirstOrderOf(const TurnModel& model, Eigen::Index turn, const Eigen::MatrixXcd& by_model) {
@@ -27,14 +18,10 @@ Eigen::RowVectorXcd FirstOrderOf(const TurnModel& model, Eigen::Index turn, cons
 }
 
 /// Its slope all round: the share of the energy that the torque has given.
-Eigen::ArrayXd SlopeAlong(const Eigen::RowVectorXcd& order, const TurnRoots& roots) {
-  Eigen::ArrayXd slope = Eigen::ArrayXd::Zero(std::ssize(roots));
-  for (std::size_t j = 0; j < roots.size(); ++j)
-    for (std::size_t k = 1, at = j; k <= static_cast<std::size_t>(order.size()); ++k, at = (at + j) % roots.size()) {
-      const std::complex<double> c = order[static_cast<Eigen::Index>(k - 1)];
-      slope[static_cast<Eigen::Index>(j)] -= static_cast<double>(k) * (c.real() * roots[at].imag() + c.imag() * roots[at].real());
-    }
-  return slope;
+Eigen::ArrayXd SlopeAlong(const Eigen::RowVectorXcd& order, const Fourier& turn) {
+  Eigen::VectorXcd slope = Eigen::VectorXcd::Zero(turn.n());
+  for (Eigen::Index k = 1; k <= order.size(); ++k) slope[k] = std::complex<double>(0.0, static_cast<double>(k)) * order[k - 1];
+  return turn.Backward(slope).real();
 }
 
 /// Time of each piece of a turn over its mean.
@@ -64,20 +51,17 @@ double LargestBeyond_rad(const TurnModel& model, const Eigen::MatrixXcd& by_mode
   return largest;
 }
 
-Eigen::MatrixXcd BeyondInverseSquare(const TurnModel& model, const std::vector<CoastTurn>& turns, const Eigen::MatrixXcd& by_model) {
+Eigen::MatrixXcd BeyondInverseSquare(const TurnModel& model, const Eigen::MatrixXcd& by_model) {
   const Eigen::Index orders = by_model.cols();
-  const TurnRoots roots = TurnRootsOf(4 * static_cast<std::size_t>(orders));
-  Eigen::MatrixXcd beyond(std::ssize(turns), orders);
+  const Fourier turn(static_cast<int>(4 * orders));
+  Eigen::MatrixXcd beyond(model.columns.rows(), orders);
   for (Eigen::Index i = 0; i < beyond.rows(); ++i) {
     const Eigen::RowVectorXcd first = FirstOrderOf(model, i, by_model);
-    const Eigen::ArrayXd slow = SlownessAlong(SlopeAlong(first, roots));
-    Eigen::RowVectorXcd sum = Eigen::RowVectorXcd::Zero(orders);
-    for (std::size_t j = 0; j < roots.size(); ++j)
-      for (std::size_t k = 1, at = j; k <= static_cast<std::size_t>(orders); ++k, at = (at + j) % roots.size())
-        sum[static_cast<Eigen::Index>(k - 1)] += slow[static_cast<Eigen::Index>(j)] * std::conj(roots[at]);
+    const Eigen::ArrayXd slow = SlownessAlong(SlopeAlong(first, turn));
+    const Eigen::VectorXcd sum = turn.Forward(slow.matrix().cast<std::complex<double>>());
     // Of the time's slope the integral, against the steady course.
-    for (Eigen::Index k = 0; k < orders; ++k)
-      beyond(i, k) = -2.0 / static_cast<double>(roots.size()) * sum[k] / std::complex<double>(0.0, static_cast<double>(k + 1)) - first[k];
+    for (Eigen::Index k = 1; k <= orders; ++k)
+      beyond(i, k - 1) = -2.0 / turn.n() * sum[k] / std::complex<double>(0.0, static_cast<double>(k)) - first[k - 1];
   }
   return beyond;
 }

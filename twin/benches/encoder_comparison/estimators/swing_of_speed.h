@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "twin/benches/encoder_comparison/estimators/turn_orders.h"
 
@@ -13,7 +12,7 @@ namespace twinbench::separate::encoder {
 ///
 /// @param by_model  Torque and friction as rows of the model's columns, each order a column (the ring's row is not read).
 /// @return turns x orders, zero where there is no torque.
-Eigen::MatrixXcd BeyondInverseSquare(const TurnModel& model, const std::vector<CoastTurn>& turns, const Eigen::MatrixXcd& by_model);
+Eigen::MatrixXcd BeyondInverseSquare(const TurnModel& model, const Eigen::MatrixXcd& by_model);
 
 /// How much of a turn's angle that is at most, without its shape [rad].
 double LargestBeyond_rad(const TurnModel& model, const Eigen::MatrixXcd& by_model);

@@ -53,8 +53,8 @@ void SayWhatIsNotTold(const TurnModel& model, TimeReversal& result) {
 }  // namespace
 
 TimeReversal SeparateByTime(const std::vector<Reading>& readings, const CoastOptions& options) {
-  constexpr int kBeyondRounds = 4;                               // the first leaves what a torque does to what it does
-  constexpr double kTooSmall = 0.1;                        // of the curve's noise
+  constexpr int kBeyondRounds = 4;   // the first leaves what a torque does to what it does
+  constexpr double kTooSmall = 0.1;  // of the curve's noise
   const CoastPasses coast = SortCoast(readings);
   TimeReversal result = BeginCoast(coast);
   if (!result.not_separated.empty()) return result;
@@ -71,16 +71,16 @@ TimeReversal SeparateByTime(const std::vector<Reading>& readings, const CoastOpt
   Eigen::MatrixXcd x = inverse * orders, beyond = Eigen::MatrixXcd::Zero(orders.rows(), orders.cols());
   Eigen::VectorXd moved_rad2 = Eigen::VectorXd::Zero(orders.cols());
   const Eigen::MatrixXd scatter = (orders - model.columns.cast<harmonics::Complex>() * x).cwiseAbs2();
-  const double curve_rad2 = (model.weight.transpose() * scatter).sum() * cofactor(0, 0) / (2.0 * static_cast<double>(model.columns.rows() - model.columns.cols()));
-  for (int round = 0; round < kBeyondRounds; ++round) {
-    if (round == 0 && LargestBeyond_rad(model, x) < kTooSmall * std::sqrt(curve_rad2)) break;
-    beyond = BeyondInverseSquare(model, turns, x);
+  const auto free = static_cast<double>(2 * (model.columns.rows() - model.columns.cols()));  // re and im
+  const double curve_rad2 = (model.weight.transpose() * scatter).sum() * cofactor(0, 0) / free;
+  const bool is_steady = LargestBeyond_rad(model, x) < kTooSmall * std::sqrt(curve_rad2);
+  for (int round = 0; !is_steady && round < kBeyondRounds; ++round) {
+    beyond = BeyondInverseSquare(model, x);
     const Eigen::MatrixXcd next = inverse * (orders - beyond);
     moved_rad2 = (next.row(0) - x.row(0)).cwiseAbs2().transpose();
     x = next;
   }
   const Eigen::MatrixXcd rest = orders - beyond - model.columns.cast<harmonics::Complex>() * x;
-  const auto free = static_cast<double>(2 * (model.columns.rows() - model.columns.cols()));  // re and im
   const Eigen::VectorXd own_rad2 = (model.weight.transpose() * rest.cwiseAbs2()).transpose() / free;
   const Eigen::VectorXd unit_rad2 = Pooled(own_rad2, options.pooled_orders);
   result.turns = static_cast<int>(turns.size());
