@@ -55,7 +55,7 @@ TEST(EncoderRun, LeavesOutAndCountsReadingsWithoutAValue) {
   EXPECT_EQ(encoder.left_out, 2);
   EXPECT_EQ(encoder.run.Rows(), 574);
   EXPECT_EQ(encoder.run.schedule.reading[3], 5);
-  for (Reading& r : noisy.readings | std::views::drop(8)) r.measured_rad = kNaN;
+  std::for_each(noisy.readings.begin() + 8, noisy.readings.end(), [](Reading& r) { r.measured_rad = kNaN; });
   EXPECT_EQ(MessageOf([&] { noisy.Run(); }), "readings: 6 of 576 have a value; expected at least 8");
 }
 

@@ -25,7 +25,7 @@
 namespace twinbench::imports {
 namespace {
 
-constexpr std::size_t kFewest = 4;  // readings of a bench that compares nothing: faces of a small polygon
+constexpr std::size_t kFewestReadings = 4;  // readings of a bench that compares nothing: faces of a small polygon
 
 /// What a bench shows is not asked for where the map gives what another instrument showed in its place.
 void RequireColumns(const BenchFormat& bench, const Map& map, const std::vector<Recording>& recordings) {
@@ -100,7 +100,7 @@ MostReadings MostOf(const BenchFormat& bench, const Map& map, std::size_t sessio
   const std::size_t all = is_stated        ? static_cast<std::size_t>(map.average.most_readings)
                           : bench.compared ? kCompared
                                            : std::numeric_limits<std::size_t>::max();
-  return {std::max<std::size_t>(all / sessions, kFewest), is_stated};
+  return {std::max<std::size_t>(all / sessions, kFewestReadings), is_stated};
 }
 
 /// Lengths start again nowhere, unless the map says where.
@@ -126,7 +126,7 @@ Imported MakeReadings(const std::vector<Recording>& recordings, Map map) {
     const Session whole = WithoutGaps(WholeRows(session, bench, map, maker.tally.left_out), bench, map, joined, maker.tally.left_out);
     maker.Take(whole, most, imported);
   }
-  const std::size_t fewest = bench.compared ? kFewestCompared : kFewest;
+  const std::size_t fewest = bench.compared ? kFewestCompared : kFewestReadings;
   if (imported.readings.size() < fewest)
     throw InputError(recordings[0].file, fmt::format("{} readings are left{}", imported.readings.size(), CostOf(maker.tally.left_out)),
                      fmt::format("{} at least", fewest));

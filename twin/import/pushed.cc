@@ -12,7 +12,7 @@
 namespace twinbench::imports {
 namespace {
 
-constexpr std::size_t kFewestRows = 12;  // of a rest
+constexpr std::size_t kFewestOfARest = 12;  // of a rest
 
 /// Two sides of some values.
 struct Sides {
@@ -48,7 +48,7 @@ constexpr double kLevel = 0.25, kLeft = 0.17;
 std::optional<Sides> TwoSides(const std::vector<double>& values, double most) {
   constexpr int kRounds = 20;
   constexpr double kCounts = 1.5;
-  if (values.size() < kFewestRows) return {};
+  if (values.size() < kFewestOfARest) return {};
   const auto [lowest, highest] = std::ranges::minmax(values);
   Sides sides = SidesAbout(values, 0.5 * (lowest + highest));
   for (int round = 0; round < kRounds; ++round) sides = SidesAbout(values, sides.Middle());
@@ -167,7 +167,7 @@ Pushed PushedIn(const Course& course, const std::vector<Rest>& rests, const std:
   const std::vector<double> error = ErrorsOf(course, shown, turn_rad);
   std::map<double, Place> places;
   for (const Rest& rest : rests) {
-    if (rest.end - rest.begin >= kFewestRows)
+    if (rest.end - rest.begin >= kFewestOfARest)
       places.try_emplace(course.reference[rest.begin], Place{{}, error}).first->second.rests.push_back(rest);
   }
   std::map<std::size_t, std::pair<Rest, Sides>> kept;  // in the order of time

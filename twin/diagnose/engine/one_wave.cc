@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <vector>
 
 #include "twin/diagnose/engine/answer.h"
@@ -57,7 +56,7 @@ void LevelOneWave(const SearchProblem& problem, const Deflation& others, const P
   if (first < 0) return;
   const std::vector<int> same = SameAs(first, problem, others, data, shapes, evidence);
   const auto explained = [&evidence](int k) { return evidence.explained(k, 0); };
-  const double most = std::ranges::max(same | std::views::transform(explained));
+  const double most = explained(std::ranges::max(same, {}, explained));
   const double pseudo = PseudoDegrees(problem.run), power = pseudo + data.power[0];  // as in the evidence
   const double half = 0.5 * (pseudo + problem.projector.DegreesOfFreedom() - others.Rank());
   const auto points = [&](int k) { return problem.scanner.Families()[static_cast<std::size_t>(k)].grid; };

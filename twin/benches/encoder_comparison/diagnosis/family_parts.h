@@ -19,6 +19,10 @@ std::vector<Family> NamedFamilies(const Context& context, const TimeSeries& seri
 /// Counts that get lost, or come, at one angle of the device each time that it is passed.
 std::vector<Family> LostCountFamilies(const SignalContext& context, const unknown::Design& design);
 
+/// Bits of an absolute code that are worth something else than they should: dead, stuck, tied to another or exchanged with it.
+/// Only those whose edges show.
+std::vector<Family> CodeDigitFamilies(const EncoderRun& encoder, const unknown::Design& design);
+
 /// Structure without a name.
 std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries& series, double plausible_rad);
 

@@ -15,10 +15,11 @@ namespace twinbench::diagnose::encoder {
 namespace {
 
 constexpr int kBesideOne = 7;     // readings on either side
-constexpr int kLongest = 5;    // glitch
+constexpr int kLongest = 5;       // glitch
 constexpr double kFarOff = 12.0;  // in medians of absolute distances: eight deviations of normal noise
 constexpr double kHalfFar = 6.0;
 constexpr double kMostShare = 0.05;
+constexpr double kSamePlace = 0.25;  // of the way from one reading to the next
 
 /// Rows from `first` to `last` that are of i's mounting, but not i.
 std::vector<double> Around(const LinearRun& run, int i, int first, int last) {
@@ -89,6 +90,22 @@ bool Returns(const LinearRun& run, const std::vector<double>& farness, int begin
   return true;
 }
 
+/// Another time that its place of the turn was passed it read the same: a curve that jumps where a course turns has
+/// one reading behind the jump.
+bool IsOfItsPlace(const LinearRun& run, int row, double usual_step_rad) {
+  constexpr double kAgree = 0.25;
+  const Schedule& s = run.schedule;
+  const double off = run.residual[row] - Median(Around(run, row, row - kBesideOne, row + kBesideOne));
+  for (int k = 0; k < s.Readings(); ++k) {
+    const bool is_there = std::abs(std::remainder(s.reference_rad[k] - s.reference_rad[row], units::turn)) <
+                          kSamePlace * usual_step_rad;
+    if (is_there && std::abs(k - row) > kBesideOne &&
+        std::abs(run.residual[k] - run.residual[row]) < kAgree * std::abs(off))
+      return true;
+  }
+  return false;
+}
+
 double UsualStep_rad(const Schedule& s) {
   std::vector<double> steps_rad;
   for (int i = 1; i < s.Readings(); ++i) steps_rad.push_back(std::abs(s.reference_rad[i] - s.reference_rad[i - 1]));
@@ -97,7 +114,6 @@ double UsualStep_rad(const Schedule& s) {
 
 /// Two of them at one place of the turn, in two passes, are the place's.
 bool ComeBack(const std::vector<int>& begins, const Schedule& s, double usual_step_rad) {
-  constexpr double kSamePlace = 0.25;  // of the way from one reading to the next
   for (const int a : begins) {
     for (const int b : begins) {
       const bool is_other_pass = s.pass[static_cast<std::size_t>(a)] != s.pass[static_cast<std::size_t>(b)];
@@ -187,7 +203,7 @@ std::vector<int> FarRows(const Glitches& glitches, const DiagnosisRun& result) {
 /// distance shows no more often, a code of a converter that is missing.
 bool MayBeOfPlaces(const std::vector<int>& rows, const Schedule& s) {
   constexpr std::size_t kFew = 2;
-  constexpr double kSamePlace = 0.02;  // of the way from one reading to the next
+  constexpr double kBetween = 0.02;  // of the way from one reading to the next
   const double step_rad = UsualStep_rad(s);
   return !rows.empty() && rows.size() <= kFew && std::ranges::all_of(rows, [&](int row) {
     double nearest_rad = units::turn;
@@ -197,7 +213,7 @@ bool MayBeOfPlaces(const std::vector<int>& rows, const Schedule& s) {
       nearest_rad =
           std::min(nearest_rad, std::abs(std::remainder(s.reference_rad[i] - s.reference_rad[row], units::turn)));
     }
-    return nearest_rad > kSamePlace * step_rad && nearest_rad < step_rad;
+    return nearest_rad > kBetween * step_rad && nearest_rad < step_rad;
   });
 }
 
@@ -229,7 +245,8 @@ Glitches FindGlitches(const LinearRun& run, const Eigen::VectorXd& relative_nois
     while (end < s.Readings() && farness[static_cast<std::size_t>(end)] > kFarOff) ++end;
     if (end == i) continue;
     const int longest = i == 0 ? 1 : kLongest;  // what fades away from the beginning on is no glitch
-    if (end - i <= longest && GoesOnAsUsual(s, i, end, usual_step_rad) && Returns(run, farness, i, end)) {
+    if (end - i <= longest && GoesOnAsUsual(s, i, end, usual_step_rad) && Returns(run, farness, i, end) &&
+        !IsOfItsPlace(run, i, usual_step_rad)) {
       begins.push_back(i);
       for (int k = i; k < end; ++k) found.rows.push_back(k);
     }

@@ -20,7 +20,8 @@ std::string WordsOf(Passing passing) {
     case Passing::kLostBackwards:
       return "lost counts, the same each time that {:.1f} deg is passed backwards, synchronous with device angle";
     case Passing::kComesBack:
-      return "lost counts where {:.1f} deg is passed, which come back on the way back, synchronous with device angle";
+      return "lost counts where {:.1f} deg is passed, which come back on the way back, synchronous with device "
+             "angle";
     case Passing::kCatchesUp:
       break;
   }
@@ -51,20 +52,25 @@ std::vector<Product> StepsOf(const Eigen::VectorXd& course, const std::vector<in
   return steps;
 }
 
-/// Half way between neighbouring readings, all turns on one; thinned evenly.
+/// Half way between neighbouring readings, all turns on one; of many that follow each other the widest: repeated
+/// readings of one place have nothing between them.
 std::vector<double> Spots_rad(const Eigen::VectorXd& device_rad) {
   constexpr std::size_t kMost = 1000;
   std::vector<double> within;
   for (const double angle_rad : device_rad)
     within.push_back(angle_rad - units::turn * std::floor(angle_rad / units::turn));
   std::ranges::sort(within);
-  std::vector<double> between;
-  for (std::size_t i = 1; i < within.size(); ++i) {
-    if (within[i] - within[i - 1] > units::urad) between.push_back(0.5 * (within[i] + within[i - 1]));
-  }
+  if (!within.empty()) within.push_back(within.front() + units::turn);  // where most devices begin anew
   std::vector<double> spots;
-  const std::size_t every = 1 + between.size() / kMost;
-  for (std::size_t i = every / 2; i < between.size(); i += every) spots.push_back(between[i]);
+  const std::size_t every = 1 + within.size() / kMost;
+  for (std::size_t from = 1; from < within.size(); from += every) {
+    const auto gap = [&](std::size_t i) { return within[i] - within[i - 1]; };
+    std::size_t widest = from;
+    for (std::size_t i = from + 1; i < std::min(from + every, within.size()); ++i) {
+      if (gap(i) > gap(widest)) widest = i;
+    }
+    if (gap(widest) > units::urad) spots.push_back(0.5 * (within[widest] + within[widest - 1]));
+  }
   return spots;
 }
 
@@ -97,7 +103,8 @@ std::vector<Family> LostCountFamilies(const SignalContext& context, const unknow
   const bool has_turn = device_rad.maxCoeff() - device_rad.minCoeff() > units::turn;
   for (const Passing passing :
        {Passing::kLostForwards, Passing::kLostBackwards, Passing::kComesBack, Passing::kCatchesUp}) {
-    if (passing == Passing::kCatchesUp && !has_turn) continue;  // of less than a turn nobody knows whether it is whole
+    if (passing == Passing::kCatchesUp && !has_turn)
+      continue;  // of less than a turn nobody knows whether it is whole
     const std::vector<double> spots_rad = PassedAgain(passing, device_rad, Spots_rad(device_rad));
     const auto spot_rad = [spots_rad](int g) { return spots_rad[static_cast<std::size_t>(g)]; };
     collect.Add(

@@ -119,6 +119,7 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   if (ShowsReversal(c.pass, design.senses.front(), encoder.run.residual)) LeaveReversalsToNamed(design.senses.front(), families);
   std::ranges::move(GrowingSpeeds(c, design), std::back_inserter(families));
   std::ranges::move(LostCountFamilies(c, design), std::back_inserter(families));
+  std::ranges::move(CodeDigitFamilies(encoder, design), std::back_inserter(families));
   return families;
 }
 
