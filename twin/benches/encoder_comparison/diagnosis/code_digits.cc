@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "twin/benches/encoder_comparison/diagnosis/family_parts.h"
+#include "twin/benches/encoder_comparison/diagnosis/taken.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/unknown/collector.h"
-#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -35,49 +35,27 @@ Eigen::VectorXd LackOf(const Digit& digit, const Eigen::VectorXd& device_rad, do
   return (at >= 0.25 && at < 0.75).select(back, 0.0);
 }
 
-/// Squares of the rows that columns take, each mounting's mean put aside.
-class Taken {
- public:
-  Taken(const Eigen::VectorXd& rows, const std::vector<int>& setup)
-      : setups_(model::Indicators(setup)), rows_(Aside(rows)) {}
-
-  double All() const { return rows_.squaredNorm(); }
-  double By(const Eigen::VectorXd& column) const {
-    const Eigen::VectorXd beside = Aside(column);
-    const double square = beside.squaredNorm();
-    return square > 0.0 ? std::pow(beside.dot(rows_), 2) / square : 0.0;
-  }
-  /// Of one period.
-  double ByWave(const Eigen::VectorXd& angle_rad) const {
-    const Eigen::MatrixXd wave = model::Wave(angle_rad);
-    const Eigen::VectorXd first = Aside(wave.col(0));
-    Eigen::VectorXd second = Aside(wave.col(1));
-    if (first.squaredNorm() > 0.0) second -= first * (first.dot(second) / first.squaredNorm());
-    return By(first) + By(second);
-  }
-
- private:
-  Eigen::VectorXd Aside(const Eigen::VectorXd& rows) const {
-    const Eigen::VectorXd readings = setups_.colwise().sum();
-    return rows - setups_ * (setups_.transpose() * rows).cwiseQuotient(readings);
-  }
-
-  Eigen::MatrixXd setups_;
-  Eigen::VectorXd rows_;
-};
+/// A bit that is not counted, or counted as another one, is off by about what it is worth.
+bool IsOfItsWorth(const Digit& digit, double size_rad) {
+  constexpr double kLeast = 0.4, kLikely = 0.2;
+  const double share = std::abs(size_rad) / digit.worth_rad;
+  return digit.code == Code::kBinary ? share > kLeast : std::abs(share - 1.0) < kLikely;
+}
 
 /// Its edges explain what no wave of its period can: else it is an order like any other.
 bool ShowsEdges(const Digit& digit, const EncoderRun& encoder, const Taken& taken) {
   constexpr double kClearly = 25.0;  // in squares of the noise, or of what is left
   constexpr int kEvery = 4;          // of its zeros: edges show there, too
   const Eigen::VectorXd& device_rad = encoder.context.device_rad;
-  double most = 0.0;
-  for (int g = 0; g < Digit::kZeros; g += kEvery)
-    most = std::max(most, taken.By(LackOf(digit, device_rad, digit.Zero_rad(g))));
-  const double readings = static_cast<double>(device_rad.size()),
-               noise = encoder.run.sigma.squaredNorm() / readings;
-  const double left = (taken.All() - most) / readings;
-  return most > taken.ByWave(device_rad * (units::turn / digit.Period_rad())) + kClearly * std::max(noise, left);
+  Eigen::VectorXd best = LackOf(digit, device_rad, 0.0);
+  for (int g = kEvery; g < Digit::kZeros; g += kEvery) {
+    Eigen::VectorXd lack = LackOf(digit, device_rad, digit.Zero_rad(g));
+    if (taken.By(lack) > taken.By(best)) best = std::move(lack);
+  }
+  const double most = taken.By(best), readings = static_cast<double>(device_rad.size());
+  const double noise = encoder.run.sigma.squaredNorm() / readings, left = (taken.All() - most) / readings;
+  return IsOfItsWorth(digit, taken.SizeOf(best)) &&
+         most > taken.ByWave(device_rad * (units::turn / digit.Period_rad())) + kClearly * std::max(noise, left);
 }
 
 std::string WordsOf(const Digit& digit) {
@@ -92,7 +70,7 @@ std::vector<Family> CodeDigitFamilies(const EncoderRun& encoder, const unknown::
   constexpr int kMostBits = 20;
   const SignalContext& c = encoder.context;
   const Eigen::VectorXd device_rad = c.device_rad;
-  const Taken taken(encoder.run.residual, c.setup);
+  const Taken taken(encoder);
   const double range_rad = RangeOfSetUp_rad(c),
                least_rad = std::max(units::turn * std::pow(0.5, kMostBits), encoder.run.sigma.mean());
   unknown::Collector collect(std::make_shared<const unknown::Design>(design));

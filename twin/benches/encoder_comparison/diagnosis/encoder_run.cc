@@ -64,7 +64,8 @@ Scenario AsMounted(Scenario scenario, const Schedule& s, const Eigen::VectorXd& 
   return scenario;
 }
 
-/// With the speeds that were derived, and without what the twin does not look at: the record is copied each time it is followed.
+/// With the speeds that were derived, and without what the twin does not look at: the record is copied each time it
+/// is followed.
 std::vector<Reading> AsFollowed(std::vector<Reading> used, const Schedule& s) {
   for (std::size_t i = 0; i < used.size(); ++i) {
     used[i].velocity_rad_s = s.velocity_rad_s[static_cast<Eigen::Index>(i)];
@@ -88,23 +89,39 @@ constexpr double kArithmetic_rad = 1e-12;  // less is rounding, where nothing el
 double Roughness_rad(const LinearRun& run) {
   double sum = 0.0, count = 0.0;
   for (Eigen::Index i = 2; i < run.residual.size(); ++i) {
-    if (run.schedule.pass[static_cast<std::size_t>(i)] != run.schedule.pass[static_cast<std::size_t>(i - 2)]) continue;
+    if (run.schedule.pass[static_cast<std::size_t>(i)] != run.schedule.pass[static_cast<std::size_t>(i - 2)])
+      continue;
     sum += std::pow(run.residual[i] - 2.0 * run.residual[i - 1] + run.residual[i - 2], 2) / 6.0;
     count += 1.0;
   }
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
-/// Angles of the reference that are rounded make an error in steps, and its differences are zero more often than not:
-/// then their median says nothing.
+/// The device moves on while the reference shows the same: how far, on the average of such readings.
+double WayWhileReferenceStands_rad(const LinearRun& run) {
+  const Schedule& s = run.schedule;
+  double way_rad = 0.0, count = 0.0;
+  for (Eigen::Index i = 1; i < run.residual.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (s.reference_rad[i] != s.reference_rad[i - 1] || s.pass[at] != s.pass[at - 1]) continue;
+    way_rad += s.direction[at] * (run.residual[i] - run.residual[i - 1]);
+    count += 1.0;
+  }
+  return count > 0.0 ? way_rad / count : 0.0;
+}
+
+/// Angles of the reference that are rounded make an error in steps, and its differences are zero more often than
+/// not: then their median says nothing.
 /// @return that error where it is what the readings scatter by; 0 otherwise.
 double RoundedReference_rad(const LinearRun& run, double noise_rad) {
   constexpr double kNothing = 0.01, kAlike = 2.0, kFine = 0.25;  // the last: of the way to the next reading
+  constexpr double kGoesOn = 0.1;                                // of a step
   const double roughness_rad = Roughness_rad(run);
   const double step_rad = CommonStep(run.schedule.reference_rad), rounded_rad = step_rad / std::sqrt(12.0);
   const bool is_alike = rounded_rad > roughness_rad / kAlike && rounded_rad < roughness_rad * kAlike;
   const bool is_fine = step_rad < kFine * model::TypicalStep_rad(run.schedule, run.schedule.reference_rad);
-  return noise_rad < kNothing * roughness_rad && is_alike && is_fine ? rounded_rad : 0.0;
+  const bool goes_on = step_rad > 0.0 && WayWhileReferenceStands_rad(run) > kGoesOn * step_rad;
+  return is_alike && (goes_on || (is_fine && noise_rad < kNothing * roughness_rad)) ? rounded_rad : 0.0;
 }
 
 /// Readings that are rounded err by no less than that, and all by the arithmetic of many turns. Where one is the
@@ -112,7 +129,8 @@ double RoundedReference_rad(const LinearRun& run, double noise_rad) {
 void SetNoise(LinearRun& run, const EncoderSettings& bench, const std::vector<Reading>& used) {
   Eigen::VectorXd shown_rad(std::ssize(used));
   for (std::size_t i = 0; i < used.size(); ++i) shown_rad[static_cast<Eigen::Index>(i)] = used[i].measured_rad;
-  const double step_rad = std::max({bench.device.resolution_rad, RunsIn(used) * CommonStep(shown_rad), CountOfFewValues(shown_rad)});
+  const double step_rad =
+      std::max({bench.device.resolution_rad, RunsIn(used) * CommonStep(shown_rad), CountOfFewValues(shown_rad)});
   run.sigma_stated = bench.device.noise_known && bench.device.noise_rad > 0.0;
   const Eigen::VectorXd relative = RelativeNoise(used);
   const double count = bench.encoder_procedure.ReadingsAtOnce();

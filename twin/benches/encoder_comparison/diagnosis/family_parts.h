@@ -23,6 +23,9 @@ std::vector<Family> LostCountFamilies(const SignalContext& context, const unknow
 /// Only those whose edges show.
 std::vector<Family> CodeDigitFamilies(const EncoderRun& encoder, const unknown::Design& design);
 
+/// Readings that stay where the range of the device ends.
+std::vector<Family> RangeEndFamilies(const EncoderRun& encoder, const unknown::Design& design);
+
 /// Structure without a name.
 std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries& series, double plausible_rad);
 

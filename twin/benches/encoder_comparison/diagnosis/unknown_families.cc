@@ -120,6 +120,7 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   std::ranges::move(GrowingSpeeds(c, design), std::back_inserter(families));
   std::ranges::move(LostCountFamilies(c, design), std::back_inserter(families));
   std::ranges::move(CodeDigitFamilies(encoder, design), std::back_inserter(families));
+  std::ranges::move(RangeEndFamilies(encoder, design), std::back_inserter(families));
   return families;
 }
 
