@@ -34,15 +34,15 @@ void AddKnown(const std::vector<Reading>& readings, const Scenario& scenario, co
   columns.leftCols(free) = nuisance.jacobian;
   nuisance.prior_precision.conservativeResize(free + known);
   for (Eigen::Index k = 0; k < known; ++k) {
-    const auto& [effect, where, parameter, sd] = comparison.known[static_cast<std::size_t>(k)];
+    const TwinComparison::KnownConstant& one = comparison.known[static_cast<std::size_t>(k)];
     const auto shown = [&](double value) {
       Scenario with = scenario;
-      with.effects.push_back({effect, where, {{parameter, value}}, ""});
+      with.effects.push_back({one.effect, one.where, {{one.parameter, value}}, ""});
       const Followed twin(comparison.follow, with, readings, c.used, c.run.Channels());
       return c.Rows(twin.Predict(c.free.Disturbances()));
     };
-    columns.col(free + k) = (shown(sd) - shown(-sd)) / (2.0 * sd);
-    nuisance.prior_precision[free + k] = std::pow(sd, -2);
+    columns.col(free + k) = (shown(one.sd) - shown(-one.sd)) / (2.0 * one.sd);
+    nuisance.prior_precision[free + k] = std::pow(one.sd, -2);
   }
   nuisance.jacobian = columns.sparseView();
   if (nuisance.at.size() > 0) nuisance.at.conservativeResizeLike(Eigen::VectorXd::Zero(free + known));

@@ -51,7 +51,7 @@ std::string CertainLines(const Mending& one) {
   constexpr std::size_t kMostListed = 4;
   if (one.certain.empty()) return one.dof > 0.0 ? "" : "no u: no degrees of freedom are left";
   std::vector<plan::Gain> certain = one.certain;
-  std::ranges::stable_partition(certain, [](const plan::Gain& result) { return result.name.starts_with("separation."); });
+  std::stable_partition(certain.begin(), certain.end(), [](const plan::Gain& result) { return result.name.starts_with("separation."); });
   std::string lines;
   for (std::size_t k = 0; k < std::min(kMostListed, certain.size()); ++k)
     lines += fmt::format("{}u({}) = {:.3g}", lines.empty() ? "" : "\n", certain[k].name, certain[k].ratio);

@@ -86,7 +86,8 @@ void TakeOutLost(const std::vector<int>& orders, int positions, report::CurveSco
     const double steps = curve.position[i] / step_deg;
     rows[std::lround((steps - std::floor(steps + 1e-6)) * 1e4)].push_back(i);
   }
-  for (const auto& [place, row] : rows) {
+  for (const auto& at_place : rows) {
+    const std::vector<std::size_t>& row = at_place.second;
     const auto wave = [&](int order, std::size_t i) { return std::polar(1.0, order * curve.position[i] * units::deg); };
     const auto take_out = [&](int order) {
       std::complex<double> sum = 0.0;

@@ -182,7 +182,7 @@ std::vector<PoseTerm> TermsOf(const MachineChain& chain, const std::vector<PoseP
   for (int order = 2; order <= std::min(kHighestOfLinear, possible_order); ++order) AddLinear(places, order, terms);
   for (PoseTerm& term : terms)
     term.is_beyond |= term.kind == TermKind::kComponent && term.order > std::max(1, highest_order);
-  std::ranges::stable_partition(terms, [](const PoseTerm& term) { return !term.is_beyond; });
+  std::stable_partition(terms.begin(), terms.end(), [](const PoseTerm& term) { return !term.is_beyond; });
   AddDrift(terms);
   return terms;
 }

@@ -62,7 +62,7 @@ OrdersAbove FindOrdersAbove(const Eigen::MatrixXd& fitted, const Eigen::VectorXd
     found.variance_rad2 += 0.5 * cos_sin_rad.squaredNorm();
   }
   std::ranges::sort(found.orders);
-  found.orders.erase(std::ranges::unique(found.orders).begin(), found.orders.end());
+  found.orders.erase(std::unique(found.orders.begin(), found.orders.end()), found.orders.end());
   return found;
 }
 
