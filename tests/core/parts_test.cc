@@ -89,11 +89,6 @@ TEST(ParseNumber, OfAWholeNumberRefusesFractionsAndOfASeedGoesToTheLargestOfSixt
   EXPECT_EQ(ParseSeed("-1"), std::nullopt);
 }
 
-TEST(ParseInUnit, GivesTheProductThatTheSourceCodeGives) {
-  EXPECT_EQ(ParseInUnit("0.02", units::arcsec), 0.02 * units::arcsec);
-  EXPECT_EQ(ParseInUnit("650", units::nm), 650.0 * units::nm);
-}
-
 TEST(PrintInUnit, WritesWhatAPersonWouldWriteWithTheSignOfZeroAndRefusesWhatIsNotFinite) {
   EXPECT_EQ(PrintInUnit(650.0 * units::nm, units::nm), "650");
   EXPECT_EQ(PrintInUnit(0.02 * units::arcsec, units::arcsec), "0.02");

@@ -279,15 +279,5 @@ TEST(WriteScenario, OfTheDefaultsIsReadBackAndReadsWell) {
   EXPECT_EQ(WriteScenario(ParseScenario(text, "resolved.toml", ".")), text);
 }
 
-TEST(WriteScenario, StandsAloneWithoutTheErrorsFile) {
-  const TemporaryFolder folder;
-  folder.Write("t.csv", "position_deg,ez_arcsec\n0,0.1\n180,-0.3\n");
-  const std::string text = "bench = \"rotary_4dof\"\n[reference]\nerrors_file = \"t.csv\"\n";
-  const Scenario scenario = ParseScenario(text, "s.toml", folder.path());
-  ExpectSameBits(ParseScenario(WriteScenario(scenario), "resolved.toml", "/elsewhere"), scenario);
-  EXPECT_THAT(WriteScenario(scenario), testing::HasSubstr("[reference.errors]\nposition_deg = [0.0, 180.0]\n"));
-  EXPECT_THAT(WriteScenario(scenario), testing::HasSubstr("ez_arcsec = [0.1, -0.3]\n"));
-}
-
 }  // namespace
 }  // namespace twinbench

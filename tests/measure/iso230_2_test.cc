@@ -67,13 +67,6 @@ TEST(EvaluatePositioning, GivesTheDefinitionsOnFiguresFoundByHand) {
     EXPECT_NEAR(p[value].value, expected, 1e-13) << kAxisValueNames[static_cast<std::size_t>(value)];  // rounding
 }
 
-TEST(EvaluatePositioning, TakesTheLargestOfThreeForTheBidirectionalRepeatability) {
-  // 2 s+ + 2 s- + |B| = 2 + 0.2 + 0.5 is less than 4 s+ = 4.
-  const auto p = EvaluatePositioning({TwoRuns(0.5, 1.0, 0.0, 0.1), TwoRuns(0.5, 0.1, 0.0, 1.1)});
-  EXPECT_NEAR(p.targets[0].repeatability.value, 4.0, 1e-13);
-  EXPECT_NEAR(p.targets[1].repeatability.value, 4.4, 1e-13);
-}
-
 /// The report's R, 6.29e-5, is the larger of R+ and R-, not of the R_i, and its E, 2.46e-5, is less than its own E- = 3.30e-5, which cannot
 /// be: both are wrong. R_5 = 6.882e-5 stands in the report's own column of R_i.
 TEST(EvaluatePositioning, GivesThePublishedFiguresOfALinearAxis) {

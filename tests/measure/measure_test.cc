@@ -125,22 +125,6 @@ TEST(Measure, KeepsTheCalibrationsUncertaintyApartFromTheNoise) {
 
 const double kCos = std::cos(std::asin(0.39));
 
-/// What the published equations read when the exact model moves by one small step in one DOF.
-Vector4 Response(Dof dof) {
-  constexpr double kStep = 1e-7;  // rad or m; second order is 1e-7 of it
-  const Vector4 spots_m = PredictSpots(Vector4(kStep * Vector4::Unit(static_cast<int>(dof))), Bench());
-  return PublishedMotion(spots_m, 0.120, Bench()) / kStep;
-}
-
-TEST(PublishedMotion, ReadsWrongByTheFactorsOfTheMirrorPicture) {
-  const double tolerance = 1e-5;  // second order of the step, times 1/sin(theta)
-  EXPECT_NEAR(Response(Dof::kEz)[0], (1 + 1 / kCos) / (2 * kCos), tolerance);
-  EXPECT_NEAR(Response(Dof::kEz)[0], 1.1327, 1e-4);  // docs/theory.md 1
-  EXPECT_NEAR(Response(Dof::kEx)[1], (1 + kCos) / 2, tolerance);
-  EXPECT_NEAR(Response(Dof::kEy)[2], 1.0, tolerance);
-  EXPECT_NEAR(Response(Dof::kDy)[3], kCos, tolerance);
-}
-
 TEST(PublishedMotion, IsTheInverseOfEquationsOneToFive) {
   const double l1 = 0.120, h0 = 0.130, theta = std::asin(0.39);
   const double ez = 3e-4, ex = -2e-4, ey = 4e-4, dy = 5e-5;  // in the paper's frame

@@ -191,16 +191,6 @@ TEST(Scene, AMeshBlocksWhatIsBehindIt) {
   EXPECT_THAT(HitsOf(scene, rays).surface, testing::ElementsAre(0, kFixture, 0));
 }
 
-TEST(Scene, PathsAgreeWithMeshesInTheScene) {
-  Dice dice(11);
-  Scene scene = RandomScene(dice, 10);
-  for (int i = 0; i < 4; ++i) scene.AddMesh(BoxMesh({-0.02, -0.03, -0.01}, {0.02, 0.03, 0.01}), dice.Pose(0.2));
-  scene.Commit();
-  const RayBatch rays = RaysAt(dice, scene, 5000);
-  EXPECT_GT(CountOf(kFixture, HitsOf(scene, rays)), 100);
-  ExpectEveryPathAgrees(scene, rays, 500);
-}
-
 TEST(Scene, ANewPoseIsAsGoodAsANewSceneAndAScatteredOrderChangesNothing) {
   Dice dice(12);
   Scene moved = RandomScene(dice, 9);

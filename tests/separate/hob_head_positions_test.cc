@@ -96,18 +96,6 @@ TEST(SeparateHeads, GivesTheSumWhereThreeEquidistantPositionsSeeAlike) {
   }
 }
 
-TEST(SeparateHeads, AgreesWithThePublishedMethodInOrderOne) {
-  HobMachine machine = RichMachine();
-  machine.noise_arcsec = 0.5;
-  const auto positions = MeasurePositions(Samples(machine, Heads({10.0, 185.0})), OrdersUpTo(60));
-  const SeparatedOrder one = SeparateHeads(positions).At(1);
-  const Complex a = std::polar(1.0, -10.0 * units::deg), b = std::polar(1.0, -185.0 * units::deg);
-  const Complex psi = (positions[0].series.At(1).value - positions[1].series.At(1).value) / (a - b);  // equation 14
-  EXPECT_LT(DistanceArcsec(one.encoder.value, psi), 1e-9);                                            // rounding
-  EXPECT_NEAR(one.noise_factor, NoiseFactor(1, Radians({10.0, 185.0})), 1e-12);
-  EXPECT_EQ(one.dof, 0);  // two positions leave nothing to test
-}
-
 TEST(SeparateHeads, IsNearlyBlindAtOrderTwoOf177Degrees) {
   HobMachine machine{.transmission = {{2, 1.0, 0.3}}, .encoder = {{2, 0.5, 1.0}}};
   for (const double noise_arcsec : {0.3, 10.0}) {  // u of a position 0.006 and 0.19 arcsec; times 13.5

@@ -3,7 +3,6 @@
 #include "tests/separate/shift_formulas.h"
 #include "tests/separate/turntable_run.h"
 #include "tests/support/kept_text.h"
-#include "tests/support/over_seeds.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::separate::turntable {
@@ -143,30 +142,6 @@ TEST(SeparateIndexing, AveragesOverTeethBetweenTheSteps) {
   EXPECT_NEAR(found.turntable.U_rad(0) / arcsec, 0.3 / std::sqrt(3.0) * std::sqrt(71.0 / 72), 1e-9);
 }
 
-/// chi2 of a series against its covariance without the mean, which is zero in both.
-double ChiSquared(const AngleSeries& series, const Eigen::VectorXd& truth_rad) {
-  const auto n = truth_rad.size();
-  const Eigen::MatrixXd whole =
-      series.cov_rad2.ToDense() + Eigen::MatrixXd::Constant(n, n, series.cov_rad2.diagonal().sum() / static_cast<double>(n * n));
-  const Eigen::VectorXd error = series.value_rad - truth_rad;
-  return error.dot(whole.ldlt().solve(error));
-}
-
-TEST(SeparateIndexing, StatesUncertaintiesThatMatchItsScatter) {
-  const Eigen::Array3d mean = test::MeanOverSeeds(60, [](std::uint64_t seed) {
-    const auto [bench, stops] = ReadPublished(seed, 0.5 * arcsec, Seats(72, kFourOf72));
-    const auto found = SeparateIndexing(stops, NoiseOf(0.5 * arcsec));
-    EXPECT_NEAR(found.dof, 141.0, 1e-9);
-    return Eigen::Array3d(ChiSquared(found.turntable, TrueTurntable(bench, 72)),
-                          ChiSquared(found.multitooth, TrueTeeth(bench, found.multitooth)), found.chi2);
-  });
-  // 71 degrees of freedom a run: standard deviation of the mean sqrt(2 * 71 / 60) = 1.5.
-  EXPECT_NEAR(mean[0], 71.0, 5.0) << "turntable";
-  EXPECT_NEAR(mean[1], 71.0, 5.0) << "multi-tooth table";
-  // 4 * 72 readings less 71 + 71 values, 4 constants and the roll: 141; sqrt(2 * 141 / 60) = 2.2.
-  EXPECT_NEAR(mean[2], 141.0, 7.0);
-}
-
 TEST(SeparateIndexing, TakesTheNoiseFromRepeatsAndFromTheResidualsIfNothingWasReadTwice) {
   const auto found = SeparateIndexing(ReadPublished(8, 0.4 * arcsec).stops);
   EXPECT_EQ(found.noise.dof, 70);  // 144 readings, 71 + 2 constants + the roll
@@ -182,6 +157,8 @@ TEST(SeparateIndexing, ScalesANoiseThatIsStatedTooSmall) {
     return SeparateIndexing(ReadPublished(9, 0.4 * arcsec, Seats(72, kFourOf72)).stops, NoiseOf(u_rad));
   };
   const auto found = found_with(0.2 * arcsec);
+  // 4 * 72 readings less 71 + 71 values, 4 constants and the roll.
+  EXPECT_NEAR(found.dof, 141.0, 1e-9);
   EXPECT_NEAR(found.scale, 2.0, 4 * 2.0 / std::sqrt(2 * 141));
   EXPECT_THAT(found.notes, ElementsAre(HasSubstr("scaled")));
   const auto right = found_with(0.2 * found.scale * arcsec);
