@@ -1,6 +1,5 @@
 #include "hw_bridge/serve/scpi_text.h"
 #include "tests/core/input_error.h"
-#include "tests/hw_serve/conversations.h"
 #include "tests/hw_serve/serving.h"
 
 namespace twinbench::test {

@@ -1,6 +1,6 @@
 #include "tests/core/input_error.h"
 #include "tests/hw_control/fake_controller.h"
-#include "tests/hw_serve/conversations.h"
+#include "tests/hw_serve/serving.h"
 
 /// Programs that nobody here wrote, as they are installed. Those that are not are skipped.
 namespace twinbench::test {

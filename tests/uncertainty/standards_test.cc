@@ -5,7 +5,7 @@
 #include "twin/uncertainty/standards.h"
 
 // The published estimators of the other benches: an uncertainty that holds, or none (rotary_4dof:
-// tests/scenarios/published_test.cc; equation 5 and two head positions: tests/separate).
+// tests/scenarios/uncertainties_test.cc; equation 5 and two head positions: tests/separate).
 namespace twinbench::uncertainty {
 namespace {
 
