@@ -1,8 +1,6 @@
 #include "twin/separate/compensation.h"
 
-#include "tests/separate/index_spectrum.h"
 #include "tests/support/angle_benches.h"
-#include "tests/support/night.h"
 
 // A compensation that the twins are commanded by, and what another measurement then shows.
 namespace twinbench {
@@ -18,10 +16,6 @@ IndexErrors Measured(const Scenario& scenario) {
 std::optional<CompensationTable>& TableOf(Scenario& scenario) {
   return scenario.bench == kHobBench ? HobOf(scenario).transmission.compensation
                                      : TurntableOf(scenario).turntable.compensation;
-}
-std::vector<HarmonicSettings>& HarmonicsOf(Scenario& scenario) {
-  return scenario.bench == kHobBench ? HobOf(scenario).transmission.harmonics
-                                     : TurntableOf(scenario).turntable.harmonics;
 }
 
 /// The same bench measured again with the table at work, of the hobbing machine in its gearbox; noise and teeth are
@@ -40,28 +34,6 @@ Mended MendedOf(const Scenario& scenario) {
   const IndexErrors first = Measured(scenario);
   const Compensation compensation = Compensate(first);
   return {compensation, CheckCompensation(first, compensation, Measured(Again(scenario, compensation)))};
-}
-
-std::vector<HarmonicSettings> Drawn(std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::vector<HarmonicSettings> harmonics;
-  for (const test::Wave& wave : separate::DrawSpectrum(random, 5))
-    harmonics.push_back({Component::kEz, static_cast<double>(wave.order), wave.amplitude_arcsec * units::arcsec, wave.phase_rad});
-  return harmonics;
-}
-
-void ExpectLeftWithWhatWasPredicted(Scenario scenario, int seeds) {
-  for (int seed = 1; seed <= seeds; ++seed) {
-    scenario.seed = static_cast<std::uint64_t>(seed);
-    HarmonicsOf(scenario) = Drawn(scenario.seed);
-    const auto [compensation, check] = MendedOf(scenario);
-    EXPECT_NEAR(check.Ratio(), 1.0, 0.2) << seed;
-    EXPECT_TRUE(check.IsBetter()) << seed;
-    if (scenario.bench == kHobBench) continue;
-    // Whole degrees tell orders below 160 apart.
-    const auto is_high = [](const HarmonicSettings& h) { return h.order >= 160.0; };
-    EXPECT_TRUE(compensation.IsAliased() || std::ranges::none_of(HarmonicsOf(scenario), is_high)) << seed;
-  }
 }
 
 Scenario Spectrum(const std::vector<std::string>& overrides = {}) {
@@ -88,10 +60,6 @@ TEST(TurntableSpectrum, RefusesMoreFromThePositionsAlone) {
   EXPECT_NEAR(RootMeanSquare(AboutGroups(after, after.value_rad)) / arcsec, 1.15, 0.1);
 }
 
-TEST(TurntableSpectrum, IsLeftWithWhatWasPredictedOverManySeeds) {
-  ExpectLeftWithWhatWasPredicted(Spectrum(), test::ByNight(60, 10));
-}
-
 // --- hobbing machine ---
 
 Scenario DriveOrders(const std::vector<std::string>& overrides = {}) {
@@ -114,22 +82,6 @@ TEST(HobDriveOrders, RefusesMoreFromFewSamples) {
   const Compensation compensation = Compensate(Measured(scenario));
   EXPECT_THAT(compensation.Orders(LineFate::kCompensated), ElementsAre(1, 2, 3));
   EXPECT_TRUE(compensation.IsAliased());
-}
-
-TEST(HobDriveOrders, AreLeftWithWhatWasPredictedOverManySeeds) {
-  ExpectLeftWithWhatWasPredicted(DriveOrders(), test::ByNight(8, 1));
-}
-
-TEST(CommandedCompensation, TakesTheIndexErrorOutOfTheRotaryTarget) {
-  Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"), {"adc.every_sample=false"});
-  const IndexErrors first = Measured(scenario);
-  const Compensation compensation = Compensate(first);
-  EXPECT_EQ(first.table, "target");
-  RotaryOf(scenario).target.compensation = compensation.table;
-  const IndexErrors again = Measured(scenario);
-  const CompensationCheck check = CheckCompensation(first, compensation, again);
-  EXPECT_LT(check.remeasured_rms_rad, 0.5 * check.before_rms_rad);
-  EXPECT_NEAR(check.Ratio(), 1.0, 0.2);
 }
 
 }  // namespace

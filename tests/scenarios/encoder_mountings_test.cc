@@ -60,16 +60,6 @@ TEST(EncoderMountings, TellThemInContinuousMotionOverManyTurnsAtTwoSpeeds) {
   EXPECT_GT(run.found.left_out, 0) << "readings at rest behind each pass";
 }
 
-TEST(EncoderMountings, OneOfThemShowsOnlyTheDifference) {
-  const Compared run = Compare({"encoder_procedure.mounting_deg=[0.0]"});
-  const auto& first = run.found.curves.device.At(1).value;
-  // Encoder - ring, both as they stand at 0 deg.
-  const auto difference = std::polar(1800.0, 40.0 * units::deg) - std::polar(72.0, 75.0 * units::deg);
-  // Noise 0.45 arcsec; the ring's error moves the encoder's curve by up to 72 arcsec x 0.02.
-  EXPECT_NEAR(std::abs(first / arcsec - difference), 0.0, 2.0);
-  EXPECT_TRUE(run.found.curves.reference.orders.empty());
-}
-
 /// What the mountings see alike of both is the device's, and is scored so.
 TEST(EncoderMountings, AreScoredByTheDifferenceThatTheySee) {
   for (const char* mounting : {"encoder_procedure.mounting_deg=[35]", "encoder_procedure.mounting_deg=[20, 20]",
@@ -162,14 +152,6 @@ TEST(EncoderHeads, HoldTheWholeCurveOverRingsOnlyWithTheAssumptionAboutLostOrder
   EXPECT_NEAR(lost2 / assumed2, 1.0, 0.6);
 }
 
-TEST(EncoderHeads, GiveTheSameByThePublishedEquationsLessCertainly) {
-  const EncoderScenarioRun rigorous = HeadsRun({}), published = HeadsRun({}, Estimator::kPublished);
-  const double ratio = Figure(published.Results(), "/lost/curve_rms_u_arcsec") /
-                       Figure(rigorous.Results(), "/lost/curve_rms_u_arcsec");
-  EXPECT_NEAR(ratio, std::sqrt(3.0), 0.1);
-  EXPECT_NEAR(Figure(published.Score(), "/device/ez/mean_chi2"), 1.0, 0.45);
-}
-
 // The answer that scenarios/encoder_coast.toml promises.
 
 EncoderScenarioRun Coasted(const std::vector<std::string>& overrides, Estimator estimator = Estimator::kRigorous) {
@@ -198,30 +180,9 @@ TEST(EncoderCoast, StatesTheUncertaintyOfThePaperAndHoldsIt) {
   EXPECT_NEAR(AmplitudeOf(results, "friction", 3), 0.1, 1e-3);
 }
 
-TEST(EncoderCoast, HoldsItOverSeeds) {
-  constexpr int kSeeds = 4;
-  double chi2 = 0.0;
-  for (int seed = 1; seed <= kSeeds; ++seed)
-    chi2 += Chi2(Coasted({"seed=" + std::to_string(seed), "encoder_procedure.turns=5"})) / kSeeds;
-  EXPECT_NEAR(chi2, 1.0, kChi2 / 2.0);
-}
-
 /// By the angles of its lines the curve was 13 arcsec wrong, with u = 0.003.
 TEST(EncoderCoast, HasTheErrorsOfALargeRingWhereItsLinesAre) {
   EXPECT_LT(Chi2(Coasted({"device.graduation_arcsec=360", "encoder_procedure.turns=5"})), 8.0);
-}
-
-TEST(EncoderCoast, AtOneSpeedMistakesTheTorqueForTheRingAndSaysSo) {
-  const EncoderScenarioRun run = Coasted({"encoder_procedure.speeds_deg_s=[1800]", "encoder_procedure.turns=6"});
-  EXPECT_FALSE(run.Results().at("not_separable").empty());
-  EXPECT_GT(Figure(run.Score(), "/device/ez/rms_error_arcsec"), 0.03) << "0.05 / sqrt(2)";
-}
-
-TEST(EncoderCoast, IsLessCertainByThePublishedEquations) {
-  const EncoderScenarioRun run = Coasted({"encoder_procedure.turns=6"}, Estimator::kPublished);
-  const double chi2 = Chi2(run);
-  EXPECT_LT(chi2, 1.3) << "turns share the times that close them; counted as independent";
-  EXPECT_GT(chi2, 0.3);
 }
 
 TEST(EncoderCoast, RefusesASpindleThatWouldStandStill) {

@@ -144,37 +144,12 @@ TEST_F(BadInput, InAnOptionIsNamedAndOfACommandAllCommands) {
   ExpectRefused({}, "run, ");
 }
 
-/// Mistakes in what follows a run.
-class BadReadings : public BadInput {
- protected:
-  BadReadings() {
-    BeginWith("bad readings", [this] { MakeRun("run"); });
-    readings_ = ReadingsOf("run");
-    Write("readings.csv", readings_);
-  }
-  /// By whatever command reads them.
-  void ExpectReadingsRefused(const std::string& place, const std::string& text) {
-    Write("bad.csv", text);
-    ExpectRefused({"import", "bad.csv", "--scenario", "small.toml", "-o", "out"}, place);
-    ExpectRefused({"separate", "bad.csv", "--scenario", "small.toml", "--json", "out.json"}, place);
-  }
-  std::string readings_;
-};
-
-TEST_F(BadReadings, WithoutAColumnOrCutOffOrWithAFieldThatIsNoNumberNameTheLine) {
-  std::string without_column = readings_, without_number = readings_;
-  without_column.replace(without_column.find("psd_b_x_V"), 9, "psd_c_x_V");
-  without_number.insert(without_number.find('\n') + 1, "x");
-  std::size_t line_80 = 0;
-  for (int line = 1; line < 80; ++line) line_80 = readings_.find('\n', line_80) + 1;
-  ExpectReadingsRefused("bad.csv:1: required columns are missing: psd_b_x_V", without_column);
-  ExpectReadingsRefused("bad.csv:80: ", readings_.substr(0, line_80 + 40));
-  ExpectReadingsRefused("bad.csv", "");
-  ExpectReadingsRefused("bad.csv:2: ", without_number);
-}
+using BadReadings = SmallProgram;
 
 TEST_F(BadReadings, WithoutAFullCircleOrAScenarioCannotBeSeparated) {
-  std::istringstream lines(readings_);
+  MakeRun("run");
+  Write("readings.csv", ReadingsOf("run"));
+  std::istringstream lines(Read("readings.csv"));
   std::string calibration;
   for (std::string line; std::getline(lines, line);)
     calibration += line.find("full_circle") == std::string::npos ? line + "\n" : "";
