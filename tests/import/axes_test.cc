@@ -49,8 +49,7 @@ std::string BelowEachOther() {
 TEST_F(Importing, TakesOneOfSeveralAxesAndSaysWhichThereAre) {
   for (const std::string& text : {SideBySide(), BelowEachOther()}) {
     for (int axis = 1; axis <= 3; ++axis) {
-      const Imported imported = Take(text, fmt::format("[course]\naxis_number = {}\n", axis));
-      EXPECT_EQ(imported.readings.size(), 900u);
+      const Imported imported = TakeReadings(900, text, fmt::format("[course]\naxis_number = {}\n", axis));
       EXPECT_NEAR(ScaleOf(imported), 0.01 * axis, 1e-4) << axis;
       EXPECT_THAT(imported.story, Says("3 axes are in the file", "--axis-number"));
     }
@@ -90,8 +89,7 @@ std::string Profiles(const char* reference) {
 }
 
 TEST_F(Importing, TakesACommandThatMovesAlongProfilesAsMotion) {
-  const Imported driven = Take(Profiles("target"));
-  EXPECT_EQ(driven.readings.size(), 12u * 220u);
+  const Imported driven = TakeReadings(12 * 220, Profiles("target"));
   EXPECT_THAT(driven.story, HasSubstr("moves along profiles"));
   EXPECT_LT(Take(Profiles("target"), "[course]\nkind = \"stops\"\n").readings.size(), 100u);
   EXPECT_LT(Take(Profiles("interferometer")).readings.size(), 30u) << "stops against a reference of its own";

@@ -68,8 +68,7 @@ TEST_F(BallBar, IsGuessedByAnAngleAndADeviationInALength) {
 TEST_F(BallBar, NumbersItsPlacesByTheirAngles) {
   std::string text = "angle [deg];CCW [um];CW [um]\n";
   for (int k = 0; k < 360; k += 5) text += fmt::format("{};{:.4f};{:.4f}\n", k, Deviation_um(k, 1), Deviation_um(k, -1));
-  const Imported taken = Take(text);
-  ASSERT_EQ(taken.readings.size(), 144u);
+  const Imported taken = TakeReadings(144, text);
   EXPECT_EQ(taken.readings[10].position, taken.readings[133].position) << "50 deg, and back at 50 deg";
 }
 
@@ -117,8 +116,7 @@ TEST_F(BallBar, MayHaveArcsAtSeveralFeeds) {
   std::string text = "Radius: 100 mm\nfeed [mm/min],direction,angle [deg],deviation [um]\n";
   for (const int feed : {500, 2000})
     text += Circles([&](double a, int d) { return fmt::format("{},{},{},{:.4f}\n", feed, d, a, Deviation_um(a, d)); }, [](int) { return ""; }, 220);
-  const Imported taken = Take(text);
-  ASSERT_EQ(taken.readings.size(), 4U * 44U);
+  const Imported taken = TakeReadings(4 * 44, text);
   EXPECT_EQ(taken.readings.back().pass, 3);
   EXPECT_THAT(taken.set, testing::Contains("circular_procedure.feeds_mm_min=[500, 2000]"));
 }
@@ -310,8 +308,7 @@ TEST_F(BarExport, MayHaveAFeedForEachRun) {
     for (const bool ccw : {true, false})
       text += fmt::format("feed: {}\n{}\n", feed, ccw ? "ccw" : "cw") +
               (ccw ? BarValues(0.0, 359.0, 360) : BarValues(359.0, 0.0, 360));
-  const Imported taken = Take(text);
-  ASSERT_EQ(taken.readings.size(), 4U * 360U) << taken.story;
+  const Imported taken = TakeReadings(4 * 360, text);
   EXPECT_EQ(taken.readings.back().pass, 3);
   EXPECT_THAT(taken.set, testing::Contains("circular_procedure.feeds_mm_min=[500, 2000]"));
 }
@@ -319,8 +316,7 @@ TEST_F(BarExport, MayHaveAFeedForEachRun) {
 TEST_F(BarExport, LeavesTablesAlone) {
   std::string text = "Radius: 150\nFeed: 1000\nDirection: CCW\nangle [deg],deviation [um]\n";
   for (int k = 0; k < 72; ++k) text += fmt::format("{},{}\n", 5 * k, k % 7);
-  const Imported taken = Take(text);
-  ASSERT_EQ(taken.readings.size(), 72U) << taken.story;
+  const Imported taken = TakeReadings(72, text);
   EXPECT_THAT(taken.story, Not(HasSubstr("tags and runs")));
 }
 

@@ -86,8 +86,7 @@ TEST_F(Importing, PutsPartsWithAClockEachOneBehindTheOther) {
   for (int part = 0; part < 3; ++part) {
     for (int i = 0; i < 100; ++i) text += fmt::format("{},{:.2f},{:.2f},{:.2f}\n", part, 0.02 * i, 3.6 * i, 3.6 * i - 0.01);
   }
-  const Imported taken = Take(text);
-  EXPECT_EQ(taken.readings.size(), 300u) << taken.story;
+  const Imported taken = TakeReadings(300, text);
   EXPECT_NEAR(ToSeconds(taken.readings.back().time - taken.readings.front().time), 3.0 * 99.0 * 0.02 + 2.0, 1e-6) << "with a second between them";
   EXPECT_THAT(taken.story, HasSubstr("begins anew: 3 parts"));
 }

@@ -179,8 +179,7 @@ TEST_F(Importing, AsksForTheReferenceOfASingleColumn) {
 TEST_F(Importing, GuessesAPositioningTestByItsColumnsUpAndDown) {
   std::string text = "# stage 4\nangle [deg],forward [deg],backward [deg]\n";
   for (int i = 0; i < 12; ++i) text += fmt::format("{},{},{}\n", 30 * i, 30 * i + 0.1, 30 * i - 0.1);
-  const Imported imported = Take(text);
-  ASSERT_EQ(imported.readings.size(), 24u);
+  const Imported imported = TakeReadings(24, text);
   EXPECT_EQ(imported.readings[12].direction, -1);
   EXPECT_THAT(imported.story, HasSubstr("a positioning test"));
   EXPECT_EQ(Take(text, "", {"reference_deg=angle", "measured_deg=forward"}).readings.size(), 12u) << "who names columns means them";
@@ -192,8 +191,7 @@ TEST_F(Importing, TakesNumberedRunsForPassesInTheOrderOfTheRows) {
     std::string text = std::string(names) + "\n";
     const bool counted = text.starts_with("no.");
     for (int i = 0; i < 36; ++i) text += fmt::format("{}{};{:.3f};{:.3f};{:.3f}\n", counted ? fmt::format("{};", i) : "", 10 * i, 10 * i + 0.1, 10 * i + 0.2, 10 * i + 0.3);
-    const Imported imported = Take(text);
-    ASSERT_EQ(imported.readings.size(), 108u) << imported.story;
+    const Imported imported = TakeReadings(108, text);
     for (std::size_t k = 0; k < 108; ++k) {
       const Reading& r = imported.readings[k];
       EXPECT_EQ(r.pass, static_cast<int>(k / 36));
@@ -214,8 +212,7 @@ TEST_F(Importing, ReadsAPositioningTestOfIndexedLines) {
     for (int i = 1; i <= 5; ++i) text += fmt::format("REF_DATA_FWD[{},{}]={:.3f}\n", i, run, 10 * i + 0.01 * run);
     for (int i = 5; i >= 1; --i) text += fmt::format("REF_DATA_BWD[{},{}]={:.3f}\n", i, run, 10 * i - 0.01 * run);
   }
-  const Imported imported = Take(text);
-  ASSERT_EQ(imported.readings.size(), 30u) << imported.story;
+  const Imported imported = TakeReadings(30, text);
   const Reading& r = imported.readings.at(7);  // the third on the first way back
   EXPECT_EQ(r.direction, -1);
   EXPECT_NEAR(r.reference_rad / units::deg, 30.0, 1e-9) << "a degree a millimetre";

@@ -35,8 +35,7 @@ TEST_F(Importing, SkipsCommentsUnitRowsAndRemarksBetweenRows) {
     text += fmt::format("{};{};{}\n", 0.1 * i, i, i * units::deg / units::mrad);
     if (i == 40) text += "# somebody walked by\nlink lost\n";
   }
-  const Imported imported = Take(text);
-  EXPECT_EQ(imported.readings.size(), 100u);
+  const Imported imported = TakeReadings(100, text);
   EXPECT_LT(Worst_deg(imported.readings), 1e-9) << "mrad were turned into deg";
   EXPECT_THAT(imported.story, HasSubstr("1 lines of text"));
 }
@@ -44,8 +43,7 @@ TEST_F(Importing, SkipsCommentsUnitRowsAndRemarksBetweenRows) {
 TEST_F(Importing, TakesTheTwoColumnsOfAFileWithoutNamesInTheirOrderAndSaysSo) {
   std::string text;
   for (int i = 0; i < 60; ++i) text += fmt::format("{} {}\n", 6 * i, 6 * i + 0.01);
-  const Imported imported = Take(text);
-  EXPECT_EQ(imported.readings.size(), 60u);
+  const Imported imported = TakeReadings(60, text);
   EXPECT_KEPT(imported.story);
 }
 
@@ -130,8 +128,7 @@ TEST_F(Importing, PutsGuidePulsesBackIntoWhatTheMountDid) {
 
 TEST_F(Importing, TakesAFirmwaresTableOverItsComments) {
   const auto error = [](double angle_deg, int) { return 0.45 * test::Cosine(1.0, angle_deg, 30.0); };
-  const Imported imported = Take(test::FirmwareTable(error, 720), "lookup_table");
-  EXPECT_EQ(imported.readings.size(), 720u);
+  const Imported imported = TakeReadings(720, test::FirmwareTable(error, 720), "lookup_table");
   EXPECT_NEAR(Worst_deg(imported.readings), 0.45, 0.01);
   EXPECT_THAT(imported.story, HasSubstr("unwrapped"));
 }
@@ -162,8 +159,7 @@ TEST_F(Importing, OfAPositioningReportTakesTheRunsInTheOrderOfTheTest) {
 TEST_F(Importing, TakesRunsSideBySideInMicrometresWithDecimalCommas) {
   std::string text = "Target [mm];1 up [um];1 down [um];2 up [um];2 down [um]\n";
   for (int i = 0; i < 6; ++i) text += fmt::format("{},5;1,0;-11,0;2,0;-10,0\n", 40 * i);
-  const Imported imported = Take(text, "iso230");
-  ASSERT_EQ(imported.readings.size(), 24u);
+  const Imported imported = TakeReadings(24, text, "iso230");
   EXPECT_NEAR((imported.readings[6].measured_rad - imported.readings[6].reference_rad) / units::deg, -0.011, 1e-12);
   EXPECT_EQ(imported.readings[6].direction, -1);
 }

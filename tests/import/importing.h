@@ -23,6 +23,13 @@ class Importing : public ::testing::Test {
                 const std::vector<std::string>& columns = {}) {
     return TakeFiles({File("raw.txt", text)}, map, columns);
   }
+  /// @param count  So many readings are to come of it.
+  Imported TakeReadings(std::size_t count, const std::string& text, const std::string& map = "",
+                        const std::vector<std::string>& columns = {}) {
+    Imported taken = Take(text, map, columns);
+    if (taken.readings.size() != count) throw std::runtime_error(std::to_string(taken.readings.size()) + " readings of\n" + taken.story);
+    return taken;
+  }
   Imported TakeFiles(const std::vector<std::string>& files, const std::string& map = "",
                      const std::vector<std::string>& columns = {}) {
     return Import(files, MapWith(map, columns));

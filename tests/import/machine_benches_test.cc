@@ -89,8 +89,7 @@ TEST_F(TargetsOfALaser, AreAPositioningTest) {
   text += "\nFlags: 1 1 1\n\nUSER-TEXT:: \nAxis:C\nUnits: arcseconds\n\nRUNS:: \nRun-count: 2\n\nDEVIATIONS:: \nRun Target Data: \n";
   for (const int run : {1, 2})
     for (int k = 0; k < 13; ++k) text += fmt::format("{:4d}{:5d}{:12.4f}\n", run, run == 1 ? k + 1 : 13 - k, 0.5 * (run == 1 ? k : 12 - k) + run);
-  const Imported taken = Take(text + "\nENVIRONMENT:: \nAir temp : 20.1\nEOF:: \n");
-  ASSERT_EQ(taken.readings.size(), 26U) << taken.story;
+  const Imported taken = TakeReadings(26, text + "\nENVIRONMENT:: \nAir temp : 20.1\nEOF:: \n");
   for (const Reading& r : taken.readings) {
     const double run = r.direction > 0 ? 1.0 : 2.0;
     EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::arcsec, 0.5 * r.reference_rad / units::deg / 30.0 + run, 1e-3);
@@ -102,8 +101,7 @@ class ShaftsOfAGear : public Importing {};
 TEST_F(ShaftsOfAGear, MayBeOneAndItsTransmissionError) {
   std::string text = "Gear rotation [deg];TE [µrad];\n";
   for (int k = 0; k < 720; ++k) text += fmt::format("{};{:.2f};\n", 0.5 * k, 60.0 * std::sin(k * 0.5 * units::deg));
-  const Imported taken = Take(text);
-  ASSERT_EQ(taken.readings.size(), 720U) << taken.story;
+  const Imported taken = TakeReadings(720, text);
   EXPECT_NEAR(taken.readings[180].measured_rad - taken.readings[180].reference_rad, 60e-6, 1e-8);
 }
 
@@ -123,9 +121,8 @@ TEST_F(ProbesOfASpindle, AreAtTheAngleThatIndexPulsesCount) {
   std::string text = "Time(s),X(um),Y(um),Index\n";
   for (int k = 0; k < 500; ++k)
     text += fmt::format("{:.4f},{:.4f},{:.4f},{}\n", 0.001 * k, 5.0 * std::cos(k * units::turn / 100.0), 5.0 * std::sin(k * units::turn / 100.0), k % 100 == 7 ? 1 : 0);
-  const Imported taken = Take(text);
+  const Imported taken = TakeReadings(500, text);
   EXPECT_EQ(taken.bench, "rotary_4dof") << taken.story;
-  ASSERT_EQ(taken.readings.size(), 500U);
   EXPECT_NEAR(taken.readings[132].target_rad / units::deg, 90.0, 1e-6);
   EXPECT_THAT(taken.story, HasSubstr("counted from the pulse of each turn"));
 }
@@ -134,8 +131,7 @@ TEST_F(ProbesOfASpindle, AreReversedInARunThatIsSaidToBe) {
   std::string text = "run,angle_deg,displacement_um,std_um\n";
   for (const int run : {1, 2})
     for (int k = 0; k < 36; ++k) text += fmt::format("{},{},{:.4f},0.01\n", run, 10 * k, std::cos(20.0 * k * units::deg) + (run == 1 ? 0.5 : -0.5) * std::sin(30.0 * k * units::deg));
-  const Imported taken = Take(text, "", {"reversed=run - 1"});
-  ASSERT_EQ(taken.readings.size(), 72U) << taken.story;
+  const Imported taken = TakeReadings(72, text, "", {"reversed=run - 1"});
   EXPECT_EQ(taken.readings.front().setup, 0);
   EXPECT_EQ(taken.readings.back().setup, 1) << "of one mounting, however many runs";
 }
@@ -153,8 +149,7 @@ class BallsInColumns : public Importing {
 };
 
 TEST_F(BallsInColumns, StandBelowEachOther) {
-  const Imported taken = Take(text_, "pose_table", {"x_mm=150", "z_mm=50 + 200 * (ball - 1)"});
-  ASSERT_EQ(taken.readings.size(), 48U) << taken.story;
+  const Imported taken = TakeReadings(48, text_, "pose_table", {"x_mm=150", "z_mm=50 + 200 * (ball - 1)"});
   EXPECT_NE(taken.readings.front().setup, taken.readings.back().setup);
   EXPECT_NEAR(Quantity{"z_mm"}(taken.readings.back()) / units::mm, 250.0, 1e-9);
   EXPECT_NEAR(Quantity{"dz_um"}(taken.readings.back()) / units::um, 0.2, 1e-9);
@@ -170,8 +165,7 @@ class TableOfFaces : public Importing {};
 TEST_F(TableOfFaces, HasEachWayRoundInItsOwnOrder) {
   std::string text = "Face,Table angle,Polygon deviation (\"),CW reading 1 (\"),CCW reading 1 (\")\n";
   for (int k = 0; k < 12; ++k) text += fmt::format("{},{}°00'00\",{:.2f},{:.2f},{:.2f}\n", k + 1, 30 * k, 0.1 * k, 0.1 * k + 1.0, 0.1 * k + 1.2);
-  const Imported taken = Take(text);
-  ASSERT_EQ(taken.readings.size(), 24U) << taken.story;
+  const Imported taken = TakeReadings(24, text);
   for (std::size_t i = 1; i < 24; ++i) {
     const Reading &r = taken.readings[i], &before = taken.readings[i - 1];
     const double way_rad = r.pass == before.pass ? r.target_rad - before.target_rad : r.direction;
@@ -182,9 +176,8 @@ TEST_F(TableOfFaces, HasEachWayRoundInItsOwnOrder) {
 TEST_F(TableOfFaces, OrASweepMayBeInAngularSeconds) {
   std::string text = "#;Angle Measuring Table (angular seconds);DAC X (angular seconds);Trend (angular seconds)\n";
   for (int k = 0; k < 20; ++k) text += fmt::format("{};{:.2f};{:.3f};{:.3f}\n", k + 1, 50.0 * k, 500.0 - 50.4 * k, 500.0 - 50.4 * k);
-  const Imported taken = Take(text);
+  const Imported taken = TakeReadings(20, text);
   EXPECT_THAT(taken.story, HasSubstr("taken as --map autocollimator_sweep"));
-  ASSERT_EQ(taken.readings.size(), 20U);
   EXPECT_NEAR(taken.readings[1].target_rad / units::arcsec, 50.0, 1e-9);
 }
 

@@ -140,8 +140,7 @@ TEST_F(Importing, TakesListsOfAProgramWhoseNamesAreSaid) {
     right += fmt::format("{} ", 5 * i + 0.25);
     left += fmt::format("{} ", 5 * i - 0.5);
   }
-  const Imported taken = Take(told + "];\n" + right + "];\n" + left + "];\n", "", {"measured_deg=angle_L"});
-  ASSERT_EQ(taken.readings.size(), 72u);
+  const Imported taken = TakeReadings(72, told + "];\n" + right + "];\n" + left + "];\n", "", {"measured_deg=angle_L"});
   EXPECT_NEAR((taken.readings.back().measured_rad - taken.readings.back().reference_rad) / units::deg, -0.5, 1e-9);
 }
 
@@ -167,8 +166,7 @@ TEST_F(Importing, ReadsALongLineOfNumbersAsTheListThatItIs) {
     list += fmt::format("{}{}", i > 0 ? ", " : "", (std::lround(36000.0 * i / kEntries + 31.0 * std::sin(units::turn * i / kEntries)) + 7100) % 36000);
   for (const std::string& text : {"const uint16_t lookup[] = {" + list + "};\n", list + "\n"}) {
     EXPECT_TRUE(BeginOfTable(File("lookup.cpp", text)).tracks.empty());
-    const Imported taken = Take(text);
-    EXPECT_EQ(taken.readings.size(), 1u * kEntries);
+    const Imported taken = TakeReadings(kEntries, text);
     EXPECT_NEAR(Worst_deg(taken.readings), 0.31, 0.006) << "half of 1/100 deg";
   }
 }

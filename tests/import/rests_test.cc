@@ -33,8 +33,7 @@ std::string StepTest(const Servo& servo) {
 }
 
 TEST_F(Importing, TakesTheEndsOfRestsWhereTheDeviceStands) {
-  const Imported imported = Take(StepTest({}));
-  ASSERT_EQ(imported.readings.size(), 20u);
+  const Imported imported = TakeReadings(20, StepTest({}));
   for (const Reading& r : imported.readings) {
     // Means of 20 rows of 0.01 deg and more: 0.0022 deg, four times.
     EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::deg, -0.04, 0.01);
@@ -46,8 +45,7 @@ TEST_F(Importing, TakesTheEndsOfRestsWhereTheDeviceStands) {
 }
 
 TEST_F(Importing, KeepsTwoThirdsOfTheRestsOfAFastServo) {
-  const Imported imported = Take(StepTest({.speed_deg_s = 2000.0}));
-  ASSERT_EQ(imported.readings.size(), 20u);
+  const Imported imported = TakeReadings(20, StepTest({.speed_deg_s = 2000.0}));
   EXPECT_GE(imported.readings[5].n_samples, 45) << "of 77 rows";
 }
 
@@ -73,8 +71,7 @@ TEST_F(Importing, TakesAServoThatHuntsAboutItsPlaceForOneThatArrived) {
     const double to_deg = i / 80 % 2 == 0 ? 20.0 : 120.0;
     text += fmt::format("{:.2f};{};{}\n", 0.05 * i, to_deg, to_deg == 120.0 && i * i % 7 < 4 ? to_deg - 13.0 : to_deg);
   }
-  const Imported imported = Take(text);
-  EXPECT_EQ(imported.readings.size(), 20u);
+  const Imported imported = TakeReadings(20, text);
   EXPECT_THAT(imported.story, Not(HasSubstr("still on its way")));
 }
 
@@ -111,8 +108,7 @@ TEST_F(Importing, TakesNeighbouringCountsForNoPush) {
 }
 
 TEST_F(Importing, SaysWhichRestsADeviceNeverReached) {
-  const Imported some = Take(StepTest({.last_rest_s = 0.5}));
-  EXPECT_EQ(some.readings.size(), 19u);
+  const Imported some = TakeReadings(19, StepTest({.last_rest_s = 0.5}));
   EXPECT_THAT(some.story, HasSubstr("rows of 1 rests of the command at whose end the device was still on its way"));
 }
 
@@ -306,8 +302,7 @@ TEST_F(Importing, TakesACommandThatEveryRowSendsElsewhereForAPlaceARow) {
     const double place = 0.1 * static_cast<double>(random() % 3600);
     text += fmt::format("{};{:.1f};{:.1f}\n", i, place, place + (i == 50 ? 20.0 : 0.0));
   }
-  const Imported imported = Take(text);
-  ASSERT_EQ(imported.readings.size(), 120u);
+  const Imported imported = TakeReadings(120, text);
   EXPECT_THAT(imported.story, HasSubstr("taken as stops"));
   EXPECT_NEAR(Worst_deg(imported.readings), 20.0 * 119 / 120, 1e-6);
 }

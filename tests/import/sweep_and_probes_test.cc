@@ -144,10 +144,9 @@ TEST_F(SpindleProbe, IsGuessedByItsProbes) {
   std::string text = "angle_deg,probe_x_um,probe_y_um,tilt_x_arcsec,tilt_y_arcsec\n";
   for (int k = 0; k < 144; ++k)
     text += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f}\n", 5 * k, 1.0 + 0.01 * k, 2.0, -0.5, 0.25 * k);
-  const Imported taken = Take(text);
+  const Imported taken = TakeReadings(144, text);
   ASSERT_EQ(taken.bench, "rotary_4dof") << taken.story;
   EXPECT_THAT(taken.story, HasSubstr("taken as --map spindle_probe"));
-  ASSERT_EQ(taken.readings.size(), 144U);
   EXPECT_NEAR(taken.readings[100].target_rad / units::deg, 140.0, 1e-9) << "an angle that goes on starts again at a turn";
   EXPECT_NEAR(In(taken.readings[100], "probe_1_um") / units::um, 2.0, 1e-9);
   EXPECT_NEAR(In(taken.readings[100], "probe_tilt_y_arcsec") / units::arcsec, 25.0, 1e-9);
