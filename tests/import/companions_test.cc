@@ -145,7 +145,7 @@ std::string Matrix(int columns, double off) {
 /// The mean of measured - reference [deg].
 double Mean_deg(const Imported& taken) {
   double sum = 0.0;
-  for (const Reading& r : taken.readings) sum += (r.measured_rad - r.reference_rad) / units::deg;
+  for (const Reading& r : taken.readings) sum += Error_deg(r);
   return sum / static_cast<double>(taken.readings.size());
 }
 

@@ -197,7 +197,7 @@ TEST_F(Importing, TakesNumberedRunsForPassesInTheOrderOfTheRows) {
       EXPECT_EQ(r.pass, static_cast<int>(k / 36));
       EXPECT_EQ(r.position, static_cast<int>(k % 36)) << "the same places in every pass";
       EXPECT_EQ(r.direction, 1);
-      EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::deg, 0.1 * static_cast<double>(k / 36 + 1), 1e-9);
+      EXPECT_NEAR(Error_deg(r), 0.1 * static_cast<double>(k / 36 + 1), 1e-9);
     }
     EXPECT_THAT(imported.story, HasSubstr("nothing says in which direction the 3 runs went")) << names;
   }

@@ -56,7 +56,7 @@ TEST_F(Importing, TakesAColumnCalledPositionForWhereTheDeviceSaysThatItStands) {
   }
   for (const Imported& imported : {Take(text), Take(text, "", {"measured_deg=Position"}), Take(numbered)}) {
     ASSERT_EQ(imported.readings.size(), 72u);
-    EXPECT_NEAR(imported.readings[30].measured_rad - imported.readings[30].reference_rad, 0.25 * units::deg, 1e-9);
+    EXPECT_NEAR(Error_deg(imported.readings[30]), 0.25, 1e-7);
     EXPECT_EQ(imported.readings[30].position, 30);
   }
 }
@@ -153,14 +153,14 @@ TEST_F(Importing, OfAPositioningReportTakesTheRunsInTheOrderOfTheTest) {
   EXPECT_EQ(back.direction, -1);
   EXPECT_EQ(back.position, 4);
   EXPECT_NEAR(back.reference_rad / units::deg, 200.2, 1e-9);
-  EXPECT_NEAR((back.measured_rad - back.reference_rad) / units::deg, 0.001 - 0.012, 1e-9);
+  EXPECT_NEAR(Error_deg(back), 0.001 - 0.012, 1e-9);
 }
 
 TEST_F(Importing, TakesRunsSideBySideInMicrometresWithDecimalCommas) {
   std::string text = "Target [mm];1 up [um];1 down [um];2 up [um];2 down [um]\n";
   for (int i = 0; i < 6; ++i) text += fmt::format("{},5;1,0;-11,0;2,0;-10,0\n", 40 * i);
   const Imported imported = TakeReadings(24, text, "iso230");
-  EXPECT_NEAR((imported.readings[6].measured_rad - imported.readings[6].reference_rad) / units::deg, -0.011, 1e-12);
+  EXPECT_NEAR(Error_deg(imported.readings[6]), -0.011, 1e-12);
   EXPECT_EQ(imported.readings[6].direction, -1);
 }
 
@@ -206,7 +206,7 @@ TEST_F(Importing, KeepsAWaveOfTheOrderThatItSays) {
   int count = 0;
   for (const Reading& r : imported.readings) {
     if (r.direction == 0) continue;
-    sum += (r.measured_rad - r.reference_rad) / units::deg * test::Cosine(40.0, r.reference_rad / units::deg, 0.0);
+    sum += Error_deg(r) * test::Cosine(40.0, r.reference_rad / units::deg, 0.0);
     ++count;
   }
   EXPECT_NEAR(2.0 * sum / count, 0.2, 0.002) << "one part in a hundred";

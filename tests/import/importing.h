@@ -62,6 +62,8 @@ inline diagnose::Diagnosis Diagnosed(const Imported& taken) {
   return diagnose::Diagnose(taken.readings, Made(taken), {}).diagnosis;
 }
 
+inline double Error_deg(const Reading& r) { return (r.measured_rad - r.reference_rad) / units::deg; }
+
 /// The largest measured - reference, whole turns and the mean aside.
 inline double Worst_deg(const std::vector<Reading>& readings) {
   double sum = 0.0, worst = 0.0;

@@ -141,7 +141,7 @@ TEST_F(Importing, TakesListsOfAProgramWhoseNamesAreSaid) {
     left += fmt::format("{} ", 5 * i - 0.5);
   }
   const Imported taken = TakeReadings(72, told + "];\n" + right + "];\n" + left + "];\n", "", {"measured_deg=angle_L"});
-  EXPECT_NEAR((taken.readings.back().measured_rad - taken.readings.back().reference_rad) / units::deg, -0.5, 1e-9);
+  EXPECT_NEAR(Error_deg(taken.readings.back()), -0.5, 1e-9);
 }
 
 TEST_F(Importing, TakesArraysOfAProgramSideBySide) {
@@ -301,8 +301,7 @@ TEST_F(Importing, AddsAColumnOfErrorsToTheAngleBesideIt) {
   std::string text = "angle [deg];error [arcsec]\n";
   for (int i = 0; i < 72; ++i) text += fmt::format("{};{}\n", 5 * i, 36 * (i % 3));
   const Imported imported = Take(text);
-  const Reading& r = imported.readings.at(5);
-  EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::arcsec, 72.0, 1e-6);
+  EXPECT_NEAR(Error_deg(imported.readings.at(5)), 0.02, 1e-9);
   EXPECT_THAT(imported.story, HasSubstr("less the reference"));
 }
 
@@ -316,12 +315,10 @@ std::string AngleAnd(const char* name, const char* before = "", const char* cell
 TEST_F(Importing, TakesOffsetsCorrectionsAndResidualsByTheirSense) {
   for (const char* name : {"offset", "error", "deviation", "residual", "Abweichung"}) {
     const Imported imported = Take(AngleAnd(name));
-    const Reading& r = imported.readings.at(18);
-    EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::deg, 0.5, 1e-6) << name << "\n" << imported.story;
+    EXPECT_NEAR(Error_deg(imported.readings.at(18)), 0.5, 1e-6) << name << "\n" << imported.story;
   }
   const Imported corrected = Take(AngleAnd("correction"));
-  const Reading& r = corrected.readings.at(18);
-  EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::deg, -0.5, 1e-6) << "a correction has the other sign";
+  EXPECT_NEAR(Error_deg(corrected.readings.at(18)), -0.5, 1e-6) << "a correction has the other sign";
   EXPECT_KEPT(Take(AngleAnd("offset")).story);
   EXPECT_KEPT(corrected.story);
 }
@@ -329,8 +326,7 @@ TEST_F(Importing, TakesOffsetsCorrectionsAndResidualsByTheirSense) {
 /// A time, a row's number and a direction are neither the angle nor the device.
 TEST_F(Importing, FindsAnAngleAndItsOffsetAmongOtherColumns) {
   for (const auto& [before, cell] : std::vector<std::pair<const char*, const char*>>{{"index,", "{},"}, {"time [s],", "{},"}, {"direction,", "1,"}}) {
-    const Reading r = Take(AngleAnd("offset", before, cell)).readings.at(18);
-    EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::deg, 0.5, 1e-6) << before;
+    EXPECT_NEAR(Error_deg(Take(AngleAnd("offset", before, cell)).readings.at(18)), 0.5, 1e-6) << before;
   }
   std::string text = "angle,error\n";
   for (int i = 0; i < 72; ++i) text += fmt::format("{},0.{}\n", i, i % 3);

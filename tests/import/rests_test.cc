@@ -36,7 +36,7 @@ TEST_F(Importing, TakesTheEndsOfRestsWhereTheDeviceStands) {
   const Imported imported = TakeReadings(20, StepTest({}));
   for (const Reading& r : imported.readings) {
     // Means of 20 rows of 0.01 deg and more: 0.0022 deg, four times.
-    EXPECT_NEAR((r.measured_rad - r.reference_rad) / units::deg, -0.04, 0.01);
+    EXPECT_NEAR(Error_deg(r), -0.04, 0.01);
     EXPECT_GE(r.n_samples, 15) << "it stands for the last 0.3 s of each rest";
   }
   EXPECT_GT(imported.readings[5].dwell_s, 0.65) << "it is on its way for 0.68 s";
@@ -277,10 +277,8 @@ TEST_F(Importing, GivesThePiecesOfARestTheSenseInWhichItWasReached) {
   const Imported imported = Take(Beside("time [s];goal [deg];position [deg]", 90, command, servo));
   EXPECT_THAT(imported.story, HasSubstr("taken as stops"));
   ASSERT_GT(imported.readings.size(), 12u);
-  for (const Reading& r : imported.readings) {
-    const double error_deg = (r.measured_rad - r.reference_rad) / units::deg;
-    EXPECT_EQ(r.direction, error_deg > 0.1 ? -1 : 1) << "10.2 was come to from above; where it began the next step counts";
-  }
+  for (const Reading& r : imported.readings)
+    EXPECT_EQ(r.direction, Error_deg(r) > 0.1 ? -1 : 1) << "10.2 was come to from above; where it began the next step counts";
 }
 
 /// A servo that goes on swinging through its place by a third of the way.
