@@ -162,7 +162,23 @@ TEST(Effects, MoveTheSpotsByTheirClosedForms) {
   const auto wait = [](int seconds) { return [=](RotaryBench b) { b.clock.Wait(std::chrono::seconds(seconds)); }; };
   const double apart_V = kV_m * SpotA_m(0.0, kSinTheta + 600e3 * 2e-9);
   const double drift = 20e-6 / 3600.0, raised_V = kV_m * 20e-6 * (0.2 + kL1_m);  // along the grooves it is kept
-  const double settling = 5.0 * units::arcsec;
+  using units::arcsec;
+  const double behind_V = kV_m * kYaw_m * arcsec;  // yaw is negative on x
+  const double crept_V = 3.0 * kV_m * kTilt_m * arcsec * std::log(2.0);
+  const auto go = [](RotaryBench b) { MoveBoth(b, 10.0 * units::deg); };
+  const auto go_and_come_back = [=](RotaryBench b) { go(b), MoveBoth(b, 0.0); };
+  const auto read = [](int times) {
+    return [=](RotaryBench b) {
+      for (int k = 0; k < times; ++k) b.adc.Acquire(1, false);
+    };
+  };
+  const auto turn = [](double yaw_rad) { return [=](RotaryBench b) { b.goniometer.MoveTo(yaw_rad, 0.0); }; };
+  const auto clamp_and_wait = [=](RotaryBench b) { b.fixture.Mount(0, 0.0, 0.0), wait(600)(b); };
+  const EffectSettings creep =
+      Effect("mount_creep", "tilt", {{"amplitude", 3.0 * arcsec}, {"time_constant", 600.0}});
+  const auto play = [](const char* table) { return Effect("backlash", table, {{"half_width", units::arcsec}}); };
+  const EffectSettings slip = Effect("slip", "lateral", {{"shift", 5e-6}, {"at_reading", 2.0}});
+  const EffectSettings step = Effect("adc_step", "psd_a_x", {{"step", 5e-3}, {"at_voltage", 0.0}});
   const Moved cases[] = {
       {"another wavelength moves the orders apart",
        Effect("wavelength_offset", "", {{"wavelength_error", 2e-9}}), nothing, {apart_V, kNaN, -apart_V, kNaN}},
@@ -175,9 +191,21 @@ TEST(Effects, MoveTheSpotsByTheirClosedForms) {
       {"a drift in pitch moves the spots up together",
        Effect("laser_drift", "pitch", {{"drift", drift}}), wait(3600), {kNaN, raised_V, kNaN, raised_V}, 1e-6},
       {"what settles decays with the dwell: the window of 0.4 s has passed when the move returns",
-       Effect("settling", "", {{"amplitude", settling}, {"time_constant", 1.0}}),
-       [](RotaryBench bench) { MoveBoth(bench, 10.0 * units::deg); },
-       {kV_m * kYaw_m * settling * std::exp(-0.4), kNaN, kNaN, kNaN}, 1e-5},
+       Effect("settling", "", {{"amplitude", 5.0 * arcsec}, {"time_constant", 1.0}}), go,
+       {5.0 * behind_V * std::exp(-0.4), kNaN, kNaN, kNaN}, 1e-5},
+      {"a mount creeps", creep, clamp_and_wait, {kNaN, crept_V, kNaN, kNaN}, 1e-7},
+      {"... and does so anew after every mounting", creep,
+       [=](RotaryBench b) { clamp_and_wait(b), clamp_and_wait(b); }, {kNaN, crept_V, kNaN, kNaN}, 1e-7},
+      {"backlash leaves the target behind", play("target"), go, {behind_V, kNaN, kNaN, kNaN}, 1e-6},
+      {"... on either side", play("target"), go_and_come_back, {-behind_V, kNaN, kNaN, kNaN}, 1e-6},
+      {"the reference goes the other way", play("reference"), go, {-behind_V, kNaN, kNaN, kNaN}, 1e-6},
+      {"... on either side", play("reference"), go_and_come_back, {behind_V, kNaN, kNaN, kNaN}, 1e-6},
+      // Towards the laser both orders meet their PSDs nearer to the normal: -sin theta per metre on A, + on B.
+      {"a slip is not there before its reading", slip, read(1), {0.0, 0.0, 0.0, 0.0}},
+      {"... comes at it", slip, read(2), {-kV_m * 5e-6 * kSinTheta, kNaN, kV_m * 5e-6 * kSinTheta, kNaN}},
+      {"... and stays", slip, read(3), {-kV_m * 5e-6 * kSinTheta, kNaN, kV_m * 5e-6 * kSinTheta, kNaN}},
+      {"the converter steps above its voltage", step, turn(-100.0 * arcsec), {5e-3, 0.0, 0.0, 0.0}},
+      {"... and not below", step, turn(100.0 * arcsec), {0.0, 0.0, 0.0, 0.0}},
       {"a tone is a sine in time", Effect("tone", "yaw", {{"frequency", 0.01}, {"amplitude", 0.5e-6}}), wait(25),
        {0.5e-6 * kV_m, 0.0, 0.5e-6 * kV_m, 0.0}}};
   for (const Moved& moved : cases) {
@@ -188,18 +216,6 @@ TEST(Effects, MoveTheSpotsByTheirClosedForms) {
       if (std::isnan(moved.expected_V[c])) continue;
       EXPECT_NEAR(d[c], moved.expected_V[c], moved.within_V) << moved.claim << ", channel " << c;
     }
-  }
-}
-
-TEST(Effects, AMountCreepsAfterEveryMounting) {
-  const double a = 3.0 * units::arcsec;
-  Pair pair(Effect("mount_creep", "tilt", {{"amplitude", a}, {"time_constant", 600.0}}));
-  for (int mounting = 0; mounting < 2; ++mounting) {
-    pair.Do([](RotaryBench bench) {
-      bench.fixture.Mount(0, 0.0, 0.0);
-      bench.clock.Wait(std::chrono::seconds(600));
-    });
-    EXPECT_NEAR(pair.Difference()[1], kV_m * kTilt_m * a * std::log(2.0), 1e-7);
   }
 }
 
@@ -224,21 +240,6 @@ TEST(Effects, AThermalTiltFollowsTheRoomWithItsLagAndTheAutocollimatorSeesItToo)
   }
 }
 
-TEST(Effects, BacklashLeavesTheRotorBehindOnEitherSide) {
-  const double half = 1.0 * units::arcsec;
-  for (const char* table : {"target", "reference"}) {
-    Pair pair(Effect("backlash", table, {{"half_width", half}}));
-    pair.Do([](RotaryBench bench) { MoveBoth(bench, 10.0 * units::deg); });
-    const double forward_V = pair.Difference()[0];
-    pair.Do([](RotaryBench bench) { MoveBoth(bench, 0.0); });
-    const double back_V = pair.Difference()[0];
-    // Behind means -half on the target going up; the reference goes the other way. Yaw is negative on x.
-    const double sign = table == std::string("target") ? 1.0 : -1.0;
-    EXPECT_NEAR(forward_V, sign * kV_m * kYaw_m * half, 1e-6) << table;
-    EXPECT_NEAR(back_V, -sign * kV_m * kYaw_m * half, 1e-6) << table;
-  }
-}
-
 TEST(Effects, ReclampFrameMakesAReseatRunReadLikeAReclampRun) {
   const Scenario scenario = Altered(Quiet(), {"procedure.phases=[\"full_circle\"]", "procedure.positions=12",
                                               "procedure.shifts=[0, 4]", "reference.random.ex_arcsec=5"});
@@ -255,29 +256,6 @@ TEST(Effects, ReclampFrameMakesAReseatRunReadLikeAReclampRun) {
     }
   }
   EXPECT_GT(differs_V, 1e-3);
-}
-
-TEST(Effects, ASlipComesAtItsReadingAndStays) {
-  Pair pair(Effect("slip", "lateral", {{"shift", 5e-6}, {"at_reading", 2.0}}));
-  EXPECT_NEAR(pair.Difference()[0], 0.0, 1e-12);
-  EXPECT_NEAR(pair.Difference()[0], 0.0, 1e-12);
-  for (int k = 0; k < 2; ++k) {
-    const Volts d = pair.Difference();
-    // Towards the laser both orders meet their PSDs nearer to the normal: -sin theta per metre on A, + on B.
-    EXPECT_NEAR(d[0], -kV_m * 5e-6 * kSinTheta, 1e-9);
-    EXPECT_NEAR(d[2], kV_m * 5e-6 * kSinTheta, 1e-9);
-  }
-}
-
-TEST(Effects, TheConverterStepsAtItsVoltage) {
-  Pair pair(Effect("adc_step", "psd_a_x", {{"step", 5e-3}, {"at_voltage", 0.0}}));
-  const auto turn_to = [](double yaw_rad) {
-    return [yaw_rad](RotaryBench bench) { bench.goniometer.MoveTo(yaw_rad, 0.0); };
-  };
-  pair.Do(turn_to(-100.0 * units::arcsec));
-  EXPECT_NEAR(pair.Difference()[0], 5e-3, 1e-9);
-  pair.Do(turn_to(100.0 * units::arcsec));
-  EXPECT_NEAR(pair.Difference()[0], 0.0, 1e-9);
 }
 
 TEST(Effects, CrosstalkBringsTheChannelBeforeInTheScanList) {
