@@ -53,13 +53,6 @@ TEST(TakeBlock, TurnsALevelIntoTheNearestCodeWithTiesToEven) {
     std::vector<std::int16_t> twice = codes;
     twice.insert(twice.end(), codes.begin(), codes.end());
     EXPECT_EQ(block.raw, twice);
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (block.saturated[k]) continue;
-      EXPECT_EQ(block.channel[k].mean_V, codes[k] * LsbOf(adc));
-      EXPECT_EQ(block.channel[k].std_V, 0.0);
-      EXPECT_EQ(block.channel[k].min_V, block.channel[k].mean_V);
-      EXPECT_EQ(block.channel[k].max_V, block.channel[k].mean_V);
-    }
   }
 }
 
@@ -136,29 +129,6 @@ TEST(TakeBlock, FlagsAChannelThatReachesAnEndCodeAlsoWithoutNoise) {
   EXPECT_EQ(quiet.status, ReadingStatus::kSaturated);
 }
 
-TEST(TakeBlock, GivesExactLevelsWithoutNoise) {
-  AdInput input = Levels(1.23456789, -2.3, 0.1, 3.3, 6e-3);
-  const AdBlock block = Take(input, {.n_samples = 777, .noise_free = true});
-  for (std::size_t k = 0; k < 4; ++k) {
-    EXPECT_EQ(block.channel[k].mean_V, input.channel[k].level_V);
-    EXPECT_EQ(block.channel[k].std_V, 0.0);
-  }
-  input.channel[2].crosstalk = 0.25;
-  EXPECT_EQ(Take(input, {.n_samples = 5, .noise_free = true}).channel[2].mean_V, 0.1 + 0.25 * -2.3);
-}
-
-TEST(TakeBlock, SamplesTheChannelsOneAfterTheOtherAndTheFirstReceivesFromTheScanBefore) {
-  AdInput rising = Levels(0.0, 0.0, 0.0, 0.0), stepping = rising;
-  for (ChannelInput& c : rising.channel) c.slope_V_s = 100.0;
-  const AdBlock block = Take(rising, {.n_samples = 101, .noise_free = true});
-  // Middle scan at 50 * 16 us, channel k 4 us later than channel k - 1.
-  for (std::size_t k = 0; k < 4; ++k)
-    EXPECT_NEAR(block.channel[k].mean_V, 100.0 * (50 * 16e-6 + static_cast<double>(k) * 4e-6), 1e-15);
-  stepping.channel[0].crosstalk = 0.5;
-  stepping.channel[3].extra_V = [](double t) { return t < 0.0 ? 1.0 : 0.0; };
-  EXPECT_DOUBLE_EQ(Take(stepping, {.n_samples = 10, .noise_free = true}).channel[0].mean_V, 0.5 / 10);
-}
-
 TEST(TakeBlock, AveragesTheHumAsTheClosedFormSays) {
   AdInput input = Rich(0.0);
   Stream random(1, "cases");
@@ -179,17 +149,18 @@ TEST(TakeBlock, AveragesTheHumAsTheClosedFormSays) {
   }
 }
 
-TEST(TakeBlock, StepsWhereTheVoltagePassesTheThreshold) {
+TEST(TakeBlock, StepsWhereTheVoltagePassesTheThresholdAndIsExactWithoutNoise) {
   AdInput input = Levels(0.5, 1.0, 1.5, -1.5);
   for (ChannelInput& c : input.channel) {
     c.step_V = 0.01;
     c.step_threshold_V = 1.0;
   }
   const AdBlock block = Take(input, {.n_samples = 3, .noise_free = true});
-  EXPECT_EQ(block.channel[0].mean_V, 0.5);
-  EXPECT_EQ(block.channel[1].mean_V, 1.01);
-  EXPECT_EQ(block.channel[2].mean_V, 1.51);
-  EXPECT_EQ(block.channel[3].mean_V, -1.5);
+  const double expected_V[] = {0.5, 1.01, 1.51, -1.5};
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(block.channel[k].mean_V, expected_V[k]);
+    EXPECT_EQ(block.channel[k].std_V, 0.0);
+  }
   const AdBlock coded = Take(input, {.n_samples = 3});
   EXPECT_EQ(coded.channel[0].mean_V, std::round(0.5 / kLsb_V) * kLsb_V);
   EXPECT_EQ(coded.channel[1].mean_V, std::round(1.01 / kLsb_V) * kLsb_V);
