@@ -217,23 +217,6 @@ TEST(HobRun, TakesOffTheStatedEccentricityOfTheRing) {
   EXPECT_LT(Left_rad(RunOf(ReadingsOf(chain), scenario)), 1e-3 * arcsec);
 }
 
-TEST(HobRun, TakesOffAnEmpiricalSignal) {
-  const HobChain chain = Quiet();
-  std::vector<Reading> readings = ReadingsOf(chain);
-  Scenario scenario = ScenarioOf(chain);
-  EmpiricalSettings signal;
-  signal.channel = "transmission";
-  for (Reading& r : readings) {
-    const double value_rad = 2.0 * arcsec * std::sin(0.01 * r.reading);
-    r.measured_rad += value_rad;
-    signal.reading.push_back(r.reading);
-    signal.value_rad.push_back(value_rad);
-  }
-  EXPECT_GT(Left_rad(RunOf(readings, scenario)), 0.5 * arcsec);
-  scenario.empiricals = {signal};
-  EXPECT_LT(Left_rad(RunOf(readings, scenario)), 1e-3 * arcsec);
-}
-
 TEST(HobRun, TakesSamplesTogetherAsFarAsTheWormKeepsItsSize) {
   HobChain chain;
   const LinearRun run = RunOf(ReadingsOf(chain), ScenarioOf(chain));

@@ -57,18 +57,6 @@ TEST(TurntableRun, BelievesTheStatedInstrument) {
         << alone;
 }
 
-TEST(TurntableRun, TakesOffAnEmpiricalSignal) {
-  Scenario scenario = CarefulScenario();
-  const LinearRun plain = RunOf(BenchReadings(Quiet(scenario), {}, 4), scenario);
-  Wrong bump;
-  bump.other = [](const Reading& r) { return Eigen::Vector2d(0.0, r.reading == 40 ? 5.0 * arcsec : 0.0); };
-  const std::vector<Reading> readings = BenchReadings(Quiet(scenario), bump, 4);
-  EXPECT_GT(LeftOver(RunOf(readings, scenario)), 10.0);
-  EmpiricalSettings signal{.channel = "y", .reading = {40}, .value_rad = {5.0 * arcsec}};
-  scenario.empiricals = {signal};
-  EXPECT_NEAR(LeftOver(RunOf(readings, scenario)), LeftOver(plain), 1e-6);
-}
-
 /// Index error and tilt of each.
 Eigen::Index FreeTeeth(const Scenario& scenario) {
   const Eigen::Index positions = TurntableOf(scenario).turntable_procedure.positions,

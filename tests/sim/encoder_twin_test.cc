@@ -94,14 +94,6 @@ TEST(EncoderTwin, HasNoMoreReadingsAtAStopThanFitIntoIt) {
   EXPECT_THROW(ParseScenario(text + "readings_per_stop = 9\n", "s.toml", "."), InputError);
 }
 
-TEST(EncoderTwin, AddsAnEmpiricalSignalToTheReadingsItNames) {
-  Scenario scenario = EncoderScenario();
-  scenario.empiricals.push_back({.channel = "angle", .reading = {5}, .value_rad = {0.25}});
-  const auto readings = RunEncoderTwin(scenario).readings;
-  EXPECT_NEAR(readings[5].measured_rad - readings[5].reference_rad, 0.25, 1e-12);
-  EXPECT_NEAR(readings[6].measured_rad - readings[6].reference_rad, 0.0, 1e-12);
-}
-
 TEST(EncoderTwin, TellsItsTruth) {
   Scenario scenario = EncoderScenario();
   scenario.effects.push_back(EncoderEffect("latency"));

@@ -75,6 +75,31 @@ TEST_P(EveryTwin, GivesTheSameBitsForTheSameSeedAndOthersForAnother) {
   EXPECT_GT(Change(readings, test::ReadingsOf(s)).second, readings.size() * 4 / 5);
 }
 
+/// What the readings of a channel show, which its diagnosis takes off again.
+TEST_P(EveryTwin, ShowsAnEmpiricalSignalInTheReadingsItNamesWhichTheDiagnosisTakesOff) {
+  const Scenario s = Short(false);
+  const auto plain = test::ReadingsOf(s);
+  const auto left_of = [](const std::vector<Reading>& readings, const Scenario& believed) {
+    return BenchOf(believed).linear_run(readings, believed, Estimator::kRigorous);
+  };
+  const diagnose::LinearRun left = left_of(plain, s);
+  const double size = 2e-6, of_unit = GetParam().name == kRotaryBench ? 2000.0 : 1.0;  // m or rad; V/m
+  for (const std::string& channel : FormatOf(s.bench).channels) {
+    SCOPED_TRACE(channel);
+    Scenario with = s;
+    const std::vector<double> twice = {size, size};
+    with.empiricals = {{.channel = channel, .reading = {40, 41}, .value_m = twice, .value_rad = twice}};
+    const auto shown = test::ReadingsOf(with);
+    const auto [largest, changed] = Change(plain, shown);
+    EXPECT_NEAR(largest, of_unit * size, 0.01 * of_unit * size) << "converters have steps";
+    EXPECT_EQ(changed, 2u);
+    EXPECT_LT((left_of(shown, with).residual - left.residual).cwiseAbs().maxCoeff(), 0.01 * size);
+    int row = 0;
+    EXPECT_GT((left_of(shown, s).residual - left.residual).maxCoeff(&row), 0.1 * size) << "with its sign";
+    EXPECT_EQ(left.channels[static_cast<std::size_t>(left.ChannelOf(row))], channel);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Bench, EveryTwin, testing::ValuesIn(kQuickBenches),
                          [](const auto& tested) { return tested.param.name; });
 
