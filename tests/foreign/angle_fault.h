@@ -61,7 +61,6 @@ const std::vector<AngleKind>& ListedAngleKinds();
 /// Causes that it lacks, or that are known to be taken for one that it has.
 const std::vector<AngleKind>& UnlistedAngleKinds();
 std::vector<AngleKind> LockedKinds();
-std::vector<AngleKind> MotionKinds();
 
 /// One value a reading, in their order.
 template <class Of>

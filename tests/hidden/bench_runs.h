@@ -3,7 +3,7 @@
 #include <memory>
 #include <mutex>
 
-#include "tests/hidden/hidden_case.h"
+#include "twin/core/scenario.h"
 #include "twin/core/stream.h"
 #include "twin/diagnose/engine/projector.h"
 

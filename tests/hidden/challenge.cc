@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "tests/hidden/judge.h"
 #include "tests/support/truth_rows.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
@@ -80,12 +79,10 @@ Hidden HiddenBy(const json& truth) {
   return hidden;
 }
 
-Case ReadCase(const std::string& folder, const std::string& bench, const std::vector<std::string>& excluded) {
-  Case hidden_case{.hidden = HiddenBy(test::ReadTruthFile(folder + "/truth.json")),
-                   .scenario = LoadScenario(test::ScenarioPath(bench + ".toml")),
-                   .readings = ReadReadingsCsv(folder + "/readings.csv", bench)};
-  hidden_case.options.excluded = excluded;
-  return hidden_case;
+Case ReadCase(const std::string& folder, const std::string& bench) {
+  return {.hidden = HiddenBy(test::ReadTruthFile(folder + "/truth.json")),
+          .scenario = LoadScenario(test::ScenarioPath(bench + ".toml")),
+          .readings = ReadReadingsCsv(folder + "/readings.csv", bench)};
 }
 
 }  // namespace
@@ -95,8 +92,7 @@ std::string ChallengeSetOf(const std::string& bench) {
   return "challenge_" + bench.substr(0, bench.find('_'));
 }
 
-std::vector<Plan> ChallengePlans(const std::string& folder, const std::string& bench,
-                                 const std::vector<std::string>& excluded) {
+std::vector<Plan> ChallengePlans(const std::string& folder, const std::string& bench) {
   std::vector<std::string> names;
   if (fs::is_directory(folder)) {
     for (const auto& entry : fs::directory_iterator(folder)) {
@@ -109,7 +105,7 @@ std::vector<Plan> ChallengePlans(const std::string& folder, const std::string& b
   const std::string set = ChallengeSetOf(bench);
   for (const std::string& name : names) {
     const std::string path = folder + "/" + name;
-    plans.push_back({set, name, [path, bench, excluded] { return ReadCase(path, bench, excluded); }});
+    plans.push_back({set, name, [path, bench] { return ReadCase(path, bench); }});
   }
   return plans;
 }

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "tests/hidden/placements.h"
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/settings.h"
 #include "twin/benches/encoder_comparison/settings.h"

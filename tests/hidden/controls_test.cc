@@ -1,6 +1,5 @@
 #include "tests/diagnose/found_causes.h"
 #include "tests/hidden/known_wrong.h"
-#include "tests/hidden/placements.h"
 #include "tests/hidden/twin_cases.h"
 #include "tests/support/thresholds.h"
 #include "twin/benches/names.h"
@@ -145,14 +144,11 @@ Diagnosis PublishedAgainstExact(const std::string& clamping) {
   return Diagnosed(TakeReadings(scenario), believed, Estimator::kPublished);
 }
 
-TEST(PublishedEquations, HaveTheWrongSensitivitiesOfYawAndTilt) {
+TEST(PublishedEquations, HaveTheWrongSensitivitiesOfYawAndTiltAndAddTheWobbleOfAReclampedRunInTheWrongFrame) {
   const Diagnosis d = PublishedAgainstExact("reseat");
   SCOPED_TRACE(Judge({}, d).answer);
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed);
   EXPECT_TRUE(Find(d, "published_sensitivity", "yaw, tilt"));
-}
-
-TEST(PublishedEquations, AddTheWobbleOfAReclampedRunInTheWrongFrame) {
   EXPECT_TRUE(Find(PublishedAgainstExact("reclamp"), "reclamp_frame", ""));
 }
 

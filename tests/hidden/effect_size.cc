@@ -1,4 +1,4 @@
-#include "tests/hidden/placements.h"
+#include "tests/hidden/twin_cases.h"
 
 #include <limits>
 

@@ -118,25 +118,19 @@ double ProbabilityToPass(int of, double true_rate, double caught) {
 }
 
 // Of 117 effects: the binomial's figures, by hand 105 of 117.
-TEST(PooledRate, CatchesATrueEightyFivePercentWhereNinetyFiveAreClaimed) {
+TEST(PooledRate, CatchesATrueEightyFivePercentWhereNinetyFiveAreClaimedAndRefusesTooFewCasesToTellThem) {
   EXPECT_EQ(FewestOf(117, 0.85), 105);
   EXPECT_LT(ProbabilityToPass(117, 0.85, 0.85), 0.1);
   EXPECT_GT(ProbabilityToPass(117, 0.95, 0.85), 0.99);
   EXPECT_TRUE(IsPooledRate(105, 117, 0.95, 0.85));
   EXPECT_FALSE(IsPooledRate(104, 117, 0.95, 0.85));
-}
-
-TEST(PooledRate, RefusesTooFewCasesToTellOneRateFromTheOther) {
   EXPECT_THAT(SaidBy(IsPooledRate(20, 20, 0.95, 0.85)), HasSubstr("20 cases do not tell 0.95 from 0.85"));
   EXPECT_FALSE(IsPooledRate(0, 0, 0.95, 0.85));
 }
 
 // Of 100 at one half, P(X <= 36) = 0.0033 and P(X <= 37) = 0.0060.
 TEST(ClaimedShare, FailsOnBothSides) {
-  EXPECT_FALSE(IsShareOf(36, 100, 0.5));
-  EXPECT_TRUE(IsShareOf(37, 100, 0.5));
-  EXPECT_TRUE(IsShareOf(63, 100, 0.5));
-  EXPECT_FALSE(IsShareOf(64, 100, 0.5));
+  for (const int count : {36, 37, 63, 64}) EXPECT_EQ(bool(IsShareOf(count, 100, 0.5)), 36 < count && count < 64);
 }
 
 }  // namespace

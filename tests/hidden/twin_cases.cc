@@ -1,6 +1,5 @@
 #include "tests/hidden/twin_cases.h"
 
-#include "tests/hidden/placements.h"
 #include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/settings.h"

@@ -1,7 +1,5 @@
 #include "tests/hidden/unlisted_cause.h"
 
-#include "tests/hidden/placements.h"
-
 namespace twinbench::hidden {
 namespace {
 

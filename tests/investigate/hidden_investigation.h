@@ -1,6 +1,5 @@
 #pragma once
 
-#include "tests/hidden/placements.h"
 #include "tests/hidden/unlisted_cause.h"
 #include "twin/investigate/investigation.h"
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "tests/hidden/placements.h"
 #include "tests/hidden/twin_cases.h"
 #include "twin/diagnose/isolability.h"
 

@@ -1,8 +1,7 @@
-#include "tests/shelf/truth.h"
-
 #include <complex>
 #include <fstream>
 
+#include "tests/shelf/judge.h"
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 
@@ -15,7 +14,7 @@ using nlohmann::json;
 void CheckKeys(const json& object, const std::vector<std::string>& known, const std::string& where) {
   for (const auto& [key, value] : object.items()) {
     if (std::ranges::find(known, key) == known.end())
-      throw InputError(where, "has a key \"" + key + "\"", "one of truth.h");
+      throw InputError(where, "has a key \"" + key + "\"", "one of judge.h");
   }
 }
 
