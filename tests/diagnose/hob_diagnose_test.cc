@@ -11,7 +11,7 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/extend.h"
 
-/// Readings of a chain with a hidden cause (tests/diagnose/hob_chain.cc), and what the diagnosis says of them.
+/// Readings of a chain with a hidden cause (tests/diagnose/hob_chain.h), and what the diagnosis says of them.
 namespace twinbench::diagnose::hob {
 namespace {
 
