@@ -18,8 +18,9 @@ Course Round(int stops) { return {360.0 / stops, 360.0 / stops, stops, 2}; }
 /// From zero on, there and back twice, a second a stop.
 Course Twice(int stops, double step_deg) { return {0.0, step_deg, stops, 4, 1.0}; }
 
-Error Of(const std::vector<Wave>& waves) {
-  return [=](const Place& at) { return Sum(waves, at.deg); };
+/// A place that shows more than the others.
+Error Worn(double size_deg, double at_deg, double width_deg) {
+  return [=](const Place& at) { return size_deg * std::exp(-0.5 * std::pow((at.deg - at_deg) / width_deg, 2)); };
 }
 
 std::vector<Check> Orders(const std::vector<Wave>& waves, double within_deg, std::vector<Check> more = {}) {
@@ -153,9 +154,7 @@ const Row kDominant[] = {
      {Size("backlash", "width", 0.06, 0.0, 4.0), Size("scale", "ratio", 0.001, 0.0, 4.0)},
      {14}},
     OfCourse("AScaleBesideAnOrderOfAPartOfATurnDoesNotBend", Twice(181, 1.5), 0.1,
-             [](const Place& at) {
-               return 0.008 * at.deg + Sum({{1, 0.5, 200.0}}, at.deg);
-             },
+             Of({{1, 0.5, 200.0}}) + [](const Place& at) { return 0.008 * at.deg; },
              {Size("scale", "ratio", 0.008, 0.0, 4.0), Order(1, 0.5, 0.05)}, {15, 16, 17}),
     {"ADelayOfATriangleIsNoPlay",  // it jumps where the shaft turns, as play does that is crossed at once
      [](unsigned seed) {
@@ -178,9 +177,7 @@ const Row kDominant[] = {
      {Order(200, 0.014, 0.0005), HasUnnamed(false)},
      {19}},
     OfCourse("AFaultOfAFewPlacesLeavesTheOrdersBesideIt", Twice(360, 1.0), 0.008,
-             [](const Place& at) {
-               return 0.4 * std::exp(-0.5 * std::pow((at.deg - 137.0) / 1.2, 2)) + Sum({{1, 0.06, 30.0}}, at.deg);
-             },
+             Of({{1, 0.06, 30.0}}) + Worn(0.4, 137.0, 1.2),
              {Order(1, 0.06, 0.002), Says(HasSubstr("targets"))}, {20}),
     {"ALatencyAndTheOrdersBesideItHaveTheirSizes",
      [](unsigned seed) {
@@ -196,8 +193,7 @@ const Row kDominant[] = {
      [](unsigned seed) { return FollowedWithin(1000.0, 0.06, seed); },
      {Named("latency"), Size("latency", "delay", 0.06, 0.001)},
      {10}},
-    OfCourse("OnePlacePushedFromBothSidesShowsThePlay", {30.0, 0.0, 1, 20, 1.0}, 0.001,
-             [](const Place& at) { return -0.005 * at.direction; },
+    OfCourse("OnePlacePushedFromBothSidesShowsThePlay", {30.0, 0.0, 1, 20, 1.0}, 0.001, ByDirection(-0.005),
              {Named("backlash", 0.5), Size("backlash", "width", 0.01, 0.0, 4.0), kSilentAgain}, {8}),
     // The straight line through a parabola has its slope in the middle, at 116 deg.
     OfCourse("WithoutAClockAScaleThatBendsIsNoDrift", {0.0, 8.0, 30}, 0.001,
@@ -215,16 +211,11 @@ const Row kDominant[] = {
      {22}},
     // What a scale off its axis shows there is a line and a small bend, too.
     OfCourse("AQuarterOfATurnLeavesOpenWhetherItIsOrderOne", Twice(181, 0.5), 0.004,
-             [](const Place& at) {
-               return Sum({{1, 0.2, 90.0}, {24, 0.05, 0.0}}, at.deg);
-             },
+             Of({{1, 0.2, 90.0}, {24, 0.05, 0.0}}),
              {Is(Verdict::kTie), Notes("once per turn (eccentricity) of 0.2")}, {61}),
     // A place that is dirty, a fifth of a turn wide: the other targets lie on the orders that are there.
     OfCourse("AWornPlaceLeavesTheOrdersBesideIt", Twice(121, 3.0), 0.002,
-             [](const Place& at) {
-               return Sum({{1, 0.05, 327.0}, {4, 0.02, 270.0}}, at.deg) +
-                      0.03 * std::exp(-0.5 * std::pow((at.deg - 180.0) / 20.0, 2)) + 0.01 * at.direction;
-             },
+             Of({{1, 0.05, 327.0}, {4, 0.02, 270.0}}) + Worn(0.03, 180.0, 20.0) + ByDirection(0.01),
              {Order(1, 0.05, 0.004), Order(4, 0.02, 0.001), Play(0.02, 0.001)}, {51, 52, 53}),
     // A rack with a ripple and an arch: nothing of it is a course in time.
     OfCourse("OnePassWithoutAClockIsNoWalk", {0.0, 4.5, 76}, 0.005,
@@ -234,9 +225,7 @@ const Row kDominant[] = {
              {Named("scale"), Order(9, 0.02, 0.004), Says(Not(HasSubstr("function of time")))}, {5}),
     // Explaining as much as each other, they are two causes, and no two names of one.
     OfCourse("AnOrderAndPlayOfOneSizeAreBothThere", Twice(36, 10.0), 1e-4,
-             [](const Place& at) {
-               return Sum({{1, 0.0035, 0.0}, {4, 0.00085, 0.0}}, at.deg) + 0.0006 * at.direction;
-             },
+             Of({{1, 0.0035, 0.0}, {4, 0.00085, 0.0}}) + ByDirection(0.0006),
              {Named("periodic"), Named("backlash"), Play(0.0012, 1e-4), HasUnnamed(false)}, {6}),
     OfCourse("AnOrderBesideASlopeIsAskedAgain", {0.0, 15.0 / 900.0, 900}, 0.0002,
              [](const Place& at) { return Sum(kWorm, at.deg) - 0.00053 * at.deg; }, Orders(kWorm, 0.0001),

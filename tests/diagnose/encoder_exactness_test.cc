@@ -33,9 +33,7 @@ Rows ExactnessRows() {
   for (const double size_deg : {1.2, 2.4}) {  // one mounting tells no eccentricity from an offset
     rows.push_back(OfCourse(fmt::format("AWaveIsNoLessAnOffsetOfTheSignalsForBeingOne_{}", std::round(size_deg)),
                             {0.9, 1.8, 200, 2}, 0.01,
-                            [=](const Place& at) {
-                              return Sum({{1, size_deg, 40.0}}, at.deg);
-                            },
+                            Of({{1, size_deg, 40.0}}),
                             {Is(Verdict::kTie), HasCauses(2), kSilentAgain}, {4}));
   }
   for (const double between_deg : {0.0, 1.3}) {
@@ -85,9 +83,7 @@ const Row kExact[] = {
      },
      {Says(Not(HasSubstr("walk"))), Size("eccentricity", "amplitude", 0.55, 0.01), kSilentAgain}},
     OfCourse("WhatAlternatesWithTheDirectionHasTheSizeThatItShows", {1.8, 1.8, 200, 2}, 0.01,
-             [](const Place& at) {
-               return Sum({{1, 0.9, 0.0}}, at.deg) + (at.stop % 2 == at.pass % 2 ? 0.1 : -0.1);
-             },
+             Of({{1, 0.9, 0.0}}) + [](const Place& at) { return at.stop % 2 == at.pass % 2 ? 0.1 : -0.1; },
              {Says(HasSubstr("direction times order 100")), kSilentAgain,
               [](const Answer& a) { EXPECT_NEAR(AmplitudeBehind("angle, amplitude ", a), 0.1, 0.003); }},
              {6, 7}),
@@ -118,9 +114,7 @@ const Row kExact[] = {
      {11, 12, 13}},
     // Of which a part is looked at.
     OfCourse("AStepInALongRecordingIsWhereItIs", {0.0, 0.2, 5000, 1, 0.01, "sweep"}, 0.0005,
-             [](const Place& at) {
-               return Sum({{1, 0.01, 0.0}}, at.deg) + (at.stop < 2893 ? 0.0 : 0.03);
-             },
+             Of({{1, 0.01, 0.0}}) + [](const Place& at) { return at.stop < 2893 ? 0.0 : 0.03; },
              {Named("slip"), Size("slip", "at_reading", 2893.0, 1.0), NotNamed({"outliers"})}, {21}),
     {"ACurveOverAPartOfATurnIsNoSumOfOrders",
      [](unsigned seed) {
@@ -175,9 +169,8 @@ TEST(EncoderExactness, WhatIsComputedHasNoCause) {
 /// A degree of this axis is a millimetre.
 TEST(EncoderExactness, OfALinearAxisIsToldInLengths) {
   constexpr double kRate_mm_h = 0.6;
-  const Record record = Listed({0.0, 1.8, 200, 2, 5.0, "sweep"}, 0.002, 5, [](const Place& at) {
-    return Sum({{9, 0.05, 0.0}}, at.deg) + kRate_mm_h * at.t_s / 3600.0;
-  });
+  const Error drift_deg = [](const Place& at) { return kRate_mm_h * at.t_s / 3600.0; };
+  const Record record = Listed({0.0, 1.8, 200, 2, 5.0, "sweep"}, 0.002, 5, Of({{9, 0.05, 0.0}}) + drift_deg);
   Scenario believed = record.Believed();
   EncoderOf(believed).device.turn_m = 0.36;
   const Diagnosis found = Diagnosed(record, believed).diagnosis;

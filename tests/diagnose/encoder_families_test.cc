@@ -131,7 +131,7 @@ TEST(EncoderFamilies, RecoverClippingWithTheZeroFree) {
   Family family = test::FamilyOf(Families(encoder), "signal_clipping");
   const test::Fit grid = test::BestFit(family, encoder.run);
   EXPECT_LT(grid.left, 0.15);
-  EXPECT_NEAR(test::ParametersOf(family, grid).at("level"), 0.90, 0.04);
+  EXPECT_NEAR(family.ShapeAt(grid.grid_point)[0], 0.90, 0.04);
   family.columns = [&](int) { return family.at(Eigen::Vector2d(0.90, 33.75 * deg)); };
   const test::Fit exact = test::FitAt(family, 0, encoder.run);
   EXPECT_LT(exact.left, 0.02);
@@ -320,7 +320,7 @@ TEST(EncoderUnknown, HasNoShapesInTimeNorLinesInOneTurn) {
   EXPECT_FALSE(test::HasFamily(families, "line"));
 }
 
-TEST(EncoderUnknown, LooksForOrdersAboveHalfOfUnevenPositions) {
+TEST(EncoderUnknown, LooksForOrdersThatTheSpacingCanShowAlsoAboveHalfOfUnevenPositions) {
   // 493.15 positions a turn: 360 of them and 133 look alike, but are not. Of 480, 240 and more are lower ones.
   const auto largest_at = [](double step_deg) {
     std::vector<double> angle_deg(500);
@@ -329,9 +329,6 @@ TEST(EncoderUnknown, LooksForOrdersAboveHalfOfUnevenPositions) {
   };
   EXPECT_EQ(largest_at(0.73), 720);
   EXPECT_EQ(largest_at(0.75), 239);
-}
-
-TEST(EncoderUnknown, LooksForOrdersThatTheSpacingCanShow) {
   // Stops every 5 deg: orders below 36. Readings every 0.96 deg at the lower speed: 187.
   EXPECT_EQ(LargestOrder(RunWith("stops", [](const Reading&) { return 0.0; }).context), 35);
   EXPECT_EQ(LargestOrder(RunWith("sweep", [](const Reading&) { return 0.0; }).context), 187);

@@ -47,33 +47,13 @@ inline Fit BestFit(const Family& family, const LinearRun& run) {
   return best;
 }
 
-inline const Family& FamilyOf(const std::vector<Family>& families, const std::string& effect) {
-  for (const Family& family : families) {
-    if (family.effect == effect) return family;
-  }
-  throw std::runtime_error("there is no family " + effect);
-}
-
 inline bool HasFamily(const std::vector<Family>& families, const std::string& effect) {
-  for (const Family& family : families) {
-    if (family.effect == effect) return true;
-  }
-  return false;
+  return std::ranges::count(families, effect, &Family::effect) > 0;
 }
 
-/// The catalogue's parameters as fitted; without cov they have no uncertainty.
-inline std::map<std::string, double> ParametersOf(const Family& family, const Fit& fit) {
-  std::map<std::string, double> values;
-  const Eigen::VectorXd shape = family.ShapeAt(fit.grid_point);
-  const Eigen::Index n = fit.amplitudes.size();
-  if (family.parameters) {
-    for (const ParameterEstimate& p : family.parameters(shape, fit.amplitudes, Eigen::MatrixXd::Identity(n, n)))
-      values[p.name] = p.value;
-    return values;
-  }
-  for (Eigen::Index j = 0; j < n; ++j) values[family.amplitudes[j].name] = fit.amplitudes[j];
-  for (Eigen::Index k = 0; k < shape.size(); ++k) values[family.shapes[k].name] = shape[k];
-  return values;
+inline const Family& FamilyOf(const std::vector<Family>& families, const std::string& effect) {
+  if (!HasFamily(families, effect)) throw std::runtime_error("there is no family " + effect);
+  return *std::ranges::find(families, effect, &Family::effect);
 }
 
 }  // namespace twinbench::diagnose::test

@@ -103,9 +103,7 @@ Rows InstrumentRows() {
                   {22}});
   rows.push_back({"AnErrorBeyondTheStepIsFoundInRoundedReadings",
                   [](unsigned s) {
-                    return Stops(0.0, 360.0 / 16384.0, s, [](const Place& at) {
-                      return 0.2 * std::cos(at.deg * kRad + 0.5) + 0.06 * std::cos(4.0 * at.deg * kRad);
-                    });
+                    return Stops(0.0, 360.0 / 16384.0, s, Of({{1, 0.2, 0.5 / kRad}, {4, 0.06, 0.0}}));
                   },
                   {Size("eccentricity", "amplitude", 0.2, 0.004), Size("periodic", "amplitude", 0.06, 0.004)},
                   {40}});

@@ -289,9 +289,7 @@ const Row kPositioned[] = {
                 kSilentAgain},
                90),
     OfCourse("FewOrdersKeepTheirNames", {0.0, 15.0, 24, 4, 4.0}, 0.001,
-             [](const Place& at) {
-               return Sum({{1, 0.03, 40.0}, {5, 0.012, 0.0}}, at.deg) - 0.006 * at.direction;
-             },
+             Of({{1, 0.03, 40.0}, {5, 0.012, 0.0}}) + ByDirection(-0.006),
              {Named("eccentricity", 0.0), Named("periodic"), Named("backlash"), kSilentAgain}, {91})};
 INSTANTIATE_TEST_SUITE_P(Targets, EncoderAnswer, testing::ValuesIn(kPositioned), NameOfRow);
 

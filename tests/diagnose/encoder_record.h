@@ -171,6 +171,16 @@ Record Listed(const Course& course, Shows shows_deg) {
 
 using Error = std::function<double(const Place& at)>;
 
+inline Error Of(const std::vector<Wave>& waves) {
+  return [=](const Place& at) { return Sum(waves, at.deg); };
+}
+inline Error ByDirection(double size_deg) {
+  return [=](const Place& at) { return size_deg * at.direction; };
+}
+inline Error operator+(const Error& one, const Error& other) {
+  return [=](const Place& at) { return one(at) + other(at); };
+}
+
 inline Record Listed(const Course& course, double noise_deg, unsigned seed, const Error& error_deg) {
   Noise noise(noise_deg, seed);
   return Listed(course, [&](const Place& at) { return at.deg + error_deg(at) + noise(); });

@@ -37,9 +37,7 @@ Row Glitched(const std::string& name, const Glitches& shown_deg, const std::vect
 Row PartOfATurn(int order, double travel_deg, int stops) {
   return OfCourse(
       fmt::format("APartOfATurnShowsOneOrderHoweverHighItIs_{}", order), {33.0, travel_deg / stops, stops}, 0.002,
-      [=](const Place& at) {
-        return Sum({{order, 0.01, 75.0}}, at.deg);
-      },
+      Of({{order, 0.01, 75.0}}),
       {HasCauses(1), Size("periodic", "order", order, 0.1 * 360.0 / travel_deg),  // of what the travel resolves
        Size("periodic", "amplitude", 0.01, 0.0005), kSilentAgain},
       {5});
@@ -89,9 +87,7 @@ const Row kRecordings[] = {
     PartOfATurn(900, 47.0, 1200),
     // A wave and a fault whose signature begins with it: what is told has a size, and the file has it.
     OfCourse("AnOrderFourBesideLargerOnesHasASize", {0.3, 360.0 / 588.0, 588}, 0.02,
-             [](const Place& at) {
-               return Sum({{1, 1.8, 20.0}, {2, 0.5, -80.0}, {4, 0.07, 130.0}}, at.deg);
-             },
+             Of({{1, 1.8, 20.0}, {2, 0.5, -80.0}, {4, 0.07, 130.0}}),
              {Size("periodic", "amplitude", 0.07, 0.006), kSilentAgain}, {1, 2, 3}),
     // A stage of 11 targets whose scale errs, each target by a little of its own.
     {"AScaleIsToldBeforeErrorsOfTargets",

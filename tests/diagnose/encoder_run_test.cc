@@ -84,7 +84,7 @@ double NoiseRatio(const std::string& kind, std::uint64_t seed, double outlier = 
   return noisy.Run().run.sigma[0] / noisy.Noise_rad();
 }
 
-TEST(EncoderRun, EstimatesTheNoiseToThePrecisionThatTheReadingsAllow) {
+TEST(EncoderRun, EstimatesTheNoiseToThePrecisionThatTheReadingsAllowWithoutItsOutliers) {
   const Eigen::Array2d off = twinbench::test::MeanOverSeeds(60, [](std::uint64_t seed) {
     const double ratio = NoiseRatio("stops", seed);
     return Eigen::Array2d(ratio - 1.0, std::pow(ratio - 1.0, 2));
@@ -92,9 +92,6 @@ TEST(EncoderRun, EstimatesTheNoiseToThePrecisionThatTheReadingsAllow) {
   // 576 readings, second differences: 1 / sqrt(576) = 4.2 % a run, 0.5 % of the mean. A median scatters by 6 %.
   EXPECT_NEAR(off[0], 0.0, 0.015);
   EXPECT_LT(std::sqrt(off[1]), 0.05);
-}
-
-TEST(EncoderRun, EstimatesTheNoiseWithoutItsOutliers) {
   for (const char* kind : {"stops", "sweep"})
     EXPECT_NEAR(NoiseRatio(kind, 1, 20.0), NoiseRatio(kind, 1), 0.05) << kind;
 }
@@ -121,16 +118,13 @@ TEST(EncoderRun, TakesTheNoiseThatIsKnown) {
   EXPECT_EQ(run.sigma[0], EncoderOf(scenario).device.noise_rad);
 }
 
-TEST(EncoderRun, DerivesVelocitiesOfASweepThatWereNotRecorded) {
+TEST(EncoderRun, DerivesVelocitiesOfASweepThatWereNotRecordedAndNoneOfStopsWhereTimeIsAnOrderOnly) {
   Noisy sweep(NoisyScenario("sweep"));
   const Eigen::VectorXd recorded = sweep.Run().context.velocity_rad_s;
   for (Reading& r : sweep.readings) r.velocity_rad_s = kNaN;
   const Eigen::VectorXd derived = sweep.Run().context.velocity_rad_s;
   // Central differences are wrong where the acceleration sets in: 60 deg/s^2 * 80 ms / 2.
   EXPECT_LT((derived - recorded).cwiseAbs().maxCoeff(), 2.5 * deg);
-}
-
-TEST(EncoderRun, OfStopsHasNoVelocityWhereTimeIsAnOrderOnly) {
   Noisy stops;
   for (Reading& r : stops.readings) r.velocity_rad_s = kNaN;
   EXPECT_FALSE(stops.Run().context.Moves());

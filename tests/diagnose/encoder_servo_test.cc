@@ -66,9 +66,7 @@ Rows ServoRows() {
                           },
                           {NotNamed({"periodic"}, 0.7)}, {61, 62, 63}));
   rows.push_back(OfCourse("AnOrderThatIsSharperThanAnyCurveIsOne", {0.0, 110.0 / 59.0, 60, 1, 1.0}, 0.01,
-                          [](const Place& at) {
-                            return Sum({{5, 0.5, 0.0}}, at.deg);
-                          },
+                          Of({{5, 0.5, 0.0}}),
                           {Named("periodic"), Size("periodic", "order", 5.0, 0.0)}, {65}));
   rows.push_back({"CountsOfAServoAtRestAreNoSlipAndNoReversal",
                   [](unsigned) { return Rests(); },

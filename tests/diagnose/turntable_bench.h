@@ -82,10 +82,7 @@ class Bench {
                           kMove_s = 0.6;  // the turntable moves while the multi-tooth table is lifted
 
   bool Has(const char* phase) const {
-    for (const std::string& p : TurntableOf(s_).turntable_procedure.phases) {
-      if (p == phase) return true;
-    }
-    return false;
+    return std::ranges::count(TurntableOf(s_).turntable_procedure.phases, phase) > 0;
   }
 
   void Circle(int setup, int pass, int direction, int positions, double offset_rad, Phase phase) {
