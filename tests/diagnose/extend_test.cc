@@ -61,7 +61,7 @@ TEST(Extend, AddsTheEffectWithValueUncertaintyEvidenceAndProvenance) {
   EXPECT_EQ(effect.finding.provenance, "run 7 of May");
 }
 
-TEST(Extend, TakesOfATieTheMemberThatTheSearchTookIn) {
+TEST(Extend, TakesOfATieTheMemberThatTheSearchTookInAndACauseWithoutASignatureToo) {
   DiagnosisRun run = FoundGain(0.001);
   Cause rival = run.diagnosis.causes[0];
   rival.effect = "stray_light";
@@ -72,10 +72,7 @@ TEST(Extend, TakesOfATieTheMemberThatTheSearchTookIn) {
   const Scenario extended = Extend(SmallNoiseFree(), run, "");
   ASSERT_EQ(extended.effects.size(), 1u);
   EXPECT_EQ(extended.effects[0].name, "psd_gain");
-}
-
-TEST(Extend, TakesACauseWithoutASignatureToo) {
-  DiagnosisRun run = FoundGain(0.001);
+  run = FoundGain(0.001);
   run.accepted.clear();  // as for swapped channels or outliers, which are no columns
   EXPECT_EQ(Extend(SmallNoiseFree(), run, "").effects.size(), 1u);
 }
@@ -120,21 +117,18 @@ TEST(AliasesOf, AreOrdersThatEvenStopsDoNotTellApart) {
   EXPECT_THAT(AliasesOf(cause, run), testing::IsEmpty());
 }
 
-TEST(Extend, KeepsTheEffectsThatTheScenarioHad) {
+TEST(Extend, KeepsTheEffectsThatTheScenarioHadAndMovesAnImpossibleValueToItsBound) {
   const Scenario once = Extend(SmallNoiseFree(), FoundGain(0.001), "first");
   const Scenario twice = Extend(once, FoundGain(0.002), "second");
   ASSERT_EQ(twice.effects.size(), 2u);
   EXPECT_EQ(twice.effects[0].finding.provenance, "first");
+  EXPECT_EQ(Extend(SmallNoiseFree(), FoundGain(3.0), "").effects.at(0).parameters.at("gain_error"), 0.5);
 }
 
 TEST(Extend, OfACleanRunIsTheScenarioItself) {
   const std::string toml = ExtendedToml(SmallNoiseFree(), DiagnosisRun{}, "a run");
   EXPECT_THAT(toml, HasSubstr("nothing was added"));
   EXPECT_EQ(WriteScenario(Reload(toml)), WriteScenario(SmallNoiseFree()));
-}
-
-TEST(Extend, MovesAnImpossibleValueToItsBound) {
-  EXPECT_EQ(Extend(SmallNoiseFree(), FoundGain(3.0), "").effects.at(0).parameters.at("gain_error"), 0.5);
 }
 
 TEST(Extend, TabulatesStructureWithoutANameAndTheTwinShowsIt) {

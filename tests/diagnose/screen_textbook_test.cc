@@ -11,16 +11,13 @@ namespace {
 
 TEST(RunsScore, IsThatOfWaldAndWolfowitz) {
   // ++++---+++--++++++---- : 13 above, 9 below, 6 runs; mean 1 + 234/22, variance 234 (234 - 22) / (22^2 21).
-  Eigen::VectorXd series(22);
-  series << 1, 2, 1, 3, -1, -1, -2, 1, 1, 4, -1, -1, 2, 2, 1, 1, 1, 1, -1, -3, -1, -1;
+  const Eigen::VectorXd series{{1, 2, 1, 3, -1, -1, -2, 1, 1, 4, -1, -1, 2, 2, 1, 1, 1, 1, -1, -3, -1, -1}};
   EXPECT_NEAR(RunsScore(series), (6.0 - 1.0 - 234.0 / 22.0) / std::sqrt(234.0 * 212.0 / (484.0 * 21.0)), 1e-12);
   EXPECT_EQ(RunsScore(Eigen::VectorXd::Ones(9)), 0.0);
 }
 
 TEST(LjungBox, OfAnAlternatingSeriesIsItsClosedForm) {
-  Eigen::VectorXd series(10);
-  for (int i = 0; i < 10; ++i) series[i] = i % 2 == 0 ? 2.0 : -2.0;
-  const Eigen::VectorXd correlation = Autocorrelation(series, 2);
+  const Eigen::VectorXd correlation = Autocorrelation(Eigen::VectorXd{{2, -2, 2, -2, 2, -2, 2, -2, 2, -2}}, 2);
   EXPECT_NEAR(correlation[0], -0.9, 1e-12);
   EXPECT_NEAR(correlation[1], 0.8, 1e-12);
   EXPECT_NEAR(LjungBox(correlation, 10), 10.0 * 12.0 * (0.81 / 9.0 + 0.64 / 8.0), 1e-12);
@@ -41,19 +38,16 @@ TEST(LombScargle, IsWhatTheLeastSquaresOfASineTakeOff) {
 }
 
 TEST(JarqueBera, OfTwoLevelsIsASixthOfTheReadings) {
-  Eigen::VectorXd values(12);
-  values << 3, 1, 3, 1, 1, 3, 1, 3, 3, 1, 1, 3;
-  const Shape shape = ShapeOf(values);
+  const Shape shape = ShapeOf(Eigen::VectorXd{{3, 1, 3, 1, 1, 3, 1, 3, 3, 1, 1, 3}});
   EXPECT_NEAR(shape.skewness, 0.0, 1e-12);
   EXPECT_NEAR(shape.kurtosis, 1.0, 1e-12);
   EXPECT_NEAR(JarqueBera(shape, 12), 12.0 / 6.0 * (2.0 * 2.0 / 4.0), 1e-12);
 }
 
 TEST(JarqueBera, SeesASkewWithItsSign) {
-  Eigen::VectorXd values(4);
-  values << 0, 0, 0, 4;  // mean 1: m2 = 3, m3 = 6, m4 = 21
-  EXPECT_NEAR(ShapeOf(values).skewness, 6.0 / std::pow(3.0, 1.5), 1e-12);
-  EXPECT_NEAR(ShapeOf(values).kurtosis, 21.0 / 9.0, 1e-12);
+  const Shape shape = ShapeOf(Eigen::VectorXd{{0, 0, 0, 4}});  // mean 1: m2 = 3, m3 = 6, m4 = 21
+  EXPECT_NEAR(shape.skewness, 6.0 / std::pow(3.0, 1.5), 1e-12);
+  EXPECT_NEAR(shape.kurtosis, 21.0 / 9.0, 1e-12);
 }
 
 TEST(Bartlett, OfTwoVariancesIsItsClosedForm) {

@@ -17,7 +17,7 @@ LinearRun Clean(std::uint64_t seed, double noise = 1.0) {
   return run;
 }
 
-TEST(SequentialFit, AgreesWithTheProjectorThatSeesAllRowsAtOnce) {
+TEST(SequentialFit, KnowsOnlyItsPriorAtFirstAndInTheEndAgreesWithTheProjectorThatSeesAllRowsAtOnce) {
   LinearRun run = Clean(1);
   const Eigen::MatrixXd J = run.sigma.cwiseInverse().asDiagonal() * Eigen::MatrixXd(run.nuisance.jacobian);
   const Eigen::VectorXd y = run.residual.cwiseQuotient(run.sigma);
@@ -28,12 +28,9 @@ TEST(SequentialFit, AgreesWithTheProjectorThatSeesAllRowsAtOnce) {
   EXPECT_LT((J * fit.Solution() - J * projector.Solve(y)).cwiseAbs().maxCoeff(), 1e-6);
   const Eigen::VectorXd leverage = fit.CovarianceOf(J).diagonal();
   EXPECT_LT((leverage - (1.0 - projector.Redundancy().array()).matrix()).cwiseAbs().maxCoeff(), 1e-6);
-}
-
-TEST(SequentialFit, KnowsOnlyItsPriorAtFirst) {
-  const SequentialFit fit(Eigen::Vector2d(4.0, 1.0));
-  EXPECT_EQ(fit.Solution(), Eigen::Vector2d(0.0, 0.0));
-  EXPECT_NEAR(fit.CovarianceOf(Eigen::RowVector2d(1.0, 0.0))(0, 0), 0.25, 1e-15);
+  const SequentialFit begun(Eigen::Vector2d(4.0, 1.0));
+  EXPECT_EQ(begun.Solution(), Eigen::Vector2d(0.0, 0.0));
+  EXPECT_NEAR(begun.CovarianceOf(Eigen::RowVector2d(1.0, 0.0))(0, 0), 0.25, 1e-15);
 }
 
 TEST(WatchLimits, KeepTheirRateOverWhiteNoise) {

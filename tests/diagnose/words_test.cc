@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(WithUncertainty, HasTwoDigitsOfTheUncertainty) {
+TEST(WithUncertainty, HasTwoDigitsOfTheUncertaintyAndTellsSmallLengthsInMicrometres) {
   const auto text = [](double value, double u) {
     return WithUncertainty({"roll", "mrad", 1.0, value, u, kNaN, kNaN});
   };
@@ -22,9 +22,6 @@ TEST(WithUncertainty, HasTwoDigitsOfTheUncertainty) {
   EXPECT_EQ(text(0.01, 8e-6), "0.0100000 ± 0.0000080 mrad");
   EXPECT_EQ(text(0.01, 8e-12), "0.01 ± 8e-12 mrad");
   EXPECT_EQ(text(1.5, kNaN), "1.5 mrad");
-}
-
-TEST(WithUncertainty, TellsSmallLengthsInMicrometres) {
   EXPECT_EQ(WithUncertainty({"width", "mm", 1e-3, 0.0004136e-3, 2.4e-9, kNaN, kNaN}), "0.4136 ± 0.0024 µm");
   EXPECT_EQ(WithUncertainty({"width", "mm", 1e-3, 0.25e-3, 0.01e-3, kNaN, kNaN}), "0.250 ± 0.010 mm");
 }
@@ -166,7 +163,7 @@ TEST(DiagnosisJson, HasTheAgreedKeysAndUnits) {
   EXPECT_EQ(out.at("invisible").at(0).at("could_bias"), "target ez up to 0.4 arcsec rms");
 }
 
-TEST(DiagnosisJson, GivesNullForWhatIsNotKnown) {
+TEST(DiagnosisJson, GivesNullForWhatIsNotKnownAndOfAnAngleBenchForLengths) {
   const json out = ToJson(DiagnosisRun{}, "");
   EXPECT_EQ(out.at("verdict"), "none");
   EXPECT_TRUE(out.at("alarm_p").is_null());
@@ -174,9 +171,6 @@ TEST(DiagnosisJson, GivesNullForWhatIsNotKnown) {
   EXPECT_TRUE(out.at("gain").at("heldout_rms_before_um").is_null());
   EXPECT_TRUE(out.at("gain").at("interval95").at(0).is_null());
   EXPECT_TRUE(out.at("extended_scenario").is_null());
-}
-
-TEST(DiagnosisJson, OfAnAngleBenchHasNoLengths) {
   DiagnosisRun run = Example();
   run.run.unit = "deg";
   run.run.patterns.clear();
@@ -223,16 +217,13 @@ TEST(DiagnosisPlots, LeaveOutWhatDoesNotVaryOrWasNotRecorded) {
   EXPECT_EQ(against.at("target_deg").at("b").at("x").size(), 12u);
 }
 
-TEST(DiagnosisPlots, MapEverySetUpAndPosition) {
+TEST(DiagnosisPlots, MapEverySetUpAndPositionAndAreOfModestSize) {
   const json map = PlotsJson(RingWithDirection()).at("maps").at("a");
   EXPECT_THAT(map.at("setup"), ElementsAre(0, 1, 2));
   EXPECT_EQ(map.at("position").size(), 12u);
   EXPECT_EQ(map.at("before").size(), 3u);
   EXPECT_EQ(map.at("before").at(0).size(), 12u);
   EXPECT_NEAR(map.at("before").at(1).at(4), 0.0, 1e-3);  // both directions cancel in the mean
-}
-
-TEST(DiagnosisPlots, AreOfModestSize) {
   // About 600 readings as on the reference bench: a page must load.
   DiagnosisRun run;
   run.run = MakeRing({36, {0, 1, 7, 11}, {1, -1, -1, 1}, 50});
