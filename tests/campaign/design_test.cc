@@ -163,13 +163,10 @@ values = ["secret"]
   EXPECT_THAT(design.BelievedOf(0), testing::ElementsAre("device.noise_deg=0.002", seed));
 }
 
-TEST(Design, GivesATrialTheSameWhereverTheStudyEnds) {
+TEST(Design, GivesATrialTheSameWhereverTheStudyEndsAndASeedOfItsOwn) {
   const Design few = DesignOf("trials = 3\n" + std::string(kTwoUniform));
   const Design many = DesignOf("trials = 300\n" + std::string(kTwoUniform));
   for (std::int64_t trial = 0; trial < 3; ++trial) EXPECT_EQ(few.OverridesOf(trial), many.OverridesOf(trial));
-}
-
-TEST(Design, GivesEveryTrialASeedOfItsOwn) {
   const Design one = DesignOf("trials = 1000\nseed = 1\n"), other = DesignOf("trials = 1000\nseed = 2\n");
   std::set<std::uint64_t> seeds;
   for (std::int64_t trial = 0; trial < 1000; ++trial) seeds.insert({one.SeedOf(trial), other.SeedOf(trial)});

@@ -25,27 +25,26 @@ double MeanChi2(const test::SeparatedTable& t, Component c) {
   return sum / static_cast<double>(t.truth[c].size());
 }
 
-/// Noisy ones without any hidden effect.
-class IndependentRun : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(IndependentRun, IsSeparatedWithinTheStatedUncertainties) {
-  const std::string folder = test::DataPath(std::string("challenge/") + GetParam());
-  test::TwinRun run;
-  run.scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
-  run.readings = ReadReadingsCsv(folder + "/readings.csv");
-  const separate::Separation s = test::Evaluate(run);
-  const TrueTables truth = TablesOf(test::ReadTruthFile(folder + "/truth.json").at("tables"));
-  for (const test::SeparatedTable& t : test::BothTables(s, truth)) {
-    for (const Component c : {Component::kEx, Component::kEy, Component::kEz, Component::kDy}) {
-      // 36 values, correlated over positions: mean 1, deviation about sqrt(2 / 18) = 0.33; three and a half of these.
-      EXPECT_GT(MeanChi2(t, c), 0.2) << t.Name(c);
-      EXPECT_LT(MeanChi2(t, c), 2.2) << t.Name(c);
+TEST(IndependentRuns, AreSeparatedWithinTheStatedUncertainties) {
+  for (const char* without_an_effect : {"002", "005", "013", "020"}) {
+    SCOPED_TRACE(without_an_effect);
+    const std::string folder = test::DataPath(std::string("challenge/") + without_an_effect);
+    test::TwinRun run;
+    run.scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
+    run.readings = ReadReadingsCsv(folder + "/readings.csv");
+    const separate::Separation s = test::Evaluate(run);
+    const TrueTables truth = TablesOf(test::ReadTruthFile(folder + "/truth.json").at("tables"));
+    for (const test::SeparatedTable& t : test::BothTables(s, truth)) {
+      for (const Component c : {Component::kEx, Component::kEy, Component::kEz, Component::kDy}) {
+        // 36 values, correlated over positions: mean 1, deviation about sqrt(2 / 18) = 0.33; three and a half of
+        // these.
+        EXPECT_GT(MeanChi2(t, c), 0.2) << t.Name(c);
+        EXPECT_LT(MeanChi2(t, c), 2.2) << t.Name(c);
+      }
     }
+    EXPECT_EQ(s.scale, Eigen::Vector4d::Ones().eval()) << "nothing is hidden here, so nothing may exceed the noise";
   }
-  EXPECT_EQ(s.scale, Eigen::Vector4d::Ones().eval()) << "nothing is hidden here, so nothing may exceed the noise";
 }
-
-INSTANTIATE_TEST_SUITE_P(CleanCases, IndependentRun, ::testing::Values("002", "005", "013", "020"));
 
 Scenario OracleScenario(const std::string& clamping, const std::string& fidelity) {
   const TrueTables truth =
@@ -61,15 +60,13 @@ Scenario OracleScenario(const std::string& clamping, const std::string& fidelity
   return scenario;
 }
 
-class FullCircleOracle : public ::testing::TestWithParam<std::tuple<const char*, const char*>> {};
-
-TEST_P(FullCircleOracle, TheTwinReadsTheIndependentValuesToANanometre) {
-  const auto [clamping, fidelity] = GetParam();
+void ExpectOracle(const std::string& clamping, const std::string& fidelity) {
+  SCOPED_TRACE(clamping + " " + fidelity);
   const Scenario scenario = OracleScenario(clamping, fidelity);
-  const auto oracle = ReadReadingsCsv(test::DataPath(std::string("oracle/full_circle_") + clamping + ".csv"));
+  const auto oracle = ReadReadingsCsv(test::DataPath("oracle/full_circle_" + clamping + ".csv"));
   const test::TwinRun run = test::RunTwin(scenario);
   const std::vector<Reading>& readings = run.readings;
-  EXPECT_EQ(run.rays_traced > 0, std::string(fidelity) == "traced");
+  EXPECT_EQ(run.rays_traced > 0, fidelity == "traced");
   ASSERT_EQ(readings.size(), oracle.size());
   // 1 nm on the PSD; the file itself is rounded to 1 nV, half a femtometre.
   const double one_nm_V = units::nm * RotaryOf(scenario).psd_a.sensitivity_V_m;
@@ -82,9 +79,10 @@ TEST_P(FullCircleOracle, TheTwinReadsTheIndependentValuesToANanometre) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(BothClampings, FullCircleOracle,
-                         ::testing::Combine(::testing::Values("reclamp", "reseat"),
-                                            ::testing::Values("traced", "closed")));
+TEST(FullCircleOracle, TheTwinReadsTheIndependentValuesToANanometre) {
+  for (const char* clamping : {"reclamp", "reseat"})
+    for (const char* fidelity : {"traced", "closed"}) ExpectOracle(clamping, fidelity);
+}
 
 constexpr int kSeeds = 200;
 
@@ -129,12 +127,11 @@ std::pair<double, int> ChiSquared(const Eigen::VectorXd& error, const Eigen::Mat
   return {sum, rank};
 }
 
-class Scatter : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(Scatter, MatchesTheStatedUncertaintyOver200Seeds) {
+void ExpectStatedScatter(const std::string& clamping) {
+  SCOPED_TRACE(clamping);
   double chi2 = 0.0, dof = 0.0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    Scenario scenario = NoisyScenario(GetParam());
+    Scenario scenario = NoisyScenario(clamping);
     scenario.seed = static_cast<std::uint64_t>(seed);
     const test::TwinRun run = test::RunTwin(scenario);
     for (const test::SeparatedTable& t : test::BothTables(test::Evaluate(run), run.truth)) {
@@ -151,7 +148,9 @@ TEST_P(Scatter, MatchesTheStatedUncertaintyOver200Seeds) {
   EXPECT_GT(dof, 200 * 60);
 }
 
-INSTANTIATE_TEST_SUITE_P(BothClampings, Scatter, ::testing::Values("reclamp", "reseat"));
+TEST(Scatter, MatchesTheStatedUncertaintyOver200Seeds) {
+  for (const char* clamping : {"reclamp", "reseat"}) ExpectStatedScatter(clamping);
+}
 
 /// Mean of (error / u)^2 over tables and components of some seeds, the largest.
 double LargestMeanChi2(Scenario scenario) {
@@ -209,29 +208,27 @@ TEST(StatedUncertainty, CoversWhatBearingsDoNotRepeat) {
   }
 }
 
-void ExpectErrorsReturn(const test::TwinRun& run, double angle_rad, double length_m) {
+/// The issue of this project: 0.02 arcsec and 0.02 um rms. Second-order terms alone would be 0.001 arcsec.
+void ExpectErrorsReturn(const test::TwinRun& run) {
   for (const test::SeparatedTable& t : test::BothTables(test::Evaluate(run), run.truth)) {
     EXPECT_GE(t.estimate.components.size(), 4u) << "ex, ey, ez and dy are read";
     for (const Component c : t.estimate.components)
-      EXPECT_LT(t.RmsError(c), IsAngle(c) ? angle_rad : length_m) << t.Name(c);
+      EXPECT_LT(t.RmsError(c), 0.02 * (IsAngle(c) ? units::arcsec : units::um)) << t.Name(c);
   }
 }
 
-class NoiseFree : public ::testing::TestWithParam<std::tuple<const char*, int>> {};
-
-TEST_P(NoiseFree, TheRigorousEstimatorReturnsTheInjectedErrorsAlsoBehindRealisticMountings) {
-  const auto [clamping, seed] = GetParam();
-  const Scenario scenario = RandomTables(clamping, {"noise_free=true", "seed=" + std::to_string(seed)});
-  // The issue of this project: 0.02 arcsec and 0.02 um rms. Second-order terms alone would be 0.001 arcsec.
-  const double limit_rad = 0.02 * units::arcsec, limit_m = 0.02 * units::um;
-  ExpectErrorsReturn(test::RunTwin(scenario), limit_rad, limit_m);
-  // Not random from reading to reading, so noise_free does not take it: the mounting of the body.
-  const Scenario mounted = Altered(scenario, {"reference.mount_tilt_arcsec=[30, -20]", "reference.centring_um=[20, -15]"});
-  ExpectErrorsReturn(test::RunTwin(mounted), limit_rad, limit_m);
+TEST(NoiseFree, TheRigorousEstimatorReturnsTheInjectedErrorsAlsoBehindRealisticMountings) {
+  for (const char* clamping : {"reclamp", "reseat"}) {
+    for (const char* seed : {"seed=1", "seed=2", "seed=3"}) {
+      SCOPED_TRACE(std::string(clamping) + " " + seed);
+      const Scenario scenario = RandomTables(clamping, {"noise_free=true", seed});
+      ExpectErrorsReturn(test::RunTwin(scenario));
+      // Not random from reading to reading, so noise_free does not take it: the mounting of the body.
+      ExpectErrorsReturn(test::RunTwin(
+          Altered(scenario, {"reference.mount_tilt_arcsec=[30, -20]", "reference.centring_um=[20, -15]"})));
+    }
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(ClampingsAndSeeds, NoiseFree,
-                         ::testing::Combine(::testing::Values("reclamp", "reseat"), ::testing::Values(1, 2, 3)));
 
 /// Runs seeds 1..count on this many threads, each taking the next seed that is free.
 std::vector<std::string> RunSeeds(const Scenario& scenario, std::size_t count, int threads) {
