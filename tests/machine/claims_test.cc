@@ -179,7 +179,7 @@ std::string OnLinuxCnc(const std::string& from = "", const std::string& to = "")
   return from.empty() ? text : text.replace(text.find(from), from.size(), to);
 }
 
-TEST(MachineFile, NamesTheAxesOfALinuxCncMachine) {
+TEST(MachineFile, NamesTheAxesOfALinuxCncMachineAndRefusesWhatItCannotBeOrOthersAreNot) {
   hw::MachineFile file = hw::ParseMachineFile(OnLinuxCnc(), "bench.toml", kAxes);
   EXPECT_EQ(hw::LetterOf(file, kAxes, 0), "X") << "its own name, where LinuxCNC has such an axis";
   EXPECT_EQ(file.joints, (std::vector<int>{0, 1}));
@@ -188,9 +188,6 @@ TEST(MachineFile, NamesTheAxesOfALinuxCncMachine) {
       hw::ParseMachineFile(OnLinuxCnc("[axis_a]\n", "[axis_a]\nletter = \"c\"\njoint = 5\n"), "bench.toml", kAxes);
   EXPECT_EQ(hw::LetterOf(file, kAxes, 1), "C");
   EXPECT_EQ(file.joints[1], 5);
-}
-
-TEST(MachineFile, RefusesWhatALinuxCncMachineCannotBeOrOthersAreNot) {
   ExpectRefused({{11, OnLinuxCnc("[axis_a]\n", "[axis_a]\nletter = \"Z\"\n")},
                  {10, OnLinuxCnc("[axis_a]\n", "[axis_a]\njoint = 0\n")},
                  {5, OnLinuxCnc("stall_s", "watchdog = \"XW\"\nstall_s")},
@@ -220,7 +217,7 @@ TEST(MachineFile, ReadsRegistersAsOneItemAField) {
                  {19, Changed("arm = \"\"", "unit = 3")}});
 }
 
-TEST(MachineFile, IsReadInTheUnitsOfItsKeys) {
+TEST(MachineFile, IsReadInTheUnitsOfItsKeysAndWhatIsWrongIsToldWithItsLine) {
   const hw::MachineFile file = hw::ParseMachineFile(kWhole, "bench.toml", kAxes);
   EXPECT_DOUBLE_EQ(file.axes[0].lower, -0.15);
   EXPECT_DOUBLE_EQ(file.axes[0].in_position, 5e-6);
@@ -228,9 +225,6 @@ TEST(MachineFile, IsReadInTheUnitsOfItsKeys) {
   EXPECT_EQ(file.axes[1].stall_s, 2.0) << "of the machine, and so of every axis";
   EXPECT_DOUBLE_EQ(file.traverse_m_s, 0.03);
   EXPECT_EQ(file.fixture.kind, "console");
-}
-
-TEST(MachineFile, WhatIsWrongIsToldWithItsLine) {
   ExpectRefused({{6, Changed("lower_mm = -150.0", "lower_mm = 250.0")}, {7, Changed("lower_mm", "lower_deg")},
                  {3, Changed("serial:/dev/ttyUSB0:19200", "ttyUSB0")},
                  {17, Changed("scale = [1.0, 1000.0]", "scale = [1.0]")}, {10, Changed("[axis_a]", "[axis_b]")},

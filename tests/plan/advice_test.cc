@@ -18,12 +18,15 @@ const nlohmann::json kBefore = nlohmann::json::parse(
 const nlohmann::json kMore =
     nlohmann::json::parse(R"({"target": {"ez_arcsec": [0, 0], "u_ez_arcsec": [0.3, 0.4]}})");
 
-TEST(GainsOf, AddsInverseVariancesPlaceByPlace) {
+TEST(GainsOf, AddsInverseVariancesPlaceByPlaceOnlyOfWhatIsWanted) {
   const std::vector<Gain> gains = GainsOf(kBefore, kMore, "");
   ASSERT_EQ(gains.size(), 1u);  // dy is not determined again
   EXPECT_EQ(gains.front().name, "target.ez_arcsec");
   EXPECT_NEAR(gains.front().ratio, std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(MeanGain_bit(gains), 0.5, 1e-12);
+  EXPECT_EQ(GainsOf(kBefore, kBefore, "target.dy").size(), 1u);
+  EXPECT_EQ(GainsOf(kBefore, kBefore, "dy_um").size(), 1u);
+  EXPECT_TRUE(GainsOf(kBefore, kBefore, "get.dy").empty());
 }
 
 TEST(GainsOf, AddsThePrecisionOfAWholeProgrammeOnlyOfWhatIsWanted) {
@@ -65,12 +68,6 @@ TEST(OutlookOf, AListByRankIsNoResultOfItsOwn) {
   const Outlook outlook = OutlookOf(results, 2, 10.0);
   ASSERT_EQ(outlook.results.size(), 1u);
   EXPECT_EQ(outlook.results.front().name, "errors.scale_um_m");
-}
-
-TEST(GainsOf, OnlyOfWhatIsWanted) {
-  EXPECT_EQ(GainsOf(kBefore, kBefore, "target.dy").size(), 1u);
-  EXPECT_EQ(GainsOf(kBefore, kBefore, "dy_um").size(), 1u);
-  EXPECT_TRUE(GainsOf(kBefore, kBefore, "get.dy").empty());
 }
 
 TEST(Rank, PutsWhatBuysMostPerMinuteFirst) {
@@ -195,7 +192,7 @@ TEST(Mended, IsNothingOfWhichAPartStaysUnderAnotherName) {
   EXPECT_THAT(WhollyMendedBy(own, Losing({}), good), ElementsAre("turntable and multi-tooth table"));
 }
 
-TEST(Mended, IsWhatIsWholeBesideAPartOfSomethingElse) {
+TEST(Mended, IsWhatIsWholeBesideAPartOfSomethingElseAndOrder1WhereOrder12Stays) {
   const Outlook own = Losing({"target dy", "reference dx"}), good = Losing({});
   EXPECT_THAT(WhollyMendedBy(own, Losing({"target dy orders 2, 4"}), good), ElementsAre("reference dx"));
   EXPECT_THAT(WhollyMendedBy(own, Losing({"target dy order 0"}), Losing({"target dy order 0"})),
@@ -203,11 +200,8 @@ TEST(Mended, IsWhatIsWholeBesideAPartOfSomethingElse) {
       << "no shifts tell order 0";
   EXPECT_THAT(MendedInWords(own, Losing({"target dy order 0"})),
               ElementsAre("target dy but for order 0", "reference dx"));
-}
-
-TEST(Mended, IsOrder1WhereOrder12Stays) {
-  const Outlook own = Losing({"device, order 1", "device, order 12"}), good = Losing({});
-  EXPECT_THAT(WhollyMendedBy(own, Losing({"device, order 12"}), good), ElementsAre("device, order 1"));
+  const Outlook one_and_twelve = Losing({"device, order 1", "device, order 12"});
+  EXPECT_THAT(WhollyMendedBy(one_and_twelve, Losing({"device, order 12"}), good), ElementsAre("device, order 1"));
 }
 
 /// One of the runs that a bench offers next, made on the twin beside the scenario's own.

@@ -119,12 +119,18 @@ TEST(BestMixture, OfAParabolaIsTheDOptimalOneOfTheLiterature) {
 }
 
 /// Weights 1/4, 1/2, 1/4 at -1, 0, 1; the trace is 8.
-TEST(BestMixture, OfAParabolaIsTheAOptimalOneOfTheLiterature) {
+TEST(BestMixture, OfAParabolaIsTheAOptimalOneOfTheLiteratureAndCountsPerCost) {
   const RelaxedProgramme best = BestMixture(kNextToNothing, ReadingsOnAGrid(), 1.0, Optimality::kA);
   EXPECT_NEAR(best.weights[0], 0.25, 2e-3);
   EXPECT_NEAR(best.weights[10], 0.50, 2e-3);
   EXPECT_NEAR(best.criterion, 8.0, 1e-3);
   EXPECT_LE(best.bound, best.criterion);
+  // Twice as dear and twice as telling is the same.
+  std::vector<RunInformation> runs = {ReadingAt(-1.0), ReadingAt(0.0), ReadingAt(1.0)};
+  const double plain = BestMixture(kNextToNothing, runs, 1.0, Optimality::kD).criterion;
+  runs[1].cost *= 2.0;
+  runs[1].information *= 2.0;
+  EXPECT_NEAR(BestMixture(kNextToNothing, runs, 1.0, Optimality::kD).criterion, plain, 1e-4);
 }
 
 /// What its certificate says of a programme is never better than what looking at all programmes says.
@@ -149,15 +155,6 @@ TEST(BestProgramme, IsWithinItsCertificateWhetherAllAreLookedAtOrSomeExchanged) 
     EXPECT_LE(share, 1.0 + 1e-9);
     EXPECT_GE(share, exchanged.efficiency);
   }
-}
-
-/// Twice as dear and twice as telling is the same.
-TEST(BestMixture, CountsPerCost) {
-  std::vector<RunInformation> runs = {ReadingAt(-1.0), ReadingAt(0.0), ReadingAt(1.0)};
-  const double plain = BestMixture(kNextToNothing, runs, 1.0, Optimality::kD).criterion;
-  runs[1].cost *= 2.0;
-  runs[1].information *= 2.0;
-  EXPECT_NEAR(BestMixture(kNextToNothing, runs, 1.0, Optimality::kD).criterion, plain, 1e-4);
 }
 
 }  // namespace
