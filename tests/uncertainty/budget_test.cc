@@ -87,13 +87,7 @@ TEST(Budget, HasThePartsOfTheReadings) {
   EXPECT_NEAR(budget.dof, 49.0 / (16.0 / 10.0 + 1.0 / 5.0), 1e-6);
 }
 
-TEST(CoverageFactor, IsThatOfTheTables) {
-  EXPECT_NEAR(CoverageFactor(kInfinite), 1.960, 0.001);
-  EXPECT_NEAR(CoverageFactor(10.0), 2.228, 0.001);
-  EXPECT_NEAR(CoverageFactor(2.0), 4.303, 0.001);
-}
-
-TEST(Quantities, AreTheNumbersWithAnUncertaintyBesideThem) {
+TEST(Quantities, AreTheNumbersWithAnUncertaintyBesideThemAndEndInTheirUnits) {
   const auto results = nlohmann::json::parse(R"({
     "calibration": {"dof": 12, "gain": {"psd_a_x": {"value": 0.99, "u": 0.01}}},
     "separation": {"target": {"ez_arcsec": [1.0, null, 3.0], "u_ez_arcsec": [0.1, 0.2, 0.3], "position_deg": [0, 1, 2]}},
@@ -110,6 +104,9 @@ TEST(Quantities, AreTheNumbersWithAnUncertaintyBesideThem) {
   EXPECT_EQ(found[3].name, "stability.standard_deviation.dy_um");
   EXPECT_EQ(ListOf(found[2].name), "separation.target.ez_arcsec");
   EXPECT_EQ(KindOf("iso230_2[2].targets[17].mean_arcsec[3]"), "iso230_2[].targets[].mean_arcsec");
+  EXPECT_EQ(UnitOf("separation.target.ez_arcsec[3]"), "arcsec");
+  EXPECT_EQ(UnitOf("setups[0].offset_x_um"), "um");
+  EXPECT_EQ(UnitOf("calibration.gain.psd_a_x"), "") << "x is no unit";
 }
 
 TEST(Quantities, HaveTheirPartsNearestAbove) {
@@ -135,12 +132,6 @@ TEST(Quantities, HaveTheirPartsNearestAbove) {
   EXPECT_EQ(parts_of("plain"), Parts{});
 }
 
-TEST(Quantities, EndInTheirUnits) {
-  EXPECT_EQ(UnitOf("separation.target.ez_arcsec[3]"), "arcsec");
-  EXPECT_EQ(UnitOf("setups[0].offset_x_um"), "um");
-  EXPECT_EQ(UnitOf("calibration.gain.psd_a_x"), "") << "x is no unit";
-}
-
 TEST(StatedQuantities, AreThoseWithAnUncertaintyInEachOfItsForms) {
   const auto json = nlohmann::json::parse(R"({"a": {"value": 1, "u": 0.1, "unit": "um"},
     "b": {"value_um": 2, "u_um": 0.2, "bias_um": 9}, "c": {"ez_arcsec": [3, 4], "u_ez_arcsec": [0.3, null],
@@ -156,14 +147,11 @@ TEST(StatedQuantities, AreThoseWithAnUncertaintyInEachOfItsForms) {
 /// Deviations of four readings of unit variance from their mean: cov = 1 - 1/4 everywhere, rank 3.
 Eigen::MatrixXd OfDeviations() { return Eigen::MatrixXd::Identity(4, 4) - Eigen::MatrixXd::Constant(4, 4, 0.25); }
 
-TEST(Joint, HasARootWithoutTheDirectionsThatAreNone) {
+TEST(Joint, HasARootWithoutTheDirectionsThatAreNoneAndLosesNoneToItsUnits) {
   const Eigen::MatrixXd root = RootOf(OfDeviations());
   EXPECT_EQ(root.cols(), 3);
   EXPECT_LT((root * root.transpose() - OfDeviations()).cwiseAbs().maxCoeff(), 1e-12);
-}
-
-/// Units of a thousand to one beside each other lose no direction.
-TEST(Joint, LosesNoDirectionToItsUnits) {
+  // Units of a thousand to one beside each other lose no direction.
   Eigen::MatrixXd cov(2, 2);
   cov << 1.0, 0.5e-6, 0.5e-6, 1e-12;
   EXPECT_EQ(RootOf(cov).cols(), 2);
@@ -223,11 +211,8 @@ TEST(Propagate, DrawsJointsOfFewDegreesOfFreedom) {
   EXPECT_NEAR(cov(0, 1), 0.0, 0.1);
 }
 
-class JointOfEveryBench : public testing::TestWithParam<test::SmallBench> {};
-
-/// The diagonal is the square of the u beside each result, and there is one for each that was determined.
-TEST_P(JointOfEveryBench, HasTheStatedUncertainties) {
-  const Scenario scenario = test::Small(GetParam());
+void ExpectStatedUncertainties(const Scenario& scenario) {
+  SCOPED_TRACE(scenario.bench);
   const std::vector<Reading> readings = test::ReadingsOf(scenario);
   const report::Evaluation evaluation = BenchOf(scenario).evaluate(scenario, readings, Estimator::kRigorous);
   const std::vector<Quantity> quantities = QuantitiesOf(evaluation.results);
@@ -248,9 +233,10 @@ TEST_P(JointOfEveryBench, HasTheStatedUncertainties) {
   EXPECT_EQ(compared > 10, has_map);
 }
 
-INSTANTIATE_TEST_SUITE_P(Joint, JointOfEveryBench, testing::ValuesIn(test::SmallBenches()), [](const auto& of) {
-  return of.param.file.substr(0, of.param.file.find('.'));
-});
+/// The diagonal is the square of the u beside each result, and there is one for each that was determined.
+TEST(Joint, OfEveryBenchHasTheStatedUncertainties) {
+  for (const test::SmallBench& bench : test::SmallBenches()) ExpectStatedUncertainties(test::Small(bench));
+}
 
 TEST(BudgetJson, HasTheCovariance) {
   const auto evaluate = [](const Scenario&) { return std::vector<Quantity>{{"a", 0.0, 1.0}, {"b", 0.0, 2.0}}; };

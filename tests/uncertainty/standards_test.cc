@@ -1,5 +1,3 @@
-#include <random>
-
 #include "tests/support/over_seeds.h"
 #include "tests/uncertainty/bench_budget.h"
 #include "twin/uncertainty/standards.h"
@@ -72,22 +70,9 @@ TEST(PublishedOfOtherBenches, NamesWhatTheEquationsOfThePatentMiss) {
   EXPECT_NE(published.summary.find("INVALID"), std::string::npos);
 }
 
-constexpr double kWavelength_nm = 0.02, kDistance_mm = 0.1, kStandard = 2e-3;
-
 Scenario Nominal() {
   return Small(SmallBenches()[0], {"laser.u_wavelength_nm=0.02", "psd_a.u_distance_mm=0.1",
                                    "psd_b.u_distance_mm=0.1", "autocollimator.u_gain_error=0.002"});
-}
-
-/// A bench whose standards err by what was drawn; nobody who evaluates knows.
-Scenario Drawn(std::mt19937_64& random) {
-  std::normal_distribution<double> normal;
-  Scenario s = Nominal();
-  s.effects = {{"wavelength_offset", "", {{"wavelength_error", kWavelength_nm * units::nm * normal(random)}}, ""},
-               {"psd_distance", "psd_a", {{"distance_error", kDistance_mm * units::mm * normal(random)}}, ""},
-               {"psd_distance", "psd_b", {{"distance_error", kDistance_mm * units::mm * normal(random)}}, ""}};
-  RotaryOf(s).autocollimator.gain_error = kStandard * normal(random);
-  return s;
 }
 
 double TypeB2(const Budget& budget) {
@@ -96,18 +81,18 @@ double TypeB2(const Budget& budget) {
   return sum2;
 }
 
-/// What standards that err do to the results of the twin, against what the budget says of it: the same seed with
-/// and without their errors, so that noise has no part.
+/// What standards that err do to the results of the twin - nobody who evaluates knows - against what the budget
+/// says of it: the same seed with and without their errors, so that noise has no part.
 TEST(RotaryUncertainty, IsWhatStandardsThatErrDo) {
   const Scenario nominal = Nominal();
   const std::vector<Reading> readings = test::RunTwin(nominal).readings;
   const auto budgets = Budgets(nominal, [&](const Scenario& s) { return test::QuantitiesFrom(s, readings); });
   ASSERT_FALSE(budgets.empty());
-  std::mt19937_64 random(11);
   std::map<std::string, std::pair<double, int>> ratio2;  // by list: sum of squares and count
   constexpr int kBenches = 40;
   for (int bench = 0; bench < kBenches; ++bench) {
-    const std::vector<Quantity> found = test::QuantitiesFrom(nominal, test::RunTwin(Drawn(random)).readings);
+    const test::TwinRun run = test::RunTwin(StandardsDrawn(nominal, 11, bench));
+    const std::vector<Quantity> found = test::QuantitiesFrom(nominal, run.readings);
     ASSERT_EQ(found.size(), budgets.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
       const double u2 = TypeB2(budgets[i]), u_readings = budgets[i].quantity.u;
@@ -130,7 +115,7 @@ Scenario Hob(const std::string& u_arcsec) {
 }
 
 /// Both parts of every order of the calibrator scatter as it states, and what the scenario has in it is gone.
-TEST(StandardsDrawn, DrawTheWavesOfACalibrator) {
+TEST(StandardsDrawn, DrawTheWavesOfACalibratorAndLeaveOneAloneThatIsSure) {
   const Scenario scenario = Hob("0.2");
   const Eigen::Array2d squares = test::MeanOverSeeds(400, [&](std::uint64_t trial) {
     const Scenario drawn = StandardsDrawn(scenario, 1, static_cast<int>(trial));
@@ -143,9 +128,6 @@ TEST(StandardsDrawn, DrawTheWavesOfACalibrator) {
   });
   EXPECT_NEAR(squares[0], 1.0, 0.25) << "400 trials: 7 % standard deviation";
   EXPECT_NEAR(squares[1], 0.0, 0.2);
-}
-
-TEST(StandardsDrawn, LeaveACalibratorAloneThatIsSure) {
   EXPECT_TRUE(StatesStandards(Hob("0.2")));
   EXPECT_FALSE(StatesStandards(Hob("0.0")));
   EXPECT_EQ(HobOf(StandardsDrawn(Hob("0.0"), 1, 3)).interferometer.calibrator.size(), 2U);
