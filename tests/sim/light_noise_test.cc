@@ -97,14 +97,11 @@ double AllanVariance(double tau_s, int seeds) {
   return sum;
 }
 
-TEST(FlickerNoise, HasTheSameAllanVarianceOverSecondsAndMinutes) {
+TEST(FlickerNoise, HasTheSameAllanVarianceOverSecondsAndMinutesAndIsNothingIfNotAskedFor) {
   const double expected = 2.0 * std::log(2.0) / std::log(10.0);
   const int seeds = test::ByNight(200, 50);
   for (const double tau_s : {1.0, 10.0, 60.0})  // four standard deviations, of some correlated pairs
     EXPECT_NEAR(AllanVariance(tau_s, seeds), expected, 0.12 * std::sqrt(200.0 / seeds) * expected);
-}
-
-TEST(FlickerNoise, IsNothingIfNotAskedFor) {
   EXPECT_EQ(FlickerNoise(0.0, 1, "test").At(3.0), 0.0);
   EXPECT_TRUE(std::isinf(FlickerNoise(0.0, 1, "test").Shortest_s()));
 }
@@ -125,23 +122,20 @@ double VarianceOfMean(double corners) {
   return mean / total;
 }
 
-class Means : public testing::TestWithParam<double> {};
-
-TEST_P(Means, ScatterAsTheSpectrumSays) {
+TEST(BeamWander, HasMeansThatScatterAsTheSpectrumSays) {
   constexpr int kWanders = 4000, kPoints = 100;
-  const double corner_Hz = 50.0, duration_s = GetParam() / corner_Hz;
-  double squares = 0.0;
-  for (int seed = 0; seed < kWanders; ++seed) {
-    const BeamWander wander(3.0, corner_Hz, static_cast<std::uint64_t>(seed), "test");
-    double mean = 0.0;
-    for (int k = 0; k < kPoints; ++k) mean += wander.At((k + 0.5) / kPoints * duration_s) / kPoints;
-    squares += mean * mean / kWanders;
+  for (const double corners : {0.0, 0.1, 1.0, 4.0}) {
+    double squares = 0.0;
+    for (int seed = 0; seed < kWanders; ++seed) {
+      const BeamWander wander(3.0, 50.0, static_cast<std::uint64_t>(seed), "test");
+      double mean = 0.0;
+      for (int k = 0; k < kPoints; ++k) mean += wander.At((k + 0.5) / kPoints * corners / 50.0) / kPoints;
+      squares += mean * mean / kWanders;
+    }
+    const double expected = 9.0 * VarianceOfMean(corners);
+    EXPECT_NEAR(squares, expected, 5.0 * std::sqrt(2.0 / kWanders) * expected) << corners;
   }
-  const double expected = 9.0 * VarianceOfMean(GetParam());
-  EXPECT_NEAR(squares, expected, 5.0 * std::sqrt(2.0 / kWanders) * expected);
 }
-
-INSTANTIATE_TEST_SUITE_P(FromATenthToFourPeriodsOfTheCorner, Means, testing::Values(0.0, 0.1, 1.0, 4.0));
 
 int Blocks() { return test::ByNight(1500, 400); }
 
@@ -161,7 +155,7 @@ double SquareOfMeans_V2(int scans, int channel) {
 }
 
 // Up and down: the pitch at the laser over the whole way, and what the arm's own air does.
-TEST(BeamWander, GrowsWithTheWayAndIsLeftInBlockMeansAsItsSpectrumSays) {
+TEST(BeamWander, GrowsWithTheWayIsLeftInBlockMeansAsItsSpectrumSaysAndIsNoneInARunWithoutNoise) {
   const double way_m = 0.2, arm_m = 0.12;
   const double by_laser_m = 100e-6 * std::sqrt(way_m) * (way_m + arm_m),
                by_arm_m = 100e-6 * std::sqrt(arm_m) * arm_m;
@@ -170,9 +164,6 @@ TEST(BeamWander, GrowsWithTheWayAndIsLeftInBlockMeansAsItsSpectrumSays) {
   EXPECT_NEAR(SquareOfMeans_V2(1, 1) / single_V2, 1.0, tolerance);
   const double block_s = 625 * 16e-6;  // two periods of the corner
   EXPECT_NEAR(SquareOfMeans_V2(625, 3) / single_V2 / VarianceOfMean(200.0 * block_s), 1.0, tolerance);
-}
-
-TEST(BeamWander, IsNoneInARunWithoutNoise) {
   Scenario scenario = Quiet();
   RotaryOf(scenario).optics.wander_rad = 100e-6;
   EXPECT_EQ(Twin(scenario).Bench().adc.Acquire(100, false).channel[0].std_V, 0.0);

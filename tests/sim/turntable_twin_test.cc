@@ -108,15 +108,12 @@ TEST(TurntableTwin, SweepsTheTurntableAloneForTheCalibration) {
   EXPECT_NEAR(readings.front().target_rad, -200.0 * arcsec, 1e-12);
 }
 
-TEST(TurntableTwin, ChecksBetweenThePositionsOnly) {
+TEST(TurntableTwin, ChecksBetweenThePositionsOnlyOnWholeTeethEvenlySpread) {
   const Scenario s = QuietTurntable({"turntable_procedure.phases=[\"verification\"]", "turntable_procedure.verification_positions=20"});
   for (const Reading& r : TurntableReadings(s)) {
     EXPECT_EQ(r.phase, Phase::kVerification);
     EXPECT_NE(std::lround(r.target_rad / deg) % 30, 0) << "a position of the full circle";
   }
-}
-
-TEST(CheckTeeth, AreWholeTeethOffTheGridEvenlySpread) {
   const std::vector<int> teeth = procedure::CheckTeeth(360, 72, 144);
   EXPECT_EQ(teeth.size(), 144u);
   EXPECT_EQ(std::vector<int>(teeth.begin(), teeth.begin() + 5), (std::vector<int>{1, 3, 6, 8, 11}));
