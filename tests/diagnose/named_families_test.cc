@@ -79,10 +79,6 @@ struct Slope {
   EffectSettings effect;
 };
 
-void PrintTo(const Slope& slope, std::ostream* out) {
-  *out << slope.design->name << " " << slope.effect.name << " " << slope.effect.where;
-}
-
 /// Every effect at every place.
 std::vector<Slope> Slopes() {
   std::vector<Slope> slopes;
@@ -171,32 +167,28 @@ void ExpectParameters(const Match& match, const Values& truth, double within) {
   }
 }
 
-class NamedFamily : public testing::TestWithParam<Slope> {};
-
-TEST_P(NamedFamily, IsWhatTheTwinShowsOfItsEffectNearlySoOnItsGrid) {
-  const auto& [design, effect] = GetParam();
-  const Scenario stated = ScenarioOf(*design);
-  Scenario actual = stated;
-  actual.effects = {effect};
-  // Candidates are made of readings that have the effect in them.
-  const Candidates candidates = CandidatesOf(stated, ReadingsOf(actual));
-  Match best;
-  for (const Family& family : candidates.families) {
-    if (family.kind != Kind::kNamed || family.effect != effect.name || family.where != effect.where) continue;
-    const Match match = MatchOf(family, effect.parameters, candidates.run);
-    if (match.own.left < best.own.left) best = match;
+TEST(NamedFamilies, AreWhatTheTwinShowsOfTheirEffectsNearlySoOnTheirGrids) {
+  for (const Slope& slope : Slopes()) {
+    const auto& [design, effect] = slope;
+    SCOPED_TRACE(fmt::format("{} {} {}", design->name, effect.name, effect.where));
+    const Scenario stated = ScenarioOf(*design);
+    Scenario actual = stated;
+    actual.effects = {effect};
+    // Candidates are made of readings that have the effect in them.
+    const Candidates candidates = CandidatesOf(stated, ReadingsOf(actual));
+    Match best;
+    for (const Family& family : candidates.families) {
+      if (family.kind != Kind::kNamed || family.effect != effect.name || family.where != effect.where) continue;
+      const Match match = MatchOf(family, effect.parameters, candidates.run);
+      if (match.own.left < best.own.left) best = match;
+    }
+    ASSERT_NE(best.family, nullptr);
+    const Limit limit = LimitOf(slope);
+    EXPECT_LT(best.own.left, limit.own);
+    EXPECT_LT(best.left_at_grid, std::max(limit.own, limit.grid));
+    ExpectParameters(best, effect.parameters, std::min(limit.own, 0.02));
   }
-  ASSERT_NE(best.family, nullptr);
-  const Limit limit = LimitOf(GetParam());
-  EXPECT_LT(best.own.left, limit.own);
-  EXPECT_LT(best.left_at_grid, std::max(limit.own, limit.grid));
-  ExpectParameters(best, effect.parameters, std::min(limit.own, 0.02));
 }
-
-INSTANTIATE_TEST_SUITE_P(OfEveryBench, NamedFamily, testing::ValuesIn(Slopes()), [](const auto& of) {
-  const EffectSettings& effect = of.param.effect;
-  return fmt::format("{}_{}_{}_{}", of.param.design->name, effect.name, effect.where, of.index);
-});
 
 TEST(NamedFamilies, AreAllOfTheCatalogueThatTheRunCanShowWithGroupsOfTheirEffectsAndPriors) {
   for (const Design& design : Designs()) {

@@ -57,24 +57,20 @@ TEST_P(MachineContract, ARecordOfAnotherBenchIsNotGoneOnWith) {
   EXPECT_THROW(RunServedMachine(served, scenario_, served.BenchFile(), {}, before), InputError);
 }
 
-/// Those whose axes go along lines and arcs.
-using DrivenContract = MachineContract;
+constexpr ShortBench kBenches[] = {{"Circles", ShortCircles}, {"Freeform", ShortFreeform}, {"Stops", ShortStops}, {"Sweep", ShortSweep},
+                                   {"Turntable", ShortTurntable}, {"Polygon", ShortPolygon}, {"Hob", ShortHob}};
+INSTANTIATE_TEST_SUITE_P(Benches, MachineContract, ::testing::ValuesIn(kBenches), NameOf);
 
-TEST_P(DrivenContract, EveryDeviceSchedulesEvents) {
-  DrivenTwin twin(scenario_);
-  twin.Drive();
-  const auto& scheduled = dynamic_cast<const sim::DrivenMachine&>(*twin.devices).Scheduled();
-  EXPECT_GE(scheduled.at("instruments"), twin.log.readings.size());
-  for (const char* device : {"axes", "fixture"}) EXPECT_GT(scheduled.at(device), 0U) << device;
+/// Of those whose axes go along lines and arcs.
+TEST(DrivenContract, EveryDeviceSchedulesEvents) {
+  for (Scenario (*make)() : {ShortCircles, ShortFreeform, ShortStops, ShortSweep}) {
+    DrivenTwin twin(make());
+    twin.Drive();
+    const auto& scheduled = dynamic_cast<const sim::DrivenMachine&>(*twin.devices).Scheduled();
+    EXPECT_GE(scheduled.at("instruments"), twin.log.readings.size());
+    for (const char* device : {"axes", "fixture"}) EXPECT_GT(scheduled.at(device), 0U) << device;
+  }
 }
-
-constexpr ShortBench kDriven[] = {{"Circles", ShortCircles}, {"Freeform", ShortFreeform}, {"Stops", ShortStops}, {"Sweep", ShortSweep}};
-constexpr ShortBench kSentByItself[] = {{"Turntable", ShortTurntable}, {"Polygon", ShortPolygon}};
-constexpr ShortBench kTurning[] = {{"Hob", ShortHob}};
-INSTANTIATE_TEST_SUITE_P(Driven, MachineContract, ::testing::ValuesIn(kDriven), NameOf);
-INSTANTIATE_TEST_SUITE_P(SentByItself, MachineContract, ::testing::ValuesIn(kSentByItself), NameOf);
-INSTANTIATE_TEST_SUITE_P(Turning, MachineContract, ::testing::ValuesIn(kTurning), NameOf);
-INSTANTIATE_TEST_SUITE_P(Driven, DrivenContract, ::testing::ValuesIn(kDriven), NameOf);
 
 TEST(TurningAxis, CannotBeSentAnywhereOnTheTwinAndIsNoneOfAMachineThatIsSent) {
   EXPECT_THROW(DrivenTwin(ShortHob()).bench.machine.StartMove({1.0}, 0.0), DeviceFault);

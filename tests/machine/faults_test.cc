@@ -42,19 +42,14 @@ struct Failing {
   }
 };
 
-TEST(MachineFaults, ThatPassCostOneAttemptAndNoBit) {
-  Failing bench;
-  const std::pair<const char*, const char*> cases[] = {
-      {"machine,mute", "timeout"}, {"machine,disconnect", "dropped"}, {"machine,partial", "timeout"},
-      {"machine,not_in_position", "not_in_position"}, {"machine,restart", "restarted"},
-      {"instruments,mute", "timeout"}, {"instruments,gap", "overrun"}};
-  for (const auto& [trouble, fault] : cases) bench.ExpectGoneOn(bench.Run({{32, trouble}}), fault);
-}
-
-/// Faults of connections and controllers, wherever they meet a bench.
-TEST(MachineFaults, CostOneAttemptAndNoBitOnEveryBench) {
+/// Faults of connections and controllers, wherever they meet a bench; the others on one bench.
+TEST(MachineFaults, ThatPassCostOneAttemptAndNoBitOnEveryBench) {
   constexpr int kTogether = 32;  // readings of a simulation are kept so many at a time
-  for (Scenario (*make)() : {ShortFreeform, ShortTurntable, ShortPolygon, ShortStops, ShortSweep, ShortHob}) {
+  Failing circles;
+  for (const auto& [trouble, fault] : {std::pair("machine,mute", "timeout"), {"machine,partial", "timeout"},
+                                       {"machine,not_in_position", "not_in_position"}, {"instruments,gap", "overrun"}})
+    circles.ExpectGoneOn(circles.Run({{kTogether, trouble}}), fault);
+  for (Scenario (*make)() : {ShortCircles, ShortFreeform, ShortTurntable, ShortPolygon, ShortStops, ShortSweep, ShortHob}) {
     Failing bench(make);
     const int when = std::ssize(bench.readings) > kTogether ? kTogether : 0;
     bench.ExpectGoneOn(bench.Run({{when, "machine,disconnect"}}), "dropped");

@@ -190,14 +190,10 @@ double TurntableOff_arcsec(const Scenario& scenario) {
   const test::BenchRun run = test::RunBench(scenario);
   const auto follow = sim::FollowTurntable(scenario, run.readings);
   const Eigen::MatrixXd predicted_rad = follow->Predict(OwnErrors(run));
-  double off_rad = 0.0;
-  for (Eigen::Index i = 0; i < predicted_rad.rows(); ++i) {
-    const Reading& r = run.readings[static_cast<std::size_t>(i)];
-    EXPECT_EQ(r.status, ReadingStatus::kOk);
-    off_rad = std::max({off_rad, std::abs(predicted_rad(i, 0) - r.autocollimator_yaw_rad),
-                        std::abs(predicted_rad(i, 1) - r.autocollimator_tilt_rad)});
-  }
-  return off_rad / arcsec;
+  Eigen::MatrixXd shown_rad(predicted_rad.rows(), 2);
+  shown_rad << Each(run.readings, &Reading::autocollimator_yaw_rad), Each(run.readings, &Reading::autocollimator_tilt_rad);
+  for (const Reading& r : run.readings) EXPECT_EQ(r.status, ReadingStatus::kOk);
+  return (predicted_rad - shown_rad).cwiseAbs().maxCoeff() / arcsec;
 }
 
 constexpr double kSameTurntable_arcsec = 1e-6;
