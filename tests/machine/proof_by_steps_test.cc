@@ -1,7 +1,10 @@
 #include "twin/benches/proof_by_steps.h"
 
+#include <fmt/core.h>
+
 #include "tests/machine/benches.h"
 #include "tests/support/rotary_scenario.h"
+#include "tests/support/troubled_bench.h"
 #include "tools/twinbench/planned_run.h"
 #include "tools/twinbench/real_bench.h"
 #include "twin/benches/encoder_comparison/settings.h"
@@ -189,47 +192,13 @@ class Lying : public RotaryTable {
 using Blocks = std::array<ChannelBlock, kChannels>;
 using ChangesVolts = std::function<void(Blocks& channel, const Blocks& before)>;
 
-/// A card whose channels are others from the n-th block on.
-class ChangedCard : public AdConverter {
- public:
-  ChangedCard(AdConverter& inner, int good, ChangesVolts changes) : inner_(inner), good_(good), changes_(std::move(changes)) {}
-  Acquisition Acquire(int n_samples, bool keep_raw) override {
-    Acquisition block = inner_.Acquire(n_samples, keep_raw);
-    if (blocks++ < good_)
-      last_ = block.channel;
-    else if (changes_)
-      changes_(block.channel, last_);
-    return block;
-  }
-  int blocks = 0;
-
- private:
-  AdConverter& inner_;
-  int good_;
-  ChangesVolts changes_;
-  Blocks last_{};
-};
-
 using ChangesAngles = std::function<AutocollimatorReading(AutocollimatorReading)>;
-
-/// An autocollimator whose angles are others from the same block on.
-class ChangedAutocollimator : public Autocollimator {
- public:
-  ChangedAutocollimator(Autocollimator& inner, const int& blocks, int good, ChangesAngles changes)
-      : inner_(inner), blocks_(blocks), good_(good), changes_(std::move(changes)) {}
-  AutocollimatorReading Read() override { return blocks_ < good_ || !changes_ ? inner_.Read() : changes_(inner_.Read()); }
-
- private:
-  Autocollimator& inner_;
-  const int& blocks_;
-  int good_;
-  ChangesAngles changes_;
-};
 
 struct TableShares {
   double target = 1.0, reference = 1.0;
 };
 
+/// Tables, and channels and an autocollimator whose readings are others from the n-th block on.
 RunEnd EndOfTables(int good, const ChangesVolts& changes, TableShares shares, const std::string& phase = "full_circle",
                    const ChangesAngles& changes_angles = {}) {
   Scenario scenario = RestlessBench();
@@ -237,10 +206,26 @@ RunEnd EndOfTables(int good, const ChangesVolts& changes, TableShares shares, co
   RotaryOf(scenario).procedure.stability_s = 60.0;
   sim::Twin twin(scenario);
   const RotaryBench inner = twin.Bench();
-  ChangedCard card(inner.adc, good, changes);
-  Lying target(inner.target, card.blocks, good, shares.target), reference(inner.reference, card.blocks, good, shares.reference);
-  ChangedAutocollimator autocollimator(inner.autocollimator, card.blocks, good, changes_angles);
-  RotaryBench bench = {inner.clock, target, reference, card, autocollimator, inner.thermometer, inner.goniometer, inner.fixture};
+  int blocks = 0;
+  Blocks last{};
+  Lying target(inner.target, blocks, good, shares.target), reference(inner.reference, blocks, good, shares.reference);
+  const auto change = [&](const std::string& device, const std::string&, CallAnswer& answer) {
+    if (device == "autocollimator" && blocks >= good && changes_angles) {
+      AutocollimatorReading shown;
+      std::istringstream(answer.text) >> shown.yaw_rad >> shown.tilt_rad;
+      shown = changes_angles(shown);
+      answer.text = fmt::format("{} {}", shown.yaw_rad, shown.tilt_rad);
+    }
+    if (device != "adc") return;
+    if (blocks++ < good)
+      last = answer.block.channel;
+    else if (changes)
+      changes(answer.block.channel, last);
+  };
+  TroubledBench troubled({inner.clock, target, reference, inner.adc, inner.autocollimator, inner.thermometer,
+                          inner.goniometer, inner.fixture},
+                         {}, change);
+  RotaryBench bench = troubled.Bench();
   MemoryLog log;
   procedure::Options options;
   options.log = &log;
