@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 
-#include "tests/foreign/dice.h"
 #include "tests/foreign/machine.h"
 
 /// Courses of an angle comparison, off every grid, and what can be wrong with its device, in closed form.

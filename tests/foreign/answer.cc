@@ -1,6 +1,5 @@
-#include "tests/foreign/answer.h"
+#include "tests/foreign/plans.h"
 
-#include "tests/hidden/written_file.h"
 #include "tests/support/thresholds.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/registry.h"

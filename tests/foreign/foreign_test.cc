@@ -1,4 +1,3 @@
-#include "tests/foreign/answer.h"
 #include "tests/foreign/plans.h"
 #include "tests/hidden/known_wrong.h"
 #include "tests/support/oracle_poses.h"

@@ -1,7 +1,6 @@
 #include "tests/foreign/plans.h"
 
 #include "tests/hidden/twin_cases.h"
-#include "tests/hidden/written_file.h"
 #include "twin/core/happened_once.h"
 
 namespace twinbench::foreign {

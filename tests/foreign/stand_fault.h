@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "tests/foreign/dice.h"
 #include "tests/foreign/machine.h"
 
 /// Where the light of the reference rotary bench goes, from the description of its frames alone: SI, laboratory

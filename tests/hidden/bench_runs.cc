@@ -1,4 +1,4 @@
-#include "tests/hidden/bench_runs.h"
+#include "tests/hidden/twin_cases.h"
 
 #include "tests/support/angle_benches.h"
 #include "twin/benches/circular_motion/columns.h"

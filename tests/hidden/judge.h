@@ -5,7 +5,8 @@
 
 #include "twin/diagnose/diagnose.h"
 
-/// Cases with something hidden in them, what a right answer to each is, and how answers are marked.
+/// Cases with something hidden in them, what a right answer to each is, how answers are marked, and the scenario
+/// that a diagnosis writes, held against readings and against a second run of a machine, on another day.
 namespace twinbench::hidden {
 
 /// One cause as it was hidden. Parameters that are not known stay out.
@@ -115,5 +116,20 @@ struct Share {
   /// Clopper-Pearson, both between 0 and 1; of no cases: all between.
   std::array<double, 2> Interval95() const;
 };
+
+/// By way of the file's text, as a user has it.
+/// @throws InputError if it cannot be read.
+Scenario WrittenFile(const Scenario& believed, const diagnose::DiagnosisRun& found);
+
+/// What a diagnosis has to say of the readings; empty if nothing. A refusal is something.
+std::string Says(const std::vector<Reading>& readings, const Scenario& scenario,
+                 const diagnose::DiagnoseOptions& options);
+
+/// The same bench asked for another schedule: it begins elsewhere, goes the other way round first, dwells
+/// otherwise.
+Scenario WithOtherSchedule(Scenario scenario);
+
+/// The same bench with another schedule, other noise, and a room that is warmer and drifts the other way.
+Scenario OnAnotherDay(const Scenario& actual);
 
 }  // namespace twinbench::hidden

@@ -1,5 +1,3 @@
-#include "tests/hidden/written_file.h"
-
 #include "tests/hidden/judge.h"
 #include "twin/benches/circular_motion/settings.h"
 #include "twin/benches/encoder_comparison/settings.h"

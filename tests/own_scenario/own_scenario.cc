@@ -5,7 +5,6 @@
 #include <fstream>
 
 #include "tests/hidden/judge.h"
-#include "tests/hidden/written_file.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/thresholds.h"
 #include "twin/core/errors.h"

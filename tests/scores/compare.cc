@@ -1,4 +1,4 @@
-#include "tests/scores/row.h"
+#include "tests/scores/sets.h"
 
 #include "tests/hidden/judge.h"
 

@@ -1,6 +1,5 @@
 #include "tests/hidden/judge.h"
 #include "tests/hidden/unlisted_cause.h"
-#include "tests/hidden/written_file.h"
 #include "tests/scores/sets.h"
 #include "tests/support/thresholds.h"
 #include "tests/support/twin_run.h"

@@ -1,4 +1,3 @@
-#include "tests/foreign/answer.h"
 #include "tests/foreign/plans.h"
 #include "tests/investigate/hidden_investigation.h"
 #include "tests/own_scenario/own_scenario.h"

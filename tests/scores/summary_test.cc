@@ -1,5 +1,5 @@
 #include "tests/core/input_error.h"
-#include "tests/scores/row.h"
+#include "tests/scores/sets.h"
 #include "tests/support/kept_text.h"
 
 namespace twinbench::scores {

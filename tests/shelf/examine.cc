@@ -1,7 +1,6 @@
 #include "tests/shelf/judge.h"
 
 #include "tests/hidden/judge.h"
-#include "tests/hidden/written_file.h"
 #include "tests/support/thresholds.h"
 #include "tools/twinbench/answers.h"
 #include "twin/benches/expected.h"
