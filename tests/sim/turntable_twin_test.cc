@@ -75,27 +75,6 @@ TEST(TurntableTwin, ReadsTheMeanOfItsFramesInTheirMiddleWithLessNoise) {
   EXPECT_NEAR(std::sqrt(squares / 360.0) / (TurntableOf(s).autocollimator.noise_rad / 4.0), 1.0, 0.15);
 }
 
-TEST(TurntableTwin, EccentricityWalksTheBeamOverAMirrorThatIsNotFlat) {
-  Scenario s = QuietTurntable({"turntable_procedure.eccentricities_um=[1000]"});
-  for (const double flatness_m : {0.0, 79e-9}) {
-    TurntableOf(s).mirror.flatness_m = flatness_m;
-    double largest_arcsec = 0.0;
-    for (const Reading& r : TurntableReadings(s)) largest_arcsec = std::max(largest_arcsec, std::abs(X_arcsec(r)));
-    EXPECT_NEAR(largest_arcsec, flatness_m / 79e-9 * 0.036, flatness_m > 0.0 ? 0.001 : 1e-6)
-        << "8 h dL rho / H^2 of the paper";
-  }
-}
-
-TEST(TurntableTwin, ComesToEveryPositionFromItsSideAndShowsBacklash) {
-  const auto readings = TurntableReadings(QuietTurntable({"turntable.backlash_arcsec=3", "turntable_procedure.passes=[1, -1]"}));
-  for (const Reading& forward : readings) {
-    for (const Reading& backward : readings) {
-      if (forward.direction < 0 || backward.direction > 0 || forward.position != backward.position) continue;
-      EXPECT_NEAR(X_arcsec(forward) - X_arcsec(backward), -3.0, 1e-3);
-    }
-  }
-}
-
 TEST(TurntableTwin, SweepsTheTurntableAloneForTheCalibration) {
   const auto readings = TurntableReadings(QuietTurntable(
       {"turntable_procedure.phases=[\"calibration\"]", "turntable_procedure.sweep_points=5", "autocollimator.gain_error=0.01"}));
