@@ -86,9 +86,15 @@ Rows CodeRows() {
                },
                {Is(Verdict::kUnknown), Says(HasSubstr("range that ends at 311.3 deg, above")),
                 Says(Not(HasSubstr("lost counts")))}),
-      OfCourse("ARangeThatBeginsAboveWhereTheShaftTurnsIsSaidWithItsBeginning", {0.3, 3.0, 120, 4, 0.05, "sweep"},
-               0.003, [](const Place& at) { return std::max(at.deg, 42.0) - at.deg; },
-               {Is(Verdict::kUnknown), Says(HasSubstr("range that ends at 4")), Says(HasSubstr("below which nothing"))}),
+      OfCourse(
+          "ARangeThatBeginsAboveWhereTheShaftTurnsIsSaidWithItsBeginning", {0.3, 3.0, 120, 4, 0.05, "sweep"}, 0.003,
+          [](const Place& at) { return std::max(at.deg, 42.0) - at.deg; },
+          {Is(Verdict::kUnknown), Says(HasSubstr("range that ends at 4")), Says(HasSubstr("below which nothing"))}),
+      OfCourse("CountsThatComeBackBesideAnEllipseAreNoScale", {0.3, 1.0, 720, 2, 0.05, "sweep"}, 0.004,
+               [](const Place& at) {
+                 return Sum({{2, 0.03, 20.0}}, at.deg) - 0.05 * std::floor((at.deg - 123.4) / 360.0);
+               },
+               {NotNamed({"scale"}), Says(HasSubstr("deg is passed, which come back")), Order(2, 0.03, 0.001)}),
       // Behind the last jump there is one reading, where the course turns.
       OfCourse("ATurnThatIsPutRightAtZeroIsSaidToBeSoWhereTheCourseTurnsToo", {0.3, 1.0, 721, 2, 0.05, "sweep"},
                0.01, [](const Place& at) { return -8e-4 * (at.deg - 360.0 * std::floor(at.deg / 360.0)); },

@@ -101,6 +101,45 @@ LargeCauses OrWithoutLoops(LargeCauses found, const std::vector<Reading>& readin
   return plain && (is_implausible || IsBetterNamed(*plain, found)) ? *std::move(plain) : std::move(found);
 }
 
+/// What no cause and no structure shows, in units of noise, and their free numbers.
+struct AllLeft {
+  double power = 0.0, numbers = 0.0;
+};
+
+AllLeft AllLeftBy(const LargeCauses& large) {
+  const Searched& last = large.Last();
+  const EncoderRun& encoder = large.first->encoder;
+  Eigen::VectorXd rows = encoder.run.residual;
+  AllLeft left{0.0, NamedNumbers(large)};
+  for (const LargeCause& cause : large.causes) rows -= cause.shown;
+  for (const Term& term : last.analysis.found.terms) {
+    rows -= term.columns * term.amplitudes;
+    const bool is_named = last.families[static_cast<std::size_t>(term.family)].kind == Kind::kNamed;
+    if (!is_named) left.numbers += static_cast<double>(term.amplitudes.size()) + 1.0;  // and where it is, or of what order
+  }
+  left.power = encoder.BesideSetUps(rows).cwiseQuotient(encoder.run.sigma).squaredNorm();
+  return left;
+}
+
+/// Counts that are lost once a turn and come back are a scale, and a turn that is put right, and what these leave.
+LargeCauses OrWithoutScale(LargeCauses found, const std::vector<Reading>& readings, const Scenario& scenario,
+                           DiagnoseOptions options, const model::FollowMaker& follow) {
+  const Searched& last = found.Last();
+  const auto is_found = [&](const char* effect) {
+    return std::ranges::any_of(found.causes, [&](const LargeCause& cause) { return cause.effect.name == effect; }) ||
+           std::ranges::any_of(last.analysis.found.terms, [&](const Term& term) {
+             return last.families[static_cast<std::size_t>(term.family)].effect == effect;
+           });
+  };
+  if (!is_found("scale") || !is_found("lost counts")) return found;
+  options.excluded.emplace_back("scale");
+  LargeCauses plain = *LargeSearch(readings, scenario, options, follow, {}).Go();
+  const AllLeft with = AllLeftBy(found), without = AllLeftBy(plain);
+  const double rows = static_cast<double>(found.first->encoder.run.Rows());
+  const double more = rows * std::log(without.power / with.power) + std::log(rows) * (without.numbers - with.numbers);
+  return more < 0.0 ? std::move(plain) : std::move(found);
+}
+
 /// A scale that errs, where a straight line leaves little of what is seen at some targets: these have then no more
 /// errors of their own than lie beside it. How well it is known is a matter of the targets, not of the readings.
 std::optional<LargeCause> LineThroughTargets(const TwinFit& fit, Eigen::Index targets) {
@@ -136,6 +175,7 @@ LargeCauses FindLargeCauses(const std::vector<Reading>& readings, const Scenario
                             const DiagnoseOptions& options, const model::FollowMaker& follow) {
   LargeCauses plain = OrWithoutLoops(*LargeSearch(readings, scenario, options, follow, {}).Go(), readings, scenario,
                                      options, follow);
+  plain = OrWithoutScale(std::move(plain), readings, scenario, options, follow);
   const Eigen::MatrixXd targets = Targets(plain.first->encoder.context);
   if (targets.size() == 0 || !LeaveErrorsOfTargets(plain, targets)) return plain;
   const Eigen::MatrixXd few = TargetsThatStandOut(plain.first->encoder, targets);
