@@ -313,6 +313,18 @@ void TellWalk(Walk& walk, DiagnosisRun& result) {
   if (d.verdict == Verdict::kNone || SquaresAboutMean(wander) > named) d.verdict = Verdict::kUnknown;
 }
 
+/// What a turn has few periods of is nearly all of it. Of a walk over one turn that closes such orders take half of what it changes
+/// by over a sixteenth (series of a Brownian bridge), of any other less.
+bool IsOfLowOrders(const Walk& walk, const LinearRun& run) {
+  constexpr double kNearlyAll = 0.85;
+  constexpr int kLow = 4;
+  Eigen::MatrixXd columns = run.nuisance.jacobian.toDense();
+  for (int order = 1; order <= kLow; ++order) columns = HStack(columns, model::Wave(order * run.schedule.reference_rad));
+  Walk rest = walk;
+  rest.left -= columns * SolveShortest(columns, walk.left);
+  return rest.Change(walk.lag) < (1.0 - kNearlyAll) * walk.Change(walk.lag);
+}
+
 }  // namespace
 
 bool IsNothingButWalk(const LinearRun& run) {
@@ -325,7 +337,7 @@ bool IsNothingButWalk(const LinearRun& run) {
   if (count < kFewestMeans / 2) return false;  // of several heads no readings in a row are of one
   const Eigen::ArrayXd phase_rad = units::turn / static_cast<double>(count) *
                                    Eigen::ArrayXd::LinSpaced(count, 0.0, static_cast<double>(count - 1));
-  return !HaveStepOrDrift(steps) && !HasLine(steps, phase_rad, count / 2) && !HasLine(run);
+  return !HaveStepOrDrift(steps) && !HasLine(steps, phase_rad, count / 2) && !HasLine(run) && !IsOfLowOrders(walk, run);
 }
 
 bool FollowsWalk(const Family& family, const Eigen::MatrixXd& columns) {
