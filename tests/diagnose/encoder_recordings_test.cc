@@ -3,6 +3,7 @@
 #include "tests/diagnose/ring_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/wander.h"
 #include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
+#include "twin/diagnose/part_of_readings.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -123,7 +124,9 @@ const Row kRecordings[] = {
      {1, 2, 4}},
     // Neither of the catalogue's loops, and not both of them.
     {"PlayWithACourseOfItsOwnIsNamedAsOneLoop",
-     [](unsigned seed) { return Joint(5.3, 0.6, 0.6, false, seed, {900, 0.1, 2.0}); },
+     [](unsigned seed) {
+       return Joint(5.3, 0.6, 0.6, false, seed, {900, 0.1, 2.0});
+     },
      {[](const Answer& a) { EXPECT_NE(a.Names("backlash", 0.5), a.Names("hysteresis", 0.5)); }},
      {9, 13, 14, 29}},
     {"AWalkOfAJointWithoutPlayIsNoPlay",
@@ -159,6 +162,54 @@ TEST(EncoderWalk, SaysNothingOfAShapeThatItTakesBack) {
   TellWander({}, result);
   EXPECT_THAT(result.diagnosis.unknown.signature,
               testing::AllOf(HasSubstr("random walk"), testing::Not(HasSubstr("speed"))));
+}
+
+// Tables by which a stepper's driver corrects its encoder: one turn, an angle of two decimals for every count of 14
+// bits, without a clock, between 200 steps that were measured. The motor began at another angle than it ended at,
+// and is bent there.
+
+/// @param jump_deg  Where the table of the motor begins and ends, and dies away on either side.
+Record TableOfCounts(const std::vector<Wave>& waves, double jump_deg, double noise_deg, unsigned seed) {
+  Noise noise(noise_deg, seed);
+  std::vector<double> step_deg;
+  for (int k = 0; k < 200; ++k) {
+    const double x = std::remainder(1.8 * k - 358.2, 360.0);
+    step_deg.push_back(std::copysign(0.5 * jump_deg * std::exp(-std::abs(x) / 4.0), x) + noise());
+  }
+  return Listed({170.7, 360.0 / 16384.0, 16384}, [&](const Place& at) {
+    const double steps = (at.deg - 170.7) / 1.8, k = std::floor(steps);
+    const double before_deg = step_deg[static_cast<std::size_t>(k) % 200],
+                 behind_deg = step_deg[(static_cast<std::size_t>(k) + 1) % 200];
+    const double shown_deg = at.deg + Sum(waves, at.deg) + before_deg + (steps - k) * (behind_deg - before_deg);
+    return 0.01 * std::round(shown_deg / 0.01);
+  });
+}
+
+Row OfTable(const std::string& name, const std::vector<Wave>& waves, double jump_deg) {
+  std::vector<Check> checks = {NotNamed({"slip", "scale"}), IsNot(Verdict::kUnknown)};
+  for (const Wave& w : waves) checks.push_back(Order(w.order, w.size_deg, 0.02 * w.size_deg + 0.002));
+  return {name, [=](unsigned seed) { return TableOfCounts(waves, jump_deg, 0.006, seed); }, checks, {5, 4, 7, 1}};
+}
+
+const std::vector<Wave> kOfMotor = {{1, 0.142, 75.0},   {2, 0.186, 264.0},  {4, 0.044, 259.0},
+                                    {48, 0.0146, 162.0}, {50, 0.0156, 343.0}, {100, 0.009, 331.0}};
+
+const Row kTables[] = {OfTable("ATableOfOneTurnIsItsOrdersBesideATransientWhereItBegan", kOfMotor, 0.1),
+                       OfTable("ATableOfLargeErrorsHasNoScaleAndNoSlipWhereItCloses",
+                               {{1, 0.84, 310.0}, {2, 0.207, 1.0}, {3, 0.057, 236.0}}, 0.3)};
+INSTANTIATE_TEST_SUITE_P(Tables, EncoderAnswer, testing::ValuesIn(kTables), NameOfRow);
+
+/// Looked at in groups, the table's steps have no line that stands out.
+TEST(EncoderWalk, IsNotWhatAFewOrdersOfATurnShow) {
+  const Record table = TableOfCounts(kOfMotor, 0.1, 0.03, 5);
+  EXPECT_FALSE(IsNothingButWalk(RunOf(PartOf(table.readings, {.enough = 2500}), table.Believed()).run));
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    Noise step_deg(0.004, seed);
+    double walk_deg = 0.0;
+    const Record walk =
+        Listed({0.0, 0.15, 2400}, [&](const Place& at) { return at.deg + (walk_deg += step_deg()); });
+    EXPECT_TRUE(IsNothingButWalk(RunOf(walk.readings, walk.Believed()).run)) << seed;
+  }
 }
 
 }  // namespace

@@ -186,10 +186,15 @@ TEST(Rates, AreKnownByTheirNamesWhereNoUnitIsSaid) {
 }
 
 TEST_F(Importing, TakesNoRatesForAnglesAndNoTrainForThem) {
-  for (const auto& [names, table, gyro] : {std::tuple{"% Time (s),Gyro Output (rads/s),Input Rate (RPM)", kRpm_deg_s, kRad_deg},
-                                           std::tuple{"time [s],gyro output [dps],motor input [r/min]", kRpm_deg_s, 1.0},
-                                           std::tuple{"time [s],output rate,input rate", 1.0, 1.0}}) {
-    const std::string refusal = MessageOf([&] { Take(Swings(names, table, gyro)); });
+  struct Rates {
+    const char* names;
+    double table, gyro;
+  };
+  for (const Rates& in : {Rates{"% Time (s),Gyro Output (rads/s),Input Rate (RPM)", kRpm_deg_s, kRad_deg},
+                          Rates{"time [s],gyro output [dps],motor input [r/min]", kRpm_deg_s, 1.0},
+                          Rates{"time [s],output rate,input rate", 1.0, 1.0}}) {
+    const char* const names = in.names;
+    const std::string refusal = MessageOf([&] { Take(Swings(in.names, in.table, in.gyro)); });
     EXPECT_THAT(refusal, AllOf(HasSubstr("are rates"), HasSubstr("what a rate adds up to"), HasSubstr("--column 'reference_rad=["))) << names;
     EXPECT_THAT(refusal, Not(HasSubstr("is not said"))) << names;
   }

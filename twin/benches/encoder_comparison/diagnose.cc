@@ -6,11 +6,13 @@
 
 #include "twin/benches/encoder_comparison/axis_unit.h"
 #include "twin/benches/encoder_comparison/bench.h"
+#include "twin/benches/encoder_comparison/diagnosis/closed_turn.h"
 #include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/few_counts.h"
 #include "twin/benches/encoder_comparison/diagnosis/glitches.h"
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
+#include "twin/benches/encoder_comparison/diagnosis/neighbours.h"
 #include "twin/benches/encoder_comparison/diagnosis/speed_limit.h"
 #include "twin/benches/encoder_comparison/diagnosis/steady_reference.h"
 #include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
@@ -89,7 +91,8 @@ void DoubtUnsized(const diagnose::LinearRun& run, std::vector<diagnose::Cause>& 
 }
 
 diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario& scenario,
-                                   const diagnose::DiagnoseOptions& options) {
+                                   diagnose::DiagnoseOptions options) {
+  if (diagnose::encoder::IsClosedTurn(readings)) options.excluded.insert(options.excluded.end(), {"scale", "slip"});
   std::optional<diagnose::encoder::SpeedLimit> limit;
   if (!options.design_only) limit = diagnose::encoder::SpeedLimitOf(readings, scenario, FollowRecord);
   if (limit) readings = limit->allowed;
@@ -128,6 +131,12 @@ diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
   const std::vector<Reading> all = AnglesOf(recorded, scenario);
+  if (const std::vector<Reading> means = diagnose::encoder::MeansOfNeighbours(all, kEnough); !means.empty()) {
+    diagnose::DiagnosisRun result = DiagnoseAll(means, scenario, options);
+    result.diagnosis.notes.push_back(fmt::format("{} means of neighbours were looked at, of {} readings: where something began is known to a mean",
+                                                 means.size(), all.size()));
+    return result;
+  }
   std::vector<Reading> looked_at = diagnose::PartOf(all, {.enough = kEnough});
   diagnose::DiagnosisRun result = DiagnoseAll(looked_at, scenario, options);
   if (looked_at.size() == all.size()) return result;

@@ -83,14 +83,15 @@ bool IsLikeDrift(const Eigen::VectorXd& course) {
   return std::pow(steps.dot(number), 2) > kLike * steps.squaredNorm() * number.squaredNorm();
 }
 
-/// Where something happens more than once: a single step has a name.
+/// Where something happens more than once: a single step has a name. A turn that is put right is there once where
+/// one turn is gone.
 std::vector<double> PassedAgain(Passing passing, const Eigen::VectorXd& device_rad, std::vector<double> spots_rad) {
+  const bool catches_up = passing == Passing::kCatchesUp;
   std::erase_if(spots_rad, [&](double spot_rad) {
-    const Passing jumps = passing == Passing::kCatchesUp ? Passing::kComesBack : passing;
-    const Eigen::VectorXd course = CourseOf(jumps, device_rad, spot_rad);
+    const Eigen::VectorXd course = CourseOf(catches_up ? Passing::kComesBack : passing, device_rad, spot_rad);
     const Eigen::Index later = course.size() - 1;
-    return (course.tail(later).array() != course.head(later).array()).count() < 2 ||
-           (passing == jumps && IsLikeDrift(course));
+    return (course.tail(later).array() != course.head(later).array()).count() < (catches_up ? 1 : 2) ||
+           (!catches_up && IsLikeDrift(course));
   });
   return spots_rad;
 }
@@ -100,7 +101,8 @@ std::vector<double> PassedAgain(Passing passing, const Eigen::VectorXd& device_r
 std::vector<Family> LostCountFamilies(const SignalContext& context, const unknown::Design& design) {
   const Eigen::VectorXd device_rad = context.device_rad;
   unknown::Collector collect(std::make_shared<const unknown::Design>(design));
-  const bool has_turn = device_rad.maxCoeff() - device_rad.minCoeff() > units::turn;
+  constexpr double kNearly = 0.95;  // of a turn, in a table of one
+  const bool has_turn = device_rad.maxCoeff() - device_rad.minCoeff() > kNearly * units::turn;
   for (const Passing passing :
        {Passing::kLostForwards, Passing::kLostBackwards, Passing::kComesBack, Passing::kCatchesUp}) {
     if (passing == Passing::kCatchesUp && !has_turn)
