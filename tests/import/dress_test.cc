@@ -173,7 +173,25 @@ TEST_F(Importing, GuessesTheReadyMapOfAListAndSaysIt) {
 }
 
 TEST_F(Importing, AsksForTheReferenceOfASingleColumn) {
-  EXPECT_THAT(MessageOf([&] { Take("measured [deg]\n" + Entries("\n")); }), HasSubstr("which column is reference_deg is not clear; there are \"measured\""));
+  EXPECT_THAT(MessageOf([&] { Take("measured [deg]\n" + Entries("\n")); }), HasSubstr("which column is reference_deg is not clear; there is only \"measured\""));
+}
+
+TEST_F(Importing, SaysWhyAFileHasNoPairs) {
+  std::string statements, channels, stamped = "time,joint/header/stamp,joint/effort,joint/position\n";
+  for (int k = 0; k < 40; ++k) {
+    statements += fmt::format("Actual servo position: {}\n", 5 * k);
+    stamped += fmt::format("{0},{0},0,{1}\n", 0.01 * k, 3.0 * k);
+  }
+  for (int channel = 0; channel < 4; ++channel) {
+    for (int k = 0; k < 400; ++k) channels += fmt::format("{}{}", k > 0 ? "," : "", k * channel);
+    channels += "\n";
+  }
+  const auto why = [&](const std::string& text) { return MessageOf([&] { Take(text); }); };
+  EXPECT_THAT(why(statements), HasSubstr("each line states one quantity, \"Actual servo position\""));
+  EXPECT_THAT(why(channels), HasSubstr("4 rows of 400 numbers each: a row for each channel?"));
+  EXPECT_THAT(why(stamped), HasSubstr("reference_deg is not clear")) << "a time stamp is no angle";
+  EXPECT_THAT(why("// const float lookup[] = {" + Entries(", ") + "};\nconst int sine[] = {" + "0, 3, 5, 3, 0, -3, -5, -3, 0, 3, 5, 3};\n"), HasSubstr("numbers stands in comments"));
+  EXPECT_EQ(UnitNamed("millisec")->to_SI, 1e-3);
 }
 
 TEST_F(Importing, GuessesAPositioningTestByItsColumnsUpAndDown) {

@@ -43,6 +43,19 @@ std::string WithoutComments(std::string_view text) {
   return code;
 }
 
+/// What stands behind "//", as if it were code.
+std::string CodeInComments(std::string_view text) {
+  std::string code;
+  Lines lines(text);
+  for (std::string_view line; lines.Next(line);) {
+    line = Trimmed(line);
+    if (!line.starts_with("//")) continue;
+    line.remove_prefix(std::min(line.find_first_not_of('/'), line.size()));
+    code += std::string(line) + '\n';
+  }
+  return code;
+}
+
 bool IsLetter(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
 }
@@ -211,6 +224,21 @@ std::vector<Column> SideBySide(const std::vector<Column>& arrays) {
   return says_which ? beside : std::vector<Column>();
 }
 
+/// A table that was put aside is longer than what is left.
+void RefuseTablesInComments(std::string_view text, const std::vector<Column>& arrays, const std::string& file) {
+  const auto longest = [](const std::vector<Column>& of) {
+    std::size_t most = 0;
+    for (const Column& array : of) most = std::max(most, array.value.size());
+    return most;
+  };
+  const std::vector<Column> aside = ArraysIn(CodeInComments(text));
+  const std::size_t most = longest(aside);
+  if (most <= longest(arrays)) return;
+  const auto count = std::ranges::count_if(aside, [most](const Column& a) { return a.value.size() == most; });
+  throw InputError(file, fmt::format("{} of {} numbers {} in comments", count == 1 ? "an array" : fmt::format("{} arrays", count), most, count == 1 ? "stands" : "stand"),
+                   "the one that is meant without its \"//\"");
+}
+
 /// `float zero = 1.2;`
 void TakeNamedNumbers(std::string_view code, Track& track) {
   Lines lines(code);
@@ -266,6 +294,7 @@ bool IsBareList(const std::vector<std::string_view>& lines) {
 void ReadArray(std::string_view text, const std::string& name, Recording& recording) {
   const std::string code = WithoutComments(text);
   std::vector<Column> arrays = ArraysIn(code);
+  if (name.empty()) RefuseTablesInComments(text, arrays, recording.file);
   if (arrays.empty() && name.empty()) TakeBareList(code, arrays);
   if (std::vector<Column> beside = SideBySide(arrays); name.empty() && !beside.empty()) {
     recording.layout = fmt::format("{} arrays in a program text, {} entries each", beside.size(), beside.front().value.size());

@@ -210,7 +210,7 @@ bool IsOtherQuantity(const Column& column) {
   }
   if (IsCalledTemperature(column.name) || IsRate(column)) return true;
   return HasAny(column.name, std::array{"torque", "tor", "trq", "tau", "effort", "efforts", "voltage", "volt", "volts", "current", "amp", "amps", "kp", "ki", "kd",
-                                        "acceleration", "acc", "pwm", "humidity", "pressure"}) &&
+                                        "acceleration", "acc", "pwm", "humidity", "pressure", "stamp", "timestamp", "secs", "nsecs"}) &&
          !IsCalledPlace(column.name);
 }
 

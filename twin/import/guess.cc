@@ -415,7 +415,9 @@ void TakeWhatIsLeft(const std::vector<Choice>& columns, const std::vector<Record
     }
     const std::string kinds = ReadyMapsByNames(recordings[0]);
     if (kinds.empty() && TakeCompanions(columns, compared, map, remarks)) return;
-    throw InputError(recordings[0].file, fmt::format("which column is {} is not clear; there are {}{}", compared[k], ColumnNames(recordings), StandingTarget(recordings)),
+    const std::string names = ColumnNames(recordings);
+    const std::string there = names.find(',') == std::string::npos ? fmt::format("there is only {}, and nothing beside it", names) : "there are " + names;
+    throw InputError(recordings[0].file, fmt::format("which column is {} is not clear; {}{}", compared[k], there, StandingTarget(recordings)),
                      ExampleOf(left.size() > missing ? left : open, recordings, compared, map) + ErrorByTime(columns, compared) +
                          (columns.size() == 1 ? PlaceByLine(recordings, compared[k], columns[0]) : kinds.empty() ? WhatGoesTogether(columns) : "") + kinds);
   }

@@ -66,6 +66,17 @@ std::string TakeReadyMap(const std::vector<std::string>& files, Map& map) {
   return by_line ? "first line" : "columns";
 }
 
+/// A row a channel and a column a reading are no table of readings.
+void RefuseRowsOfChannels(const Recording& recording) {
+  constexpr std::size_t kWide = 200, kWider = 4;
+  for (const Track& track : recording.tracks) {
+    const std::size_t columns = track.columns.size(), rows = track.Rows();
+    if (columns > kWide && columns > kWider * rows)
+      throw InputError(recording.file, fmt::format("{} rows of {} numbers each: a row for each channel?", rows, columns),
+                       "a row for each reading and a column for each channel: rows and columns exchanged");
+  }
+}
+
 std::vector<Recording> ReadAll(const std::vector<std::string>& files, Map& map) {
   const std::string by = TakeReadyMap(files, map);
   std::vector<Recording> recordings;
@@ -74,6 +85,7 @@ std::vector<Recording> ReadAll(const std::vector<std::string>& files, Map& map) 
   for (const std::string& file : files) {
     recordings.push_back(ReadRecording(file, layout, map.clock));
     if (!by.empty()) recordings.back().remarks.push_back(fmt::format("by its {} a {}: taken as --map {}", by, map.title, map.name));
+    if (layout.columns_are_open) RefuseRowsOfChannels(recordings.back());
     const std::string others = layout.columns_are_open && map.name.empty() ? ReadyMapsByNames(recordings.back()) : "";
     if (!others.empty()) recordings.back().remarks.push_back("by its names it may be of another kind" + others);
     TakeSought(map, recordings.back());

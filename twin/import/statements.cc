@@ -82,6 +82,22 @@ std::vector<double> Held(const Track& track, const std::function<std::optional<d
 
 }  // namespace
 
+std::string OneQuantity(std::string_view text) {
+  constexpr int kFewest = 5;
+  std::string quantity;
+  int count = 0;
+  Lines lines(text);
+  for (std::string_view line; lines.Next(line);) {
+    if (Trimmed(line).empty()) continue;
+    const std::size_t mark = line.find_last_of(":=");
+    if (mark == std::string_view::npos || !AnyNumber(Trimmed(line.substr(mark + 1)))) return "";
+    const std::string name(Trimmed(line.substr(0, mark)));
+    if (name.empty() || (count++ > 0 && name != quantity)) return "";
+    quantity = name;
+  }
+  return count < kFewest ? "" : quantity;
+}
+
 std::optional<Statement> StatementIn(const std::string& line, const std::string& word, Dimension dimension) {
   constexpr std::size_t kShortWord = 2, kFarthest = 40;
   const std::size_t at = FindWord(SmallLetters(line), word);

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "twin/import/recording.h"
@@ -17,6 +18,9 @@ struct Statement {
 };
 /// @param word  In small letters; what it says has to fit the dimension.
 std::optional<Statement> StatementIn(const std::string& line, const std::string& word, Dimension dimension);
+
+/// What all lines state one number of: "Servo position: 45". Empty: they state several things, or something else.
+std::string OneQuantity(std::string_view text);
 
 /// One value a row: that of the last line above it that says one; NaN above the first.
 /// @param words  In small letters, the clearest first; the first that any line speaks of counts.

@@ -254,6 +254,9 @@ class TableReader {
     if (rows_ == 0 && !layout_.section.empty() && recording_.tracks.empty())
       throw InputError(recording_.file, fmt::format("no part that begins with \"{}\" has rows", layout_.section),
                        layout_.header.empty() ? "rows of numbers" : "a line that begins with " + layout_.header);
+    if (const std::string quantity = rows_ == 0 && named_ ? OneQuantity(text_) : ""; !quantity.empty())
+      throw InputError(recording_.file, fmt::format("each line states one quantity, \"{}\", and nothing beside it", quantity),
+                       "two at least: where the device should be, or a reference is, and what the device shows");
     if (rows_ == 0)
       throw InputError(recording_.file,
                        named_ ? "no line is a row of numbers" : "no line begins with " + layout_.header,
