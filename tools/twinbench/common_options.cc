@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <iostream>
 
 #include "twin/core/nearest_key.h"
 
@@ -36,6 +37,7 @@ std::shared_ptr<const Talk> AddTalk(CLI::App& command) {
 
 void SayWhatItTook(const std::string& command) {
   const double real_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - program_began).count();
+  std::cout.flush();  // of an answer that is still on its way, where both go to one place
   fmt::print(stderr, "twinbench {}: {:.1f} s, {:.1f} s of CPU time\n", command, real_s, static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
 }
 
