@@ -191,13 +191,25 @@ Row OfTable(const std::string& name, const std::vector<Wave>& waves, double jump
   return {name, [=](unsigned seed) { return TableOfCounts(waves, jump_deg, 0.006, seed); }, checks, {5, 4, 7, 1}};
 }
 
-const std::vector<Wave> kOfMotor = {{1, 0.142, 75.0},   {2, 0.186, 264.0},  {4, 0.044, 259.0},
+const std::vector<Wave> kOfMotor = {{1, 0.142, 75.0},    {2, 0.186, 264.0},   {4, 0.044, 259.0},
                                     {48, 0.0146, 162.0}, {50, 0.0156, 343.0}, {100, 0.009, 331.0}};
 
 const Row kTables[] = {OfTable("ATableOfOneTurnIsItsOrdersBesideATransientWhereItBegan", kOfMotor, 0.1),
                        OfTable("ATableOfLargeErrorsHasNoScaleAndNoSlipWhereItCloses",
                                {{1, 0.84, 310.0}, {2, 0.207, 1.0}, {3, 0.057, 236.0}}, 0.3)};
 INSTANTIATE_TEST_SUITE_P(Tables, EncoderAnswer, testing::ValuesIn(kTables), NameOfRow);
+
+/// Orders that are not in the table of twelve lie across groups of readings, and not across all of them.
+TEST(EncoderOrders, AreThoseOfAllReadingsWhereSomeWereLookedAt) {
+  Noise noise(0.002, 6);
+  const std::vector<Wave> waves = {{1, 0.1, 20.0}, {3, 0.03, 200.0}, {50, 0.06, 10.0}, {100, 0.03, 80.0}};
+  const Answer answer = Ask(Listed({0.3, 0.06, 6000, 1, 0.01, "sweep"},
+                                   [&](const Place& at) { return at.deg + Sum(waves, at.deg) + noise(); }));
+  const std::vector<Harmonic>& table = answer.run.diagnosis.harmonics;
+  ASSERT_EQ(table.size(), 12U);
+  for (const Harmonic& h : table)
+    EXPECT_NEAR(h.amplitude_rad / units::deg, h.order == 1 ? 0.1 : h.order == 3 ? 0.03 : 0.0, 0.0003) << h.order;
+}
 
 /// Looked at in groups, the table's steps have no line that stands out.
 TEST(EncoderWalk, IsNotWhatAFewOrdersOfATurnShow) {

@@ -90,7 +90,12 @@ void DoubtUnsized(const diagnose::LinearRun& run, std::vector<diagnose::Cause>& 
   }
 }
 
-diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario& scenario,
+/// A search that has looked at a part of the readings leaves the orders of all to a table: it takes no time.
+std::vector<diagnose::Harmonic> HarmonicsOf(const diagnose::encoder::EncoderRun& encoder) {
+  return diagnose::encoder::HarmonicTable(encoder, {encoder.run.sigma, {}});
+}
+
+diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const std::vector<Reading>& all, const Scenario& scenario,
                                    diagnose::DiagnoseOptions options) {
   if (diagnose::encoder::IsClosedTurn(readings)) options.excluded.insert(options.excluded.end(), {"scale", "slip"});
   std::optional<diagnose::encoder::SpeedLimit> limit;
@@ -119,8 +124,9 @@ diagnose::DiagnosisRun DiagnoseAll(std::vector<Reading> readings, const Scenario
   diagnose::encoder::DoubtLeadingLoops(large.first->encoder, result);
   diagnose::encoder::DoubtFewCounts(ShownBy(large.first->encoder.used), result);
   result.diagnosis.left_out = (limit ? limit->asked : searched.encoder).left_out;
-  result.diagnosis.harmonics =
-      diagnose::encoder::HarmonicTable(large.first->encoder, {searched.encoder.run.sigma, {}});
+  const bool is_all = limit || readings.size() == all.size();
+  result.diagnosis.harmonics = is_all ? diagnose::encoder::HarmonicTable(large.first->encoder, {searched.encoder.run.sigma, {}})
+                                      : HarmonicsOf(diagnose::encoder::BuildRun(all, scenario, FollowRecord));
   const DeviceSettings& device = EncoderOf(scenario).device;
   if (device.turn_m > 0.0) TellLengths(CoarseUnit(device), device.turn_m, result.diagnosis);
   return result;
@@ -132,18 +138,18 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scen
                                 const diagnose::DiagnoseOptions& options) {
   const std::vector<Reading> all = AnglesOf(recorded, scenario);
   if (const std::vector<Reading> means = diagnose::encoder::MeansOfNeighbours(all, kEnough); !means.empty()) {
-    diagnose::DiagnosisRun result = DiagnoseAll(means, scenario, options);
+    diagnose::DiagnosisRun result = DiagnoseAll(means, means, scenario, options);
     result.diagnosis.notes.push_back(fmt::format("{} means of neighbours were looked at, of {} readings: where something began is known to a mean",
                                                  means.size(), all.size()));
     return result;
   }
   std::vector<Reading> looked_at = diagnose::PartOf(all, {.enough = kEnough});
-  diagnose::DiagnosisRun result = DiagnoseAll(looked_at, scenario, options);
+  diagnose::DiagnosisRun result = DiagnoseAll(looked_at, all, scenario, options);
   if (looked_at.size() == all.size()) return result;
   const std::vector<double> events = EventsOf(result.diagnosis);
   if (!events.empty()) {
     looked_at = diagnose::PartOf(all, {.events = events, .enough = kEnough});
-    result = DiagnoseAll(looked_at, scenario, options);
+    result = DiagnoseAll(looked_at, all, scenario, options);
   }
   result.diagnosis.notes.push_back(fmt::format("{} of {} readings were looked at, in groups of neighbours{}",
                                                looked_at.size(), all.size(),
