@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/core/distributions.h"
 #include "twin/core/reading_clock.h"
 #include "twin/core/units.h"
 
@@ -36,18 +37,24 @@ Reading MeanOf(std::vector<Reading>::const_iterator begin, std::vector<Reading>:
 }  // namespace
 
 std::vector<Reading> MeansOfNeighbours(const std::vector<Reading>& readings, std::size_t enough) {
-  std::vector<Reading> read;
-  std::ranges::copy_if(readings, std::back_inserter(read), IsRead);
-  const std::size_t every = (read.size() + enough / 2) / enough;
-  if (every < 2 || HasClock(read) || !GoOneWay(read)) return {};
+  constexpr double kGap = 4.0;  // usual steps
+  const std::size_t every = (readings.size() + enough / 2) / enough;
+  if (every < 2 || HasClock(readings) || !GoOneWay(readings) || !std::ranges::all_of(readings, IsRead)) return {};
+  std::vector<double> step_rad;
+  for (std::size_t i = 1; i < readings.size(); ++i)
+    step_rad.push_back(std::abs(readings[i].reference_rad - readings[i - 1].reference_rad));
+  const double usual_rad = Median(step_rad);
+  if (!(usual_rad > 0.0)) return {};  // places that are read again and again
   std::vector<Reading> means;
-  for (auto begin = read.cbegin(); begin != read.cend();) {
-    const auto most = begin + static_cast<std::ptrdiff_t>(
-                                  std::min<std::size_t>(every, static_cast<std::size_t>(read.cend() - begin)));
-    const auto end = std::find_if(
-        begin, most, [&](const Reading& r) { return r.pass != begin->pass || r.setup != begin->setup; });
-    means.push_back(MeanOf(begin, end));
-    begin = end;
+  for (std::size_t begin = 0, end = 1; begin < readings.size(); begin = end++) {
+    const Reading& first = readings[begin];
+    const auto goes_on = [&](std::size_t i) {
+      return readings[i].pass == first.pass && readings[i].setup == first.setup &&
+             step_rad[i - 1] < kGap * usual_rad;
+    };
+    while (end < std::min(begin + every, readings.size()) && goes_on(end)) ++end;
+    means.push_back(MeanOf(readings.begin() + static_cast<std::ptrdiff_t>(begin),
+                           readings.begin() + static_cast<std::ptrdiff_t>(end)));
   }
   return means;
 }
