@@ -115,12 +115,14 @@ double WayWhileReferenceStands_rad(const LinearRun& run) {
 /// @return that error where it is what the readings scatter by; 0 otherwise.
 double RoundedReference_rad(const LinearRun& run, double noise_rad) {
   constexpr double kNothing = 0.01, kAlike = 2.0, kFine = 0.25;  // the last: of the way to the next reading
-  constexpr double kGoesOn = 0.1;                                // of a step
+  constexpr double kGoesOn = 0.1, kWithin = 1.5;                 // of a step
   const double roughness_rad = Roughness_rad(run);
   const double step_rad = CommonStep(run.schedule.reference_rad), rounded_rad = step_rad / std::sqrt(12.0);
   const bool is_alike = rounded_rad > roughness_rad / kAlike && rounded_rad < roughness_rad * kAlike;
   const bool is_fine = step_rad < kFine * model::TypicalStep_rad(run.schedule, run.schedule.reference_rad);
-  const bool goes_on = step_rad > 0.0 && WayWhileReferenceStands_rad(run) > kGoesOn * step_rad;
+  // Behind a command that goes by steps a device is off by a whole one, to either side.
+  const bool is_within = run.residual.maxCoeff() - run.residual.minCoeff() < kWithin * step_rad;
+  const bool goes_on = is_within && WayWhileReferenceStands_rad(run) > kGoesOn * step_rad;
   return is_alike && (goes_on || (is_fine && noise_rad < kNothing * roughness_rad)) ? rounded_rad : 0.0;
 }
 
