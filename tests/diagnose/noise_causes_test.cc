@@ -105,7 +105,7 @@ TEST(FindNoiseCauses, HardlyEverRefutesWhiteNoise) {
 TEST(FindNoiseCauses, TakesAFewFarValuesForOutliersAndFindsOneThatBendsTheFitForItsNeighbours) {
   // Two free constants a position and one reading that is far off: without it, none of the others is.
   for (const auto& [rows, off] : {std::pair(std::vector{11, 47, 90}, 15.0), {{47}, 400.0}}) {
-    const auto causes = CausesOf(3, [&](LinearRun& run) {
+    const auto causes = CausesOf(3, [rows = rows, off = off](LinearRun& run) {
       for (const int row : rows) run.residual[row] += off * run.sigma[row];
     });
     ASSERT_FALSE(causes.empty());

@@ -110,7 +110,7 @@ TEST_F(IioNumbersTest, WhatThereIsNotIsRefusedByName) {
   for (const auto& [device, item] :
        {std::pair{"psd-adc16", "voltage0 colour"}, std::pair{"psd-adc16", "voltage9 scale"},
         std::pair{"counter", "count0 raw"}}) {
-    const auto read = [&] { Source(device, {item})->Read(); };
+    const auto read = [this, device = device, item = item] { Source(device, {item})->Read(); };
     EXPECT_EQ(test::KindOf(read), FaultKind::kRefused);
     EXPECT_KEPT(std::regex_replace(test::TextOf(read), std::regex("127.0.0.1:\\d+"), "<address>"));
   }

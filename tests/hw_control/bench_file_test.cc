@@ -110,7 +110,7 @@ TEST(BenchFile, ThatIsWrongIsRefusedWithPlaceAndWhatWouldBeRight) {
        "address  ="},
   };
   for (const auto& [text, line] : files) {
-    const std::string refusal = MessageOf([&] { Parse(text); });
+    const std::string refusal = MessageOf([text = text] { Parse(text); });
     EXPECT_THAT(refusal, HasSubstr(LineOf(text, line))) << text;
     EXPECT_KEPT(refusal);
   }

@@ -138,7 +138,7 @@ TEST(Dialogue, ALineWithoutEndIsRefusedAndNotKeptAndAnEndIsToldFromSlownessAlsoB
                                                {{"", 0, true}, FaultKind::kDropped},
                                                {{""}, FaultKind::kTimeout}};
   for (const auto& [reply, fault] : cases) {
-    Talk talk(WithIdentity([&](const std::string&) { return reply; }));
+    Talk talk(WithIdentity([reply = reply](const std::string&) { return reply; }));
     EXPECT_EQ(talk.Fault("A?"), fault);
   }
 }

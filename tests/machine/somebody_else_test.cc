@@ -91,7 +91,7 @@ TEST(SomebodyElse, WhoTurnsTheFeedOverrideEndsACircle) {
     MachineBench inner = AsHardware(twin.bench);
     const std::vector<ReadingColumn> shown = InstrumentColumns(FormatOf(twin.scenario.bench).columns);
     AskedMachine overridden(
-        [&](const std::string& device, const std::string& request) { return Perform(inner, shown, device, Overridden(request, factor)); },
+        [&, factor = factor](const std::string& device, const std::string& request) { return Perform(inner, shown, device, Overridden(request, factor)); },
         [&] { return inner.clock.Now(); }, {inner.machine.Axes(), shown, false, nullptr});
     EXPECT_EQ(twin.FaultOn(overridden.Bench()), fault) << factor << twin.said;
   }

@@ -237,7 +237,7 @@ TEST(Turning, UpAndDownAgainIsHeldToTheWayOfBothRamps) {
     turning.Look(axis, 0.0, at(0), at(0));
     turning.Told(at(0), at(0), 20.0 * units::deg, std::chrono::seconds(2));
     turning.Told(at(2), at(2), 0.0, std::chrono::seconds(2));
-    const auto look = [&] { turning.Look(axis, shown_deg * units::deg, at(10), at(10)); };
+    const auto look = [&, shown_deg = shown_deg] { turning.Look(axis, shown_deg * units::deg, at(10), at(10)); };
     if (is_told)
       EXPECT_THROW(look(), DeviceFault) << shown_deg;
     else
