@@ -15,7 +15,7 @@ constexpr int kOneOf = 10;  // readings that are left out in good faith are fewe
 constexpr double kMostTimes = 300.0, kLeastTimes = 0.2;
 /// Latched samples may have the time at which they were fetched, many together, which says nothing of how fast they
 /// came.
-constexpr double kFetchedTogether = 1e-4;
+constexpr double kFetchedTogether = 2e-4;
 
 /// Positions from the first to the last of the longest pass of the full circle.
 int LongestPass(const std::vector<Reading>& readings) {
