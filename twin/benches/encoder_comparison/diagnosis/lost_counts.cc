@@ -101,8 +101,10 @@ std::vector<double> PassedAgain(Passing passing, const Eigen::VectorXd& device_r
 std::vector<Family> LostCountFamilies(const SignalContext& context, const unknown::Design& design) {
   const Eigen::VectorXd device_rad = context.device_rad;
   unknown::Collector collect(std::make_shared<const unknown::Design>(design));
-  constexpr double kNearly = 0.95;  // of a turn, in a table of one
-  const bool has_turn = device_rad.maxCoeff() - device_rad.minCoeff() > kNearly * units::turn;
+  constexpr double kNearly = 0.99;  // of a turn, in a table of one that says where its error jumps
+  constexpr Eigen::Index kTable = 256;
+  const double least_rad = device_rad.size() < kTable ? units::turn : kNearly * units::turn;
+  const bool has_turn = device_rad.maxCoeff() - device_rad.minCoeff() > least_rad;
   for (const Passing passing :
        {Passing::kLostForwards, Passing::kLostBackwards, Passing::kComesBack, Passing::kCatchesUp}) {
     if (passing == Passing::kCatchesUp && !has_turn)
